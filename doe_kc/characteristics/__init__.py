@@ -1,0 +1,21 @@
+"""K&C characteristics: the figures that an axle is judged by, simulated and measured alike."""
+
+from __future__ import annotations
+
+import sys
+
+from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic, appendix_b, appendix_c
+from doe_kc.characteristics._reduction import reduce_all, reduce_one, reduction_gradient
+from doe_kc.registry import import_members
+
+import_members(sys.modules[__name__])
+
+__all__ = [
+    "CHARACTERISTICS",
+    "Characteristic",
+    "appendix_b",
+    "appendix_c",
+    "reduce_all",
+    "reduce_one",
+    "reduction_gradient",
+]

@@ -1,0 +1,74 @@
+"""K&C curves of one axle, simulated or measured: the common currency of the package.
+
+Angles in deg, positions in mm, loads in N; row 0 is the left wheel, row 1 the right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from doe_kc.typing import FloatArray
+
+SIDES = ("L", "R")
+
+ANGLES = ("toe", "camber", "caster", "spin")
+"""Responses whose static value is an alignment figure; curves hold their change from static."""
+
+WHEEL_CENTRE = ("wc_x", "wc_y", "wc_z")
+TYRE_LOAD = "tyre_load"
+RIG_RESPONSES = ("toe", "camber", "spin", "wc_x", "wc_y", "wc_z", "tyre_load")
+"""What a K&C rig sees of each wheel (the rig's caster channel is `spin`)."""
+
+RESPONSE_UNITS: Mapping[str, str] = {
+    "toe": "deg",
+    "camber": "deg",
+    "caster": "deg",
+    "spin": "deg",
+    "wc_x": "mm",
+    "wc_y": "mm",
+    "wc_z": "mm",
+    "tyre_load": "N",
+}
+RESPONSE_LABELS: Mapping[str, str] = {
+    "toe": "Toe angle (toe-in +)",
+    "camber": "Camber angle (top outwards +)",
+    "caster": "Caster angle, kingpin",
+    "spin": "Caster angle, knuckle",
+    "wc_x": "Wheel centre x (rearwards +)",
+    "wc_y": "Wheel centre y (right +)",
+    "wc_z": "Wheel centre z (up +)",
+    "tyre_load": "Tyre load",
+}
+
+
+@dataclass(frozen=True)
+class CaseCurves:
+    """One load case: mean curve and half-width (hysteresis) curve of every response.
+
+    input: (n,) load-case input in its unit, strictly increasing, contains 0.
+    mean: response -> (2, n); change from static for angles and wheel centre, absolute for tyre_load.
+    half_width: response -> (2, n), (value with falling input - value with rising input) / 2;
+        zero without friction.
+    """
+
+    load_case: str
+    input_unit: str
+    input: FloatArray
+    mean: Mapping[str, FloatArray]
+    half_width: Mapping[str, FloatArray]
+
+
+@dataclass(frozen=True)
+class CurveSet:
+    """All load cases of one axle.
+
+    static: response -> (2,) absolute static angles in deg; None when no alignment is known, then only
+        changes are compared.
+    half_track: |y| of the design wheel centre in mm, turns body roll into pad travel.
+    """
+
+    source: str
+    cases: Mapping[str, CaseCurves]
+    static: Mapping[str, FloatArray] | None
+    half_track: float

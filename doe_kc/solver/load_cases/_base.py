@@ -1,0 +1,75 @@
+"""What a load case is: an input swept over an interval, turned into controls of the axle."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from doe_kc.typing import FloatArray
+
+Controls = dict[str, float]
+"""Control name -> value; names and units in `doe_kc.solver.controls`, unnamed controls are zero."""
+
+
+@dataclass(frozen=True)
+class StaticPads:
+    """Where the static state left the axle (mm, N): the datum of every load case."""
+
+    pad: tuple[float, float]
+    wheel_centre_z: tuple[float, float]
+    tyre_load: tuple[float, float]
+    preload: float
+
+
+@dataclass(frozen=True)
+class LoadCase(ABC):
+    """A quasi-static sweep, 0 -> +amplitude and 0 -> -amplitude (a loop when friction is on).
+
+    amplitude: largest input, in `unit`.
+    steps: equilibria per branch.
+    """
+
+    amplitude: float
+    steps: int
+
+    id: ClassVar[str]
+    label: ClassVar[str]
+    channel: ClassVar[str]
+    unit: ClassVar[str]
+    input_label: ClassVar[str]
+    window: ClassVar[float]
+    """Half-width of the default fit window, in `unit`."""
+
+    def inputs(self) -> FloatArray:
+        """(2 steps + 1,) inputs from -amplitude to +amplitude, 0 among them."""
+        return np.linspace(-1.0, 1.0, 2 * self.steps + 1) * self.amplitude
+
+    @abstractmethod
+    def controls(self, value: float, static: StaticPads) -> Controls:
+        """Controls of the axle at input `value` (in `unit`)."""
+
+
+LOAD_CASES: dict[str, LoadCase] = {}
+"""Default definition of each load case by id; roll by its default technique `body`."""
+
+
+def load_case(case: LoadCase) -> LoadCase:
+    """Register the default definition of a load case."""
+    if case.id in LOAD_CASES:
+        raise ValueError(f"load case {case.id} is registered twice")
+    LOAD_CASES[case.id] = case
+    return case
+
+
+def held_pads(static: StaticPads) -> Controls:
+    """Both pads at their static height."""
+    return {"pad_L": static.pad[0], "pad_R": static.pad[1]}
+
+
+def by_id(cases: Mapping[str, LoadCase], ident: str) -> LoadCase:
+    """The load case `ident`; KeyError when there is none."""
+    return cases[ident]

@@ -1,0 +1,32 @@
+"""Lateral force, opposite at the ground, in opposition: + = to the right on the left wheel, inwards on both."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from doe_kc.solver.load_cases._base import (
+    Controls,
+    LoadCase,
+    StaticPads,
+    held_pads,
+    load_case,
+)
+
+
+@dataclass(frozen=True)
+class LateralOpposite(LoadCase):
+    """Force in N at the contact point of each wheel, in opposition: + = to the right on the left wheel, inwards on both; pads hold their height."""
+
+    id: ClassVar[str] = "lateral_opposite"
+    label: ClassVar[str] = "Lateral force, opposite"
+    channel: ClassVar[str] = "force_y"
+    unit: ClassVar[str] = "N"
+    input_label: ClassVar[str] = "Lateral force per wheel (inwards +)"
+    window: ClassVar[float] = 1000.0
+
+    def controls(self, value: float, static: StaticPads) -> Controls:
+        return held_pads(static) | {"lateral_L": value, "lateral_R": -value}
+
+
+load_case(LateralOpposite(amplitude=2000.0, steps=20))

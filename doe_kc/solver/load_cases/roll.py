@@ -1,0 +1,56 @@
+"""Roll motion, by body rotation (the rig's technique) or by counter-phase pads (ADAMS/Car's)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+from doe_kc.solver.load_cases._base import (
+    Controls,
+    LoadCase,
+    StaticPads,
+    held_pads,
+    load_case,
+)
+
+
+@dataclass(frozen=True)
+class Roll(LoadCase):
+    """The body turns about y = 0, z = 0, pads stay in the ground plane; + = right side down, deg."""
+
+    id: ClassVar[str] = "roll"
+    label: ClassVar[str] = "Roll motion"
+    channel: ClassVar[str] = "roll"
+    unit: ClassVar[str] = "deg"
+    input_label: ClassVar[str] = "Body roll (right side down +)"
+    window: ClassVar[float] = 1.0
+
+    def controls(self, value: float, static: StaticPads) -> Controls:
+        return held_pads(static) | {"roll": math.radians(value)}
+
+
+@dataclass(frozen=True)
+class CounterPhaseRoll(LoadCase):
+    """The body is held, the pads move against each other; + = right pad up, mm of each pad.
+
+    Rolls the same way as a positive body roll.
+    """
+
+    id: ClassVar[str] = "roll"
+    label: ClassVar[str] = "Roll motion (counter-phase)"
+    channel: ClassVar[str] = "pad_z"
+    unit: ClassVar[str] = "mm"
+    input_label: ClassVar[str] = "Counter-phase pad travel (right pad up +)"
+    window: ClassVar[float] = 15.0
+
+    def controls(self, value: float, static: StaticPads) -> Controls:
+        return {"pad_L": static.pad[0] - value, "pad_R": static.pad[1] + value}
+
+
+TECHNIQUES: dict[str, LoadCase] = {
+    "body": Roll(amplitude=4.0, steps=24),
+    "counter_phase": CounterPhaseRoll(amplitude=60.0, steps=24),
+}
+
+load_case(TECHNIQUES["body"])

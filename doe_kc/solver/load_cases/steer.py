@@ -1,0 +1,37 @@
+"""Steering input at the pinion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from doe_kc.solver.load_cases._base import (
+    Controls,
+    LoadCase,
+    StaticPads,
+    held_pads,
+    load_case,
+)
+
+
+@dataclass(frozen=True)
+class Steer(LoadCase):
+    """Steering-wheel angle in deg, + moves the rack to the right (+Y); pads hold their height.
+
+    rack_mm_per_rev: rack travel per steering-wheel turn, mm.
+    """
+
+    rack_mm_per_rev: float = 52.0
+
+    id: ClassVar[str] = "steer"
+    label: ClassVar[str] = "Steering input"
+    channel: ClassVar[str] = "steering_wheel"
+    unit: ClassVar[str] = "deg"
+    input_label: ClassVar[str] = "Steering-wheel angle (rack to the right +)"
+    window: ClassVar[float] = 100.0
+
+    def controls(self, value: float, static: StaticPads) -> Controls:
+        return held_pads(static) | {"rack": value * self.rack_mm_per_rev / 360.0}
+
+
+load_case(Steer(amplitude=60.0 * 360.0 / 52.0, steps=30))
