@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -11,8 +10,12 @@ import numpy as np
 
 from doe_kc.typing import FloatArray
 
-Controls = dict[str, float]
-"""Control name -> value; names and units in `doe_kc.solver.controls`, unnamed controls are zero."""
+Controls = dict[str, float | FloatArray]
+"""Control name -> one value for all steps or one a step; controls that are not named are zero.
+
+pad_L, pad_R (mm), wc_z_L, wc_z_R (mm), preload (N), roll (rad), rack (mm), lateral_*, drive_*, brake_* (N),
+lateral_offset (mm); switches 0/1: hold_wheel_centre, hold_load, hold_height, bilateral, friction.
+"""
 
 
 @dataclass(frozen=True)
@@ -49,8 +52,8 @@ class LoadCase(ABC):
         return np.linspace(-1.0, 1.0, 2 * self.steps + 1) * self.amplitude
 
     @abstractmethod
-    def controls(self, value: float, static: StaticPads) -> Controls:
-        """Controls of the axle at input `value` (in `unit`)."""
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+        """Controls of the axle at the inputs `value` (n,), in `unit`."""
 
 
 LOAD_CASES: dict[str, LoadCase] = {}
@@ -68,8 +71,3 @@ def load_case(case: LoadCase) -> LoadCase:
 def held_pads(static: StaticPads) -> Controls:
     """Both pads at their static height."""
     return {"pad_L": static.pad[0], "pad_R": static.pad[1]}
-
-
-def by_id(cases: Mapping[str, LoadCase], ident: str) -> LoadCase:
-    """The load case `ident`; KeyError when there is none."""
-    return cases[ident]

@@ -12,6 +12,7 @@ from doe_kc.solver.load_cases._base import (
     held_pads,
     load_case,
 )
+from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Brake(LoadCase):
     input_label: ClassVar[str] = "Brake force per wheel (rearwards +)"
     window: ClassVar[float] = 1000.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
         return held_pads(static) | {"brake_L": value, "brake_R": value}
 
 

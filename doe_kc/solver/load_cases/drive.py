@@ -12,6 +12,7 @@ from doe_kc.solver.load_cases._base import (
     held_pads,
     load_case,
 )
+from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Drive(LoadCase):
     input_label: ClassVar[str] = "Drive force per wheel (forwards +)"
     window: ClassVar[float] = 1000.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
         return held_pads(static) | {"drive_L": value, "drive_R": value}
 
 

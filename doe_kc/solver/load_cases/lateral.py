@@ -12,6 +12,7 @@ from doe_kc.solver.load_cases._base import (
     held_pads,
     load_case,
 )
+from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,7 @@ class Lateral(LoadCase):
     input_label: ClassVar[str] = "Lateral force per wheel (both wheels to the right +)"
     window: ClassVar[float] = 1000.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
         return held_pads(static) | {"lateral_L": value, "lateral_R": value}
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
+
+import numpy as np
 
 from doe_kc.solver.load_cases._base import (
     Controls,
@@ -13,6 +14,7 @@ from doe_kc.solver.load_cases._base import (
     held_pads,
     load_case,
 )
+from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -26,8 +28,8 @@ class Roll(LoadCase):
     input_label: ClassVar[str] = "Body roll (right side down +)"
     window: ClassVar[float] = 1.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
-        return held_pads(static) | {"roll": math.radians(value)}
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+        return held_pads(static) | {"roll": np.radians(value)}
 
 
 @dataclass(frozen=True)
@@ -44,7 +46,7 @@ class CounterPhaseRoll(LoadCase):
     input_label: ClassVar[str] = "Counter-phase pad travel (right pad up +)"
     window: ClassVar[float] = 15.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
         return {"pad_L": static.pad[0] - value, "pad_R": static.pad[1] + value}
 
 

@@ -12,6 +12,7 @@ from doe_kc.solver.load_cases._base import (
     held_pads,
     load_case,
 )
+from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class Steer(LoadCase):
     input_label: ClassVar[str] = "Steering-wheel angle (rack to the right +)"
     window: ClassVar[float] = 100.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
         return held_pads(static) | {"rack": value * self.rack_mm_per_rev / 360.0}
 
 

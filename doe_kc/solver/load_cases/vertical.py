@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from doe_kc.solver.load_cases._base import Controls, LoadCase, StaticPads, load_case
+from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,10 +26,15 @@ class Vertical(LoadCase):
     input_label: ClassVar[str] = "Pad travel (up +)"
     window: ClassVar[float] = 20.0
 
-    def controls(self, value: float, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
         if self.control == "wheel":
             left, right = static.wheel_centre_z
-            return {"hold_wheel_centre": 1.0, "wc_z_L": left + value, "wc_z_R": right + value}
+            return {
+                "hold_wheel_centre": 1.0,
+                "bilateral": 1.0,
+                "wc_z_L": left + value,
+                "wc_z_R": right + value,
+            }
         return {"pad_L": static.pad[0] + value, "pad_R": static.pad[1] + value}
 
 

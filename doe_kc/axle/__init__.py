@@ -1,0 +1,16 @@
+"""The axle as data: file format, parameters, and how to change them."""
+
+from __future__ import annotations
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value, with_values
+from doe_kc.axle.read import read_axle
+
+__all__ = [
+    "Axle",
+    "Parameter",
+    "design_parameters",
+    "parameter_value",
+    "read_axle",
+    "with_values",
+]

@@ -1,0 +1,76 @@
+"""The axle in memory: a topology and a flat table of numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+from doe_kc.solver.load_cases import LoadCase
+from doe_kc.solver.topology import Topology
+
+HARDPOINTS = {
+    "LLF": "Lower link front",
+    "LLR": "Lower link rear",
+    "LWB": "Lower ball joint",
+    "LWD": "Lower damper",
+    "LWS": "Lower spring",
+    "UPB": "Upper ball joint (top mount)",
+    "UPS": "Upper spring",
+    "UPBBI": "Upper ball joint bushing inclination",
+    "RIB": "Tie rod inner ball joint",
+    "ROB": "Tie rod outer ball joint",
+    "SAH": "Steer arm",
+    "SFF": "Sub-frame front",
+    "SFR": "Sub-frame rear",
+    "WLC": "Wheel centre",
+}
+"""The 14 hardpoints of the thesis's Table 1."""
+
+EXTRA_HARDPOINTS = {"ARB": "Anti-roll bar drop link, upper end", "CLAMP": "Strut clamp"}
+
+BUSHINGS = {
+    "llf": "Lower link front",
+    "llr": "Lower link rear",
+    "sff": "Sub-frame front",
+    "sfr": "Sub-frame rear",
+    "upb": "Upper ball joint (top mount)",
+}
+BUSHING_AXES = ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz")
+STRUT_BENDING, STRUT_TORSION = 8000.0, 30000.0
+"""Nm/deg at the strut clamp for `strut.flexibility` 1; the stiffness is this over the flexibility."""
+DEFAULT_FOLLOW = {"UPS": "UPB", "UPBBI": "UPB", "SAH": "ROB"}
+
+
+@dataclass(frozen=True)
+class Axle:
+    """values: internal name -> number; `@L`/`@R` marks a side's own value, the right side's given as its
+        mirror image, so that a symmetric axle has equal pairs. Units: mm, N, N/mm, Nm/deg, deg, factors.
+    topology: which bodies and laws there are. follow: hardpoint -> hardpoint that it moves with.
+    effects: id -> options of the optional effects that are in.
+    """
+
+    name: str
+    topology: Topology
+    values: Mapping[str, float]
+    follow: Mapping[str, str]
+    load_cases: Mapping[str, LoadCase]
+    effects: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+
+    def changed(self, values: Mapping[str, float]) -> Axle:
+        """Copy with some internal values replaced."""
+        return replace(self, values={**self.values, **values})
+
+    @property
+    def half_track(self) -> float:
+        """|y| of the left design wheel centre, mm."""
+        return abs(self.values["WLC.y@L"])
+
+    @property
+    def rack_mm_per_rev(self) -> float:
+        """Rack travel per steering-wheel turn, mm."""
+        return self.values["steering.rack_mm_per_rev"]
+
+
+def both(name: str, value: float) -> dict[str, float]:
+    """The same value on both sides."""
+    return {f"{name}@L": value, f"{name}@R": value}

@@ -1,0 +1,207 @@
+"""The axle file: what users write, checked key by key."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from doe_kc.axle.model import BUSHING_AXES, DEFAULT_FOLLOW
+
+SCHEMA = "doe_kc.axle/1"
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Point = Annotated[list[Finite], Field(min_length=3, max_length=3)]
+Pair = Annotated[list[Finite], Field(min_length=2, max_length=2)]
+
+
+class Strict(BaseModel):
+    """Unknown keys are errors, numbers are not read from strings."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class Units(Strict):
+    length: Literal["mm"]
+    force: Literal["N"]
+    angle: Literal["deg"]
+    stiffness: Literal["N/mm"]
+    rotational_stiffness: Literal["Nm/deg"]
+
+
+class Hardpoints(Strict):
+    LLF: Point
+    LLR: Point
+    LWB: Point
+    LWD: Point
+    LWS: Point
+    UPB: Point
+    UPS: Point
+    UPBBI: Point
+    RIB: Point
+    ROB: Point
+    SAH: Point
+    SFF: Point
+    SFR: Point
+    WLC: Point
+    ARB: Point
+    CLAMP: Point = [4.0, -655.0, 340.0]
+
+
+class Bushing(Strict):
+    """stiffness: N/mm and Nm/deg per axis; factor: 1 by default; table: axis -> [[d, F], ...]."""
+
+    stiffness: dict[str, Positive]
+    factor: dict[str, Positive] = {}
+    cubic: dict[str, NotNegative] = {}
+    preload: dict[str, Finite] = {}
+    table: dict[str, list[Pair]] = {}
+
+    @model_validator(mode="after")
+    def _axes(self) -> Bushing:
+        for key, axes in (
+            ("stiffness", BUSHING_AXES),
+            ("factor", BUSHING_AXES),
+            ("cubic", BUSHING_AXES[:3]),
+            ("preload", BUSHING_AXES[:3]),
+            ("table", BUSHING_AXES),
+        ):
+            unknown = set(getattr(self, key)) - set(axes)
+            if unknown:
+                raise ValueError(f"{key} has no axis {min(unknown)!r}; the axes are {', '.join(axes)}")
+        missing = set(BUSHING_AXES) - set(self.stiffness) - set(self.table)
+        if missing:
+            raise ValueError(f"stiffness of axis {min(missing)} is missing")
+        for axis, points in self.table.items():
+            check_table(points, f"table.{axis}", through_zero=True)
+        return self
+
+
+def check_table(points: list[list[float]], name: str, *, through_zero: bool = False) -> None:
+    """ValueError unless the points rise strictly in deflection and never fall in force."""
+    if len(points) < 2:
+        raise ValueError(f"{name} needs at least two points [deflection, force]")
+    for row, (before, after) in enumerate(zip(points, points[1:], strict=False), start=2):
+        if after[0] <= before[0]:
+            raise ValueError(
+                f"{name} is not monotone: point {row} has deflection {after[0]:g} after {before[0]:g}; "
+                "deflections must rise"
+            )
+        if after[1] < before[1]:
+            raise ValueError(
+                f"{name} is not monotone: point {row} has force {after[1]:g} after {before[1]:g}; "
+                "a bushing or stop that softens to a falling force has no unique equilibrium"
+            )
+    if through_zero and not points[0][0] < 0 < points[-1][0]:
+        raise ValueError(f"{name} must span zero deflection, from compression to extension")
+
+
+class Bushings(Strict):
+    llf: Bushing
+    llr: Bushing
+    sff: Bushing
+    sfr: Bushing
+    upb: Bushing
+
+
+class Stop(Strict):
+    clearance: Finite
+    factor: Positive = 1.0
+    curve: list[Pair]
+
+    @model_validator(mode="after")
+    def _curve(self) -> Stop:
+        check_table(self.curve, "curve")
+        if self.curve[0] != [0.0, 0.0]:
+            raise ValueError("curve must start at [0, 0], the touch of the stop")
+        return self
+
+
+class Static(Strict):
+    toe: Finite
+    camber: Annotated[float, Field(gt=-45, lt=45, allow_inf_nan=False)]
+
+
+class Tyre(Strict):
+    rate: Positive
+    static_load: Positive
+
+
+class Spring(Strict):
+    rate: Positive
+
+
+class Damper(Strict):
+    gas_force: NotNegative = 0.0
+
+
+class AntiRollBar(Strict):
+    rate: NotNegative
+    radius: Positive = 11.5
+    nominal_radius: Positive = 11.5
+
+
+class Steering(Strict):
+    column: Positive
+    rack_mm_per_rev: Positive
+
+
+class ColumnBushing(Strict):
+    Tz: Positive = 1.0
+
+
+class SteerArm(Strict):
+    radius: Positive = 14.0
+    flexible: bool = False
+
+
+class Strut(Strict):
+    flexibility: NotNegative = 0.0
+
+
+class Sweep(Strict):
+    amplitude: Positive | None = None
+    steps: Annotated[int, Field(ge=2, le=2000)] | None = None
+    control: Literal["pad", "wheel"] | None = None
+    technique: Literal["body", "counter_phase"] | None = None
+    offset: Finite | None = None
+
+
+class AxleFile(Strict):
+    """The whole file. `schema` names the format and its version."""
+
+    schema_: Literal["doe_kc.axle/1"] = Field(alias="schema")
+    name: str
+    units: Units
+    hardpoints: Hardpoints
+    follow: dict[str, str] = DEFAULT_FOLLOW
+    static: Static
+    tyre: Tyre
+    spring: Spring
+    damper: Damper = Damper()
+    bump_stop: Stop
+    rebound_stop: Stop
+    arb: AntiRollBar
+    steering: Steering
+    scb: ColumnBushing = ColumnBushing()
+    bushings: Bushings
+    steer_arm: SteerArm = SteerArm()
+    strut: Strut = Strut()
+    ride_height: Finite = 0.0
+    right: dict[str, Finite] = {}
+    effects: dict[str, dict[str, Any]] = {}
+    load_cases: dict[str, Sweep] = {}
+
+    @model_validator(mode="after")
+    def _follow(self) -> AxleFile:
+        known = set(Hardpoints.model_fields)
+        for follower, leader in self.follow.items():
+            for point in (follower, leader):
+                if point not in known:
+                    raise ValueError(f"follow names {point!r}, which is not a hardpoint")
+            if leader in self.follow:
+                raise ValueError(
+                    f"follow: {follower} follows {leader}, which itself follows another point"
+                )
+        return self

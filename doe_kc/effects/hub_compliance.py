@@ -1,0 +1,28 @@
+"""Rotation springs between knuckle and wheel at the wheel centre, about the knuckle's X and Z."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import Axle, both
+from doe_kc.effects._base import Effect, Option, effect
+
+
+@effect
+class HubCompliance(Effect):
+    """Hub and wheel-bearing compliance."""
+
+    id: ClassVar[str] = "hub_compliance"
+    label: ClassVar[str] = "Hub and wheel-bearing compliance"
+    options: ClassVar[Mapping[str, Option]] = {
+        "camber_Nm_deg": Option(6000.0, "Nm/deg"),
+        "toe_Nm_deg": Option(9000.0, "Nm/deg"),
+    }
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        changed = axle.changed(
+            both("hub.camber", options["camber_Nm_deg"]) | both("hub.toe", options["toe_Nm_deg"])
+        )
+        return replace(changed, topology=replace(axle.topology, hub=True))

@@ -1,0 +1,25 @@
+"""Rack housing that slides along the sub-frame's Y on a spring; rack and pinion ride on it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import Axle
+from doe_kc.effects._base import Effect, Option, effect
+
+
+@effect
+class RackMountCompliance(Effect):
+    """Rack-mount compliance."""
+
+    id: ClassVar[str] = "rack_mount_compliance"
+    label: ClassVar[str] = "Rack-mount compliance"
+    options: ClassVar[Mapping[str, Option]] = {
+        "k_N_mm": Option(6000.0, "N/mm"),
+    }
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        changed = axle.changed({"rack_mount.rate": options["k_N_mm"]})
+        return replace(changed, topology=replace(axle.topology, rack_mount=True))

@@ -1,0 +1,30 @@
+"""Rotation springs between knuckle and damper tube at the strut clamp."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import Axle, both
+from doe_kc.effects._base import Effect, Option, effect
+
+
+@effect
+class StrutBending(Effect):
+    """Strut bending at the clamp."""
+
+    id: ClassVar[str] = "strut_bending"
+    label: ClassVar[str] = "Strut bending at the clamp"
+    options: ClassVar[Mapping[str, Option]] = {
+        "k_Nm_deg": Option(8000.0, "Nm/deg"),
+        "torsion_Nm_deg": Option(30000.0, "Nm/deg"),
+    }
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        changed = axle.changed(
+            both("strut.flexibility", 1.0)
+            | both("strut.bending", options["k_Nm_deg"])
+            | both("strut.torsion", options["torsion_Nm_deg"])
+        )
+        return replace(changed, topology=replace(axle.topology, strut_bending=True))

@@ -1,0 +1,1 @@
+"""The parameter-influence study: one at a time and exact."""

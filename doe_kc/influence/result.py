@@ -1,0 +1,83 @@
+"""What the influence study finds: one row a parameter, one column a characteristic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.axle.parameters import Parameter
+from doe_kc.characteristics import Characteristic
+from doe_kc.typing import FloatArray
+
+NONLINEAR_PERCENT = 5.0
+"""A cell is flagged when one-at-a-time and exact change differ by more than this share of the larger one\nand by more than half a percent of the column's peak: below that it is rounding."""
+
+
+@dataclass(frozen=True)
+class Influence:
+    """All arrays are (parameters, characteristics) unless said otherwise, in the characteristic's unit.
+
+    baseline: (characteristics,) values of the unchanged axle.
+    plus, minus: values with the parameter raised and lowered by its step; nan where the axle failed.
+    exact: d(characteristic)/d(parameter) of the baseline times the step; nan where there is none.
+    failures: parameter path -> reason, for axles that have no equilibrium.
+    """
+
+    parameters: tuple[Parameter, ...]
+    characteristics: tuple[Characteristic, ...]
+    baseline: FloatArray
+    plus: FloatArray
+    minus: FloatArray
+    exact: FloatArray
+    seconds: float
+    failures: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def absolute(self) -> FloatArray:
+        """Change for a positive step, (plus - minus) / 2."""
+        return (self.plus - self.minus) / 2.0
+
+    @property
+    def percent(self) -> FloatArray:
+        """Percent of the largest magnitude of each column; + = positive change for a positive input."""
+        return percent_of_column(self.absolute)
+
+    @property
+    def exact_percent(self) -> FloatArray:
+        """The exact changes in percent of the column's largest one-at-a-time magnitude."""
+        return 100.0 * self.exact / column_peaks(self.absolute)
+
+    @property
+    def curvature(self) -> FloatArray:
+        """(plus + minus) / 2 - baseline: what a linear view leaves out."""
+        return (self.plus + self.minus) / 2.0 - self.baseline
+
+    @property
+    def nonlinear(self) -> np.ndarray:
+        """bool: one-at-a-time and exact change differ by more than 5 %."""
+        gap = np.abs(self.percent - self.exact_percent)
+        reference = np.maximum(np.abs(self.percent), np.abs(self.exact_percent))
+        with np.errstate(invalid="ignore"):
+            return np.asarray((gap > NONLINEAR_PERCENT / 100.0 * reference) & (gap > 0.5))
+
+    def frame(self, values: FloatArray) -> pd.DataFrame:
+        """`values` with parameter paths as index and characteristic ids as columns."""
+        return pd.DataFrame(
+            values,
+            index=[p.path for p in self.parameters],
+            columns=[c.id for c in self.characteristics],
+        )
+
+
+def column_peaks(values: FloatArray) -> FloatArray:
+    """(characteristics,) largest magnitude of each column; nan for a column without any entry."""
+    finite = np.where(np.isfinite(values), np.abs(values), 0.0)
+    peaks = finite.max(axis=0)
+    return np.where(peaks > 0, peaks, np.nan)
+
+
+def percent_of_column(values: FloatArray) -> FloatArray:
+    """Percent of each column's largest magnitude; zero columns stay zero."""
+    return np.nan_to_num(100.0 * values / column_peaks(values))

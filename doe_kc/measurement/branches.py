@@ -1,0 +1,108 @@
+"""From loops to curves on the load case's own input grid: branches, mean, half-width."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CaseCurves
+from doe_kc.measurement.loops import Loop, split_loop
+from doe_kc.measurement.records import Record
+from doe_kc.measurement.smoothing import local_weights
+from doe_kc.solver.load_cases import LoadCase
+from doe_kc.typing import FloatArray
+
+REACH = 0.99
+"""The grid is kept whole when the rig reaches this fraction of its amplitude on both sides."""
+KERNEL_STEPS = 1.5
+"""Half-width of the smoothing kernel in steps of the grid: no detail coarser than the grid is lost."""
+
+
+@dataclass(frozen=True)
+class RunCurves:
+    """One run on the grid.
+
+    input: (n,) grid. unload, load: response -> (2, n), input falling and rising, as recorded.
+    gram: (n, n), covariance of the run's mean curve per unit variance of a sample's white noise.
+    """
+
+    record: Record
+    loop: Loop
+    input: FloatArray
+    unload: Mapping[str, FloatArray]
+    load: Mapping[str, FloatArray]
+    gram: FloatArray
+
+    def mean(self, response: str) -> FloatArray:
+        """(2, n) mean of the two branches, as recorded (not yet a change from static)."""
+        return (self.unload[response] + self.load[response]) / 2.0
+
+    def half_width(self, response: str) -> FloatArray:
+        """(2, n) (falling - rising) / 2."""
+        return (self.unload[response] - self.load[response]) / 2.0
+
+
+def input_grid(case: LoadCase, records: Sequence[Record]) -> FloatArray:
+    """(n,) inputs of the load case that every run reaches; all of them from 99 % of the amplitude on."""
+    high = min(float(r.input.max()) for r in records)
+    low = max(float(r.input.min()) for r in records)
+    grid = case.inputs()
+    if min(high, -low) >= REACH * case.amplitude:
+        return grid
+    slack = 1e-3 * case.amplitude
+    kept: FloatArray = grid[(grid <= high + slack) & (grid >= low - slack)]
+    return kept
+
+
+def reduce_run(record: Record, grid: FloatArray) -> RunCurves:
+    """Branches of one record on `grid` by local quadratic regression (see `smoothing`).
+
+    Raises InputError when the record holds no full loop.
+    """
+    loop = split_loop(record.input, label=record.label)
+    width = KERNEL_STEPS * float(np.diff(grid).max())
+    falling = local_weights(record.input[loop.unload], grid, width)
+    rising = local_weights(record.input[loop.load], grid, width)
+    return RunCurves(
+        record=record,
+        loop=loop,
+        input=grid,
+        unload={r: record.channels[r][:, loop.unload] @ falling.T for r in RIG_RESPONSES},
+        load={r: record.channels[r][:, loop.load] @ rising.T for r in RIG_RESPONSES},
+        gram=(falling @ falling.T + rising @ rising.T) / 4.0,
+    )
+
+
+def reduce_case(records: Sequence[Record]) -> tuple[RunCurves, ...]:
+    """All runs of one load case on their common grid, main run first."""
+    grid = input_grid(records[0].case, records)
+    return tuple(reduce_run(record, grid) for record in records)
+
+
+def static_index(grid: FloatArray) -> int:
+    """Index of the static state, input 0."""
+    return int(np.argmin(np.abs(grid)))
+
+
+def changes(response: str, curve: FloatArray, grid: FloatArray) -> FloatArray:
+    """(2, n) change from the curve's own value at input 0; tyre load is left absolute."""
+    if response == TYRE_LOAD:
+        return curve
+    at = static_index(grid)
+    return curve - curve[:, at : at + 1]
+
+
+def case_curves(load_case: str, runs: Sequence[RunCurves]) -> CaseCurves:
+    """Mean and half-width curves averaged over main run and repeats."""
+    grid = runs[0].input
+    mean = {r: np.mean([run.mean(r) for run in runs], axis=0) for r in RIG_RESPONSES}
+    half = {r: np.mean([run.half_width(r) for run in runs], axis=0) for r in RIG_RESPONSES}
+    return CaseCurves(
+        load_case=load_case,
+        input_unit=runs[0].record.case.unit,
+        input=grid,
+        mean={r: changes(r, c, grid) for r, c in mean.items()},
+        half_width=half,
+    )

@@ -1,0 +1,95 @@
+"""A measurement as tidy tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.curves import RESPONSE_UNITS, SIDES
+from doe_kc.measurement.reduction import Measurement
+
+CURVE_COLUMNS = (
+    "load_case", "input", "input_unit", "side", "response", "unit", "mean", "half_width", "sd",
+)  # fmt: skip
+CHARACTERISTIC_COLUMNS = ("name", "load_case", "response", "unit", "value", "sd")
+GRADIENT_COLUMNS = (
+    "load_case", "response", "side", "unit", "value", "sd", "window", "input_unit",
+)  # fmt: skip
+NOISE_COLUMNS = (
+    "load_case", "response", "unit", "white", "offset", "gain", "smooth", "length", "loop", "dof", "source",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class MeasurementFrames:
+    """curves: one row per point; characteristics: one per id; gradients, noise: one per curve."""
+
+    curves: pd.DataFrame
+    characteristics: pd.DataFrame
+    gradients: pd.DataFrame
+    noise: pd.DataFrame
+
+
+def measurement_to_frames(measurement: Measurement) -> MeasurementFrames:
+    """All tables; units in columns of their own (deg, mm, N and per input unit), sd = standard error."""
+    return MeasurementFrames(
+        curves=_curves(measurement),
+        characteristics=_characteristics(measurement),
+        gradients=_gradients(measurement),
+        noise=_noise(measurement),
+    )
+
+
+def _curves(measurement: Measurement) -> pd.DataFrame:
+    parts = []
+    for name, case in measurement.curves.cases.items():
+        for response, curve in case.mean.items():
+            for side, label in enumerate(SIDES):
+                variance = np.diag(measurement.noise[name][response].covariance(side=side))
+                columns = (
+                    name,
+                    case.input,
+                    case.input_unit,
+                    label,
+                    response,
+                    RESPONSE_UNITS[response],
+                    curve[side],
+                    case.half_width[response][side],
+                    np.sqrt(np.maximum(variance, 0.0)),
+                )
+                parts.append(pd.DataFrame(dict(zip(CURVE_COLUMNS, columns, strict=True))))
+    return pd.concat(parts, ignore_index=True)
+
+
+def _characteristics(measurement: Measurement) -> pd.DataFrame:
+    rows = []
+    for ident, estimate in measurement.characteristics.items():
+        entry = CHARACTERISTICS[ident]
+        rows.append((ident, entry.load_case, entry.response, entry.unit, estimate.value, estimate.sd))
+    return _frame(rows, CHARACTERISTIC_COLUMNS)
+
+
+def _gradients(measurement: Measurement) -> pd.DataFrame:
+    rows = [
+        (g.load_case, g.response, g.side, g.unit, g.value, g.sd, g.window, g.unit.split("/")[1])
+        for g in measurement.gradients
+    ]
+    return _frame(rows, GRADIENT_COLUMNS)
+
+
+def _noise(measurement: Measurement) -> pd.DataFrame:
+    rows = []
+    for name, models in measurement.noise.items():
+        for response, model in models.items():
+            c = model.components
+            sds = (model.white, c.offset, c.gain, c.smooth, c.length, model.loop)
+            rows.append((name, response, RESPONSE_UNITS[response], *sds, c.dof, c.source))
+    return _frame(rows, NOISE_COLUMNS)
+
+
+def _frame(rows: list[Any], columns: tuple[str, ...]) -> pd.DataFrame:
+    return pd.DataFrame(rows, columns=list(columns))

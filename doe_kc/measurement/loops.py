@@ -1,0 +1,123 @@
+"""Split a steady loop into its falling-input and rising-input branch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from doe_kc.errors import InputError
+from doe_kc.typing import FloatArray
+
+IndexArray = NDArray[np.intp]
+
+REVERSAL = 0.05
+"""Largest reversal inside a branch, fraction of the input's range; more is a turning point."""
+FULL = 0.90
+"""A branch must cover this fraction of the range; the last sample is short of +A by one step."""
+RIGHT_WAY = 0.95
+"""Fraction of steps that must go the branch's way."""
+STEPS_PER_BRANCH = 64
+"""Steps are counted at this resolution at least, so that noise on slow loops is no reversal."""
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Sample indices of one cycle: `unload` with the input falling, `load` with it rising."""
+
+    unload: IndexArray
+    load: IndexArray
+
+
+def split_loop(values: FloatArray, *, label: str) -> Loop:
+    """Branches of the last full cycle of an input (n,), in any phase; InputError when there is none.
+
+    A single cycle may start anywhere: it is closed by its periodicity. label: file for the message.
+    """
+    span = float(np.ptp(values))
+    order = np.arange(values.size)
+    branches = _last_cycle(values, order, span)
+    if branches is None and _closes(values, span):
+        order = np.roll(order, -int(np.argmax(values)))
+        branches = _last_cycle(values[order], order, span)
+    if branches is None:
+        raise InputError(_why_not(values, span, label))
+    loop = _closed(values, branches, span)
+    _check_monotone(values, loop, label)
+    return loop
+
+
+def turning_points(values: FloatArray, threshold: float) -> list[int]:
+    """Indices of alternating extremes that are left by more than `threshold`; the last extreme too."""
+    points: list[int] = []
+    high = low = 0
+    way = 0
+    for i, value in enumerate(values):
+        high = i if value > values[high] else high
+        low = i if value < values[low] else low
+        if way >= 0 and values[high] - value > threshold:
+            points.append(high)
+            way, low = -1, i
+        elif way <= 0 and value - values[low] > threshold:
+            points.append(low)
+            way, high = 1, i
+    return [*points, high if way > 0 else low]
+
+
+def _last_cycle(values: FloatArray, order: IndexArray, span: float) -> Loop | None:
+    """The last two neighbouring segments that each cover the range, as indices into the record."""
+    points = turning_points(values, REVERSAL * span)
+    segments = list(zip(points[:-1], points[1:], strict=True))
+    full = [abs(values[b] - values[a]) >= FULL * span for a, b in segments]
+    for i in range(len(segments) - 2, -1, -1):
+        if full[i] and full[i + 1]:
+            first, second = (order[a : b + 1] for a, b in segments[i : i + 2])
+            falling = values[segments[i][1]] < values[segments[i][0]]
+            return Loop(first, second) if falling else Loop(second, first)
+    return None
+
+
+def _closes(values: FloatArray, span: float) -> bool:
+    """Whether the record is one whole period: the step from last to first sample is like the others."""
+    step = 2.0 * span / values.size
+    return bool(abs(values[0] - values[-1]) <= 3.0 * step + 0.01 * span)
+
+
+def _closed(values: FloatArray, loop: Loop, span: float) -> Loop:
+    """Give the last branch of a one-cycle record the first sample as its end."""
+    if loop.unload[0] == loop.load[-1] or not _closes(values, span):
+        return loop
+    used = {int(loop.unload[0]), int(loop.load[-1])}
+    if used == {0, values.size - 1} and loop.load[-1] == values.size - 1:
+        return Loop(loop.unload, np.append(loop.load, 0))
+    return loop
+
+
+def _why_not(values: FloatArray, span: float, label: str) -> str:
+    points = turning_points(values, REVERSAL * span)
+    low, high = values.min() + 0.1 * span, values.max() - 0.1 * span
+    inner = [i for i in points[1:-1] if low < values[i] < high]
+    if inner:
+        return (
+            f"{label}: the input turns back at sample {inner[0] + 1} (value {values[inner[0]]:g}), so its "
+            "branch is not monotone; expected +A -> -A -> +A without reversal, record the loop again."
+        )
+    return (
+        f"{label}: the input makes no loop, it runs from {values[0]:g} to {values[-1]:g} with "
+        f"{max(len(points) - 2, 0)} turning points; expected +A -> -A -> +A, export the whole cycle."
+    )
+
+
+def _check_monotone(values: FloatArray, loop: Loop, label: str) -> None:
+    for branch, way, name in ((loop.unload, -1.0, "falling"), (loop.load, 1.0, "rising")):
+        stride = max(1, branch.size // STEPS_PER_BRANCH)
+        sampled = branch[::stride]
+        wrong = way * np.diff(values[sampled]) <= 0.0
+        if wrong.mean() > 1.0 - RIGHT_WAY:
+            at = int(sampled[int(np.flatnonzero(wrong)[0]) + 1])
+            raise InputError(
+                f"{label}: the {name} branch is not monotone, {100 * wrong.mean():.0f} % of its steps go "
+                f"the other way, first at sample {at + 1}; expected at most {100 * (1 - RIGHT_WAY):.0f} %, "
+                "filter the input channel or record the loop again."
+            )

@@ -1,0 +1,142 @@
+"""`test.toml`: what the test engineer hands over with the records."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+
+from doe_kc.errors import InputError, nearest
+from doe_kc.measurement.sentences import refuse_unknown, sentence
+from doe_kc.solver.load_cases import LOAD_CASES
+
+Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
+Angle = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-45.0, le=45.0)]
+Text = Annotated[str, Field(strict=True)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Setup(_Section):
+    """How the rig was set up. Further keys are kept as notes.
+
+    reference_wheel_load_N: static load per wheel the axle was loaded to, N. lateral_offset_mm: distance
+    of the force behind the contact point in `lateral_offset`. rack_mm_per_rev: rack travel per
+    steering-wheel turn.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="allow")
+
+    loading: Text = ""
+    reference_wheel_load_N: Positive | None = None
+    body: Text = ""
+    steering: Text = ""
+    lateral_offset_mm: Finite = 30.0
+    rack_mm_per_rev: Positive = 52.0
+
+
+class SideAlignment(_Section):
+    """Static angles of one wheel at ride height, deg; toe-in +, camber top outwards +, caster rearwards +.
+
+    caster_deg is that of the design kingpin line carried by the knuckle: the static `spin`.
+    """
+
+    toe_deg: Angle | None = None
+    camber_deg: Angle | None = None
+    caster_deg: Angle | None = None
+
+
+class Alignment(_Section):
+    """Both wheels; None where the bench gave nothing."""
+
+    left: SideAlignment | None = None
+    right: SideAlignment | None = None
+
+
+class SensorResolution(_Section):
+    """Resolution of the rig's sensors; the defaults are those of an ordinary K&C rig."""
+
+    angle_deg: Positive = 0.003
+    displacement_mm: Positive = 0.02
+    tyre_load_N: Positive = 4.0
+
+
+class Manifest(_Section):
+    """The whole file. `records`: load case -> files, main run first, then its repeats."""
+
+    name: Annotated[str, Field(strict=True, min_length=1)]
+    setup: Setup = Setup()
+    alignment: Alignment | None = None
+    sensor_resolution: SensorResolution = SensorResolution()
+    records: Annotated[dict[str, tuple[Text, ...]], Field(min_length=1)]
+
+    @field_validator("records", mode="before")
+    @classmethod
+    def _files(cls, value: Any) -> Any:
+        if isinstance(value, dict):
+            return {case: _file_list(files) for case, files in value.items()}
+        return value
+
+    @model_validator(mode="after")
+    def _known_cases(self) -> Manifest:
+        for case, files in self.records.items():
+            _check_case(case, files)
+        return self
+
+
+def _file_list(files: Any) -> Any:
+    """One file may stand without its list."""
+    return (files,) if isinstance(files, str) else files
+
+
+def _check_case(case: str, files: tuple[str, ...]) -> None:
+    if case not in LOAD_CASES:
+        raise ValueError(
+            f"records.{case}: is no load case, expected one of {', '.join(LOAD_CASES)};"
+            f"{nearest(case, LOAD_CASES)} Rename the key"
+        )
+    if not files or not all(f.strip() for f in files):
+        raise ValueError(
+            f"records.{case}: names no file, expected the main run first; add it or drop the key"
+        )
+    if len(set(files)) < len(files):
+        raise ValueError(
+            f"records.{case}: lists the same file twice, expected different runs; "
+            "a copy would pass for perfect repeatability"
+        )
+
+
+def load_manifest(path: Path) -> Manifest:
+    """Read and check a `test.toml`.
+
+    Raises InputError with one sentence naming file, key, expectation and remedy.
+    """
+    data = _parse(path)
+    refuse_unknown(path, data, Manifest)
+    try:
+        return Manifest.model_validate(data)
+    except ValidationError as error:
+        raise InputError(sentence(path, error)) from None
+
+
+def _parse(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except FileNotFoundError:
+        raise InputError(
+            f"{path}: no such file; expected the rig's test.toml, check the path."
+        ) from None
+    except IsADirectoryError:
+        raise InputError(
+            f"{path}: is a folder; expected a test.toml, name the file inside it."
+        ) from None
+    except (OSError, ValueError, RecursionError) as error:
+        what = " ".join(str(error).split())
+        raise InputError(
+            f"{path}: is not readable TOML ({what}); expected UTF-8 TOML, mend it."
+        ) from None

@@ -1,0 +1,116 @@
+"""What a rig's repeat runs say about its errors, as standard deviations and covariance matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from doe_kc.curves import TYRE_LOAD
+from doe_kc.typing import FloatArray
+
+Source = Literal["repeats", "resolution"]
+
+
+@dataclass(frozen=True)
+class ErrorComponents:
+    """Standard deviations of one sensor kind from run to run, pooled over load cases and sides.
+
+    offset: constant over a run, in the sensor's unit. gain: proportional to the change from static, -.
+    smooth: slowly varying remainder, in the sensor's unit, with squared-exponential correlation
+    exp(-d²/2l²). length: its l as a fraction of the load case's amplitude.
+    dof: degrees of freedom behind offset and gain; 0 when `source` is "resolution" (one run only).
+    """
+
+    offset: float
+    gain: float
+    smooth: float
+    length: float
+    dof: int
+    source: Source
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """Errors of one load case and response (both sides alike).
+
+    white: sample-to-sample sd of the channel. input_white: of the input channel, in `input`'s unit;
+        it adds |slope| times itself to the response. loop: run-to-run sd of the half-width curve
+        beyond white noise. components: run-to-run sd of the curve.
+    input: (n,) grid. gram: (n, n) white-noise covariance of one run's mean curve per unit variance.
+    slope: (2, n) response per input. signal: (2, n) change from static that the gain multiplies.
+    runs: number of runs averaged.
+    """
+
+    load_case: str
+    response: str
+    white: float
+    input_white: float
+    loop: float
+    components: ErrorComponents
+    input: FloatArray
+    gram: FloatArray
+    slope: FloatArray
+    signal: FloatArray
+    runs: int
+
+    def run_covariance(self, side: int) -> FloatArray:
+        """(n, n) covariance of one run's mean curve as recorded, before the static value is taken off."""
+        c = self.components
+        relative = self.input / np.abs(self.input).max()
+        level = np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2)
+        return (
+            self.gram * np.outer(level, level)
+            + c.offset**2
+            + c.gain**2 * np.outer(self.signal[side], self.signal[side])
+            + c.smooth**2 * smooth_correlation(relative, c.length)
+        )
+
+    def covariance(
+        self, input_grid: FloatArray | None = None, *, side: int = 0, runs: int | None = None
+    ) -> FloatArray:
+        """(m, m) covariance of the mean curve of `runs` runs (default: those averaged), unit squared.
+
+        Angles and positions are changes from static: the value at input 0 is taken off, so the offset
+        cancels and row and column of input 0 are zero. `input_grid` (m,) inside the range, default the own.
+        """
+        total = self.run_covariance(side) / (runs or self.runs)
+        if self.response != TYRE_LOAD:
+            total = _referred(total, int(np.argmin(np.abs(self.input))))
+        if input_grid is None:
+            return total
+        weights = interpolation_matrix(self.input, input_grid)
+        return weights @ total @ weights.T
+
+    def half_width_covariance(self, *, side: int = 0, runs: int | None = None) -> FloatArray:
+        """(n, n) covariance of the averaged half-width curve: white noise and the loop's own scatter."""
+        level = np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2)
+        relative = self.input / np.abs(self.input).max()
+        wander = self.loop**2 * smooth_correlation(relative, self.components.length)
+        out: FloatArray = (self.gram * np.outer(level, level) + wander) / (runs or self.runs)
+        return out
+
+
+CaseNoise = Mapping[str, NoiseModel]
+"""Response -> noise model of one load case."""
+
+
+def smooth_correlation(relative: FloatArray, length: float) -> FloatArray:
+    """(n, n) squared-exponential correlation over inputs given as fractions of the amplitude."""
+    distance = (relative[:, None] - relative[None, :]) / length
+    out: FloatArray = np.exp(-0.5 * distance**2)
+    return out
+
+
+def interpolation_matrix(grid: FloatArray, wanted: FloatArray) -> FloatArray:
+    """(m, n) linear interpolation from `grid` to `wanted`."""
+    return np.stack([np.interp(wanted, grid, row) for row in np.eye(grid.size)], axis=1)
+
+
+def _referred(covariance: FloatArray, at: int) -> FloatArray:
+    """T C T' with T = I - 1 e_at': covariance after the value at index `at` is subtracted."""
+    shifted = covariance - covariance[at : at + 1, :]
+    out: FloatArray = shifted - shifted[:, at : at + 1]
+    return out

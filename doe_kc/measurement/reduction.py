@@ -1,0 +1,193 @@
+"""From a rig's `test.toml` to curves, noise, trends, gradients and characteristics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from doe_kc.curves import RIG_RESPONSES, CurveSet
+from doe_kc.errors import InputError, nearest
+from doe_kc.measurement.branches import RunCurves, case_curves, changes, reduce_case
+from doe_kc.measurement.gradients import (
+    Estimate,
+    Gradient,
+    Windows,
+    case_gradients,
+    characteristic_estimates,
+)
+from doe_kc.measurement.manifest import Alignment, Manifest, load_manifest
+from doe_kc.measurement.noise import CaseNoise
+from doe_kc.measurement.noise_estimation import estimate_noise
+from doe_kc.measurement.records import Record, read_record
+from doe_kc.measurement.trend import Trend, fit_trends
+from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
+from doe_kc.typing import FloatArray
+
+HALF_TRACK = 790.0
+"""|y| of the design wheel centre, mm."""
+MIN_WINDOW_POINTS = 3
+_ALIGNMENT_KEYS = {"toe": "toe_deg", "camber": "camber_deg", "spin": "caster_deg"}
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """A reduced rig measurement.
+
+    curves: mean and half-width curves; they, not the trends, feed the characteristics, because a
+        polynomial over the whole travel rings around the bump-stop kink and shifts the gradient at static.
+    runs: load case -> runs, main run first, with the raw record and its branches for pictures.
+    trends: load case -> response -> (left, right) one-valued polynomial of all runs.
+    noise: load case -> response -> noise model of the mean curve.
+    gradients: over the load-case input, every response and side.
+    characteristics: id -> value and standard error; nan where load case or alignment is missing.
+    """
+
+    manifest: Manifest
+    curves: CurveSet
+    runs: Mapping[str, tuple[RunCurves, ...]]
+    trends: Mapping[str, Mapping[str, tuple[Trend, ...]]]
+    noise: Mapping[str, CaseNoise]
+    gradients: tuple[Gradient, ...]
+    characteristics: Mapping[str, Estimate]
+
+
+def reduce_measurement(
+    manifest_path: Path, *, windows: Windows | None = None, half_track: float = HALF_TRACK
+) -> Measurement:
+    """Reduce all records that `test.toml` (or the folder it lies in) names.
+
+    windows: load case -> half-width of the fit window in the input's unit, default `LoadCase.window`.
+    half_track: |y| of the design wheel centre, mm. Raises InputError for any fault of the user's files.
+    """
+    path = manifest_path / "test.toml" if manifest_path.is_dir() else manifest_path
+    manifest = load_manifest(path)
+    _check_windows(windows or {})
+    runs = {case: reduce_case(_records(path, manifest, case)) for case in _ordered(manifest)}
+    curves = CurveSet(
+        source=manifest.name,
+        cases={case: case_curves(case, members) for case, members in runs.items()},
+        static=static_angles(manifest.alignment),
+        half_track=half_track,
+    )
+    return _assembled(manifest, curves, runs, windows or {})
+
+
+def _assembled(
+    manifest: Manifest,
+    curves: CurveSet,
+    runs: Mapping[str, tuple[RunCurves, ...]],
+    windows: Windows,
+) -> Measurement:
+    _check_window_points(curves, windows)
+    noise = estimate_noise(runs, _resolution(manifest))
+    angle_sd = manifest.sensor_resolution.angle_deg
+    gradients = [case_gradients(curves.cases[case], noise[case], windows) for case in runs]
+    return Measurement(
+        manifest=manifest,
+        curves=curves,
+        runs=runs,
+        trends={case: _trends(members) for case, members in runs.items()},
+        noise=noise,
+        gradients=tuple(g for group in gradients for g in group),
+        characteristics=characteristic_estimates(curves, noise, windows, static_sd=angle_sd),
+    )
+
+
+def static_angles(alignment: Alignment | None) -> dict[str, FloatArray] | None:
+    """Response -> (2,) static angles in deg, nan for a side that was not measured; None without any."""
+    if alignment is None:
+        return None
+    out = {}
+    for response, key in _ALIGNMENT_KEYS.items():
+        values = [getattr(side, key, None) for side in (alignment.left, alignment.right)]
+        if any(v is not None for v in values):
+            out[response] = np.array([np.nan if v is None else v for v in values])
+    return out or None
+
+
+def _ordered(manifest: Manifest) -> list[str]:
+    return [case for case in CASE_ORDER if case in manifest.records]
+
+
+def _records(path: Path, manifest: Manifest, load_case: str) -> list[Record]:
+    records = [_read(path.parent, entry, load_case) for entry in manifest.records[load_case]]
+    main = records[0]
+    for record in records[1:]:
+        if type(record.case) is not type(main.case):
+            raise InputError(
+                f"{record.label}: its input is {record.case.channel}, that of {main.label} "
+                f"{main.case.channel}; expected repeats of one test, list them apart."
+            )
+        _refuse_copy(main, record)
+    return records
+
+
+def _refuse_copy(main: Record, record: Record) -> None:
+    """A copy would pass for perfect repeatability."""
+    same = main.input.shape == record.input.shape and np.array_equal(main.input, record.input)
+    if same and all(np.array_equal(main.channels[r], record.channels[r]) for r in RIG_RESPONSES):
+        raise InputError(
+            f"{record.label}: holds the same samples as {main.label}; expected a repeat run, "
+            "list the right file or drop it."
+        )
+
+
+def _read(folder: Path, entry: str, load_case: str) -> Record:
+    name, mark, sheet = entry.partition("#")
+    return read_record(folder / name, load_case, sheet=sheet if mark else None)
+
+
+def _resolution(manifest: Manifest) -> dict[str, float]:
+    r = manifest.sensor_resolution
+    return {"angle": r.angle_deg, "displacement": r.displacement_mm, "tyre_load": r.tyre_load_N}
+
+
+def _trends(runs: tuple[RunCurves, ...]) -> dict[str, tuple[Trend, ...]]:
+    """Trends of all responses in one go, from the samples of every run's loop, changes from static."""
+    grid = runs[0].input
+    inputs, values = [], []
+    for run in runs:
+        at = np.concatenate([run.loop.unload, run.loop.load])
+        inputs.append(run.record.input[at])
+        values.append(np.concatenate([_referred(run, r, grid)[:, at] for r in RIG_RESPONSES]))
+    fits = fit_trends(np.concatenate(inputs), np.concatenate(values, axis=1))
+    return {r: fits[2 * k : 2 * k + 2] for k, r in enumerate(RIG_RESPONSES)}
+
+
+def _referred(run: RunCurves, response: str, grid: FloatArray) -> FloatArray:
+    """(2, samples) channel as change from the run's own static value; tyre load absolute."""
+    mean = run.mean(response)
+    shift = changes(response, mean, grid) - mean
+    out: FloatArray = run.record.channels[response] + shift[:, :1]
+    return out
+
+
+def _check_windows(windows: Windows) -> None:
+    for case, half_width in windows.items():
+        if case not in LOAD_CASES:
+            raise InputError(
+                f'fit window of "{case}": is no load case, expected one of {", ".join(LOAD_CASES)};'
+                f"{nearest(case, LOAD_CASES)} Rename it."
+            )
+        if not (np.isfinite(half_width) and half_width > 0.0):
+            raise InputError(
+                f"fit window of {case}: {half_width:g} is no half-width, expected a positive number "
+                f"of {LOAD_CASES[case].unit}; correct it."
+            )
+
+
+def _check_window_points(curves: CurveSet, windows: Windows) -> None:
+    for name, case in curves.cases.items():
+        limit = windows.get(name)
+        inside = (
+            case.input.size if limit is None else int(np.sum(np.abs(case.input) <= limit * (1 + 1e-9)))
+        )
+        if inside < MIN_WINDOW_POINTS:
+            step = float(np.diff(case.input).max())
+            raise InputError(
+                f"fit window of {name}: ±{limit:g} {case.input_unit} holds {inside} point of the curve, "
+                f"expected at least {MIN_WINDOW_POINTS}; widen it to ±{step:g} or more."
+            )

@@ -1,0 +1,32 @@
+"""Local quadratic regression: values of a noisy branch at given inputs, as a linear map of the samples."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.typing import FloatArray
+
+DEGREE = 2
+MIN_NEIGHBOURS = 7
+
+
+def local_weights(samples: FloatArray, grid: FloatArray, half_width: float) -> FloatArray:
+    """(n, m) matrix S with S y = local quadratic fit to the samples (x, y), read at the n grid inputs.
+
+    samples: (m,) inputs x in any order; grid: (n,); half_width: support of the tricube kernel, input unit,
+    widened where it holds fewer than 7 samples. Exact on quadratics, for interior points on cubics too:
+    no bias up to third order, and kinks are rounded over one half-width only.
+    Raises numpy.linalg.LinAlgError never: a rank-deficient neighbourhood takes the pseudo-inverse.
+    Source: Cleveland, JASA 74 (1979) 829; Fan & Gijbels, Local Polynomial Modelling (1996).
+    """
+    distance = samples[None, :] - grid[:, None]
+    nearest = np.sort(np.abs(distance), axis=1)[:, min(MIN_NEIGHBOURS, samples.size) - 1]
+    width = np.maximum(half_width, 1.05 * nearest)[:, None]
+    scaled = distance / width
+    kernel = np.where(np.abs(scaled) < 1.0, (1.0 - np.abs(scaled) ** 3) ** 3, 0.0)
+    basis = scaled[:, :, None] ** np.arange(DEGREE + 1)
+    weighted = kernel[:, :, None] * basis
+    moments = np.einsum("nmi,nmj->nij", basis, weighted)
+    first = np.linalg.pinv(moments, hermitian=True)[:, 0, :]
+    weights: FloatArray = np.einsum("ni,nmi->nm", first, weighted)
+    return weights

@@ -1,0 +1,1 @@
+"""Designs of experiments over the parameters of an axle."""

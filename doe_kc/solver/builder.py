@@ -1,0 +1,199 @@
+"""Collects bodies, joints, wrenches and outputs of the axle; `equations.finish` closes them.
+
+Equilibrium is Newton's and Euler's: every element pushes and turns bodies; a joint projects what its
+body receives on the motion it leaves free, and hands the wrench on to the body it hangs on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from doe_kc.solver import rotation
+from doe_kc.solver.topology import Topology
+
+FORCE_SCALE = 1.0
+MOMENT_SCALE = 100.0
+"""N mm that weigh as much as 1 N in the convergence norm: a lever of 100 mm."""
+LENGTH_SCALE = 1e-3
+"""mm of constraint violation that weigh as much as 1 N: 1000 N/mm."""
+
+
+@dataclass(frozen=True)
+class Body:
+    """Rigid body: at the design position its axes are the chassis axes.
+
+    design: its origin in the chassis frame at design; origin: now; gibbs, axes: orientation.
+    """
+
+    name: str
+    design: ca.SX
+    origin: ca.SX
+    gibbs: ca.SX
+    axes: ca.SX
+
+    def point(self, design_position: ca.SX) -> ca.SX:
+        """Where the material point that lay at `design_position` is now."""
+        return self.origin + self.axes @ (design_position - self.design)
+
+
+def body(name: str, design: ca.SX, origin: ca.SX, gibbs: ca.SX) -> Body:
+    """Body at `origin` turned by `gibbs`."""
+    return Body(name, design, origin, gibbs, rotation.matrix(gibbs))
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """One motion that a joint leaves free; its row is axis . (force or moment) - resistance = 0."""
+
+    name: str
+    symbol: ca.SX
+    axis: ca.SX
+    rotates: bool
+
+
+@dataclass(frozen=True)
+class Joint:
+    """How a body hangs on another. Moments are about the body's origin.
+
+    parent None: free in space. carries_moment False: a ball joint at the body's origin.
+    """
+
+    label: str
+    child: Body
+    parent: Body | None
+    freedoms: tuple[Freedom, ...]
+    carries_moment: bool = True
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One entry of the state vector; `scale`: residual of its row that weighs as much as 1 N."""
+
+    name: str
+    joint: str
+    scale: float
+
+
+@dataclass
+class Builder:
+    """Mutable only while an axle's equations are assembled."""
+
+    topology: Topology
+    bodies: dict[str, Body] = field(default_factory=dict)
+    points: dict[str, ca.SX] = field(default_factory=dict)
+    joints: list[Joint] = field(default_factory=list)
+    resistances: dict[str, ca.SX] = field(default_factory=dict)
+    wrenches: dict[str, tuple[ca.SX, ca.SX]] = field(default_factory=dict)
+    multipliers: list[tuple[Unknown, ca.SX, ca.SX]] = field(default_factory=list)
+    tail: list[tuple[Unknown, ca.SX]] = field(default_factory=list)
+    tail_equations: dict[str, ca.SX] = field(default_factory=dict)
+    parameters: dict[str, ca.SX] = field(default_factory=dict)
+    constants: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
+    controls: dict[str, ca.SX] = field(default_factory=dict)
+    states: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
+    outputs: dict[str, ca.SX] = field(default_factory=dict)
+
+    def join(
+        self,
+        label: str,
+        child: Body,
+        parent: Body | None,
+        freedoms: list[Freedom],
+        *,
+        carries_moment: bool = True,
+    ) -> Body:
+        """Register a body and the joint it hangs by; returns the body."""
+        self.joints.append(Joint(label, child, parent, tuple(freedoms), carries_moment))
+        return child
+
+    def push(self, on: Body, force: ca.SX, at: ca.SX) -> None:
+        """Force (3,) in N on the material point of `on` that is now at `at`."""
+        self.wrench(on, force, ca.cross(at - on.origin, force))
+
+    def turn(self, on: Body, moment: ca.SX) -> None:
+        """Moment (3,) in N mm on `on`."""
+        self.wrench(on, ca.SX.zeros(3), moment)
+
+    def wrench(self, on: Body, force: ca.SX, moment: ca.SX) -> None:
+        """Force and moment about the body's origin, chassis axes."""
+        before = self.wrenches.get(on.name, (ca.SX.zeros(3), ca.SX.zeros(3)))
+        self.wrenches[on.name] = (before[0] + force, before[1] + moment)
+
+    def resist(self, freedom: str, force: ca.SX) -> None:
+        """Internal force (N) or moment (N mm) of a joint against one of its free motions."""
+        self.resistances[freedom] = self.resistances.get(freedom, ca.SX(0)) + force
+
+    def parameter(self, name: str) -> ca.SX:
+        """Scalar symbol of an axle value by its internal name, e.g. `LLF.x@L`."""
+        if name not in self.parameters:
+            self.parameters[name] = ca.SX.sym(name)
+        return self.parameters[name]
+
+    def constant(self, expression: ca.SX) -> ca.SX:
+        """Fresh symbols for something that depends on parameters alone, computed once per design."""
+        symbols = ca.SX.sym("c", *expression.shape)
+        self.constants.append((ca.vec(symbols), ca.vec(expression)))
+        return symbols
+
+    def control(self, name: str) -> ca.SX:
+        """Scalar symbol of a load-case control."""
+        if name not in self.controls:
+            self.controls[name] = ca.SX.sym(name)
+        return self.controls[name]
+
+    def rigid(self, name: str, joint: str, violation: ca.SX) -> ca.SX:
+        """Ideal constraint violation(q) = 0 in mm; returns the symbol of its force in N."""
+        force = ca.SX.sym(name)
+        self.multipliers.append((Unknown(name, joint, LENGTH_SCALE), force, violation))
+        return force
+
+    def state(self, previous: ca.SX, following: ca.SX) -> None:
+        """Path-dependent state: symbols of its previous value, expression of the next."""
+        self.states.append((ca.vec(previous), ca.vec(following)))
+
+    def tail_unknown(self, name: str, joint: str, scale: float) -> ca.SX:
+        """Unknown that load cases mostly prescribe; its equation is given by `close_tail`."""
+        symbol = ca.SX.sym(name)
+        self.tail.append((Unknown(name, joint, scale), symbol))
+        return symbol
+
+    def close_tail(self, name: str, equation: ca.SX) -> None:
+        """Equation = 0 of a tail unknown."""
+        self.tail_equations[name] = equation
+
+    def output(self, name: str, expression: ca.SX) -> None:
+        """Named scalar result of an equilibrium."""
+        self.outputs[name] = expression
+
+
+def translations(name: str, axes: ca.SX | None = None) -> tuple[ca.SX, list[Freedom]]:
+    """Three displacements in mm along the columns of `axes` (default: chassis axes)."""
+    return _three(name, "", ca.SX.eye(3) if axes is None else axes, rotates=False)
+
+
+def rotations(name: str, axes: ca.SX | None = None) -> tuple[ca.SX, list[Freedom]]:
+    """Gibbs vector of three rotations; moment rows along the columns of `axes` (default: chassis)."""
+    return _three(name, "r", ca.SX.eye(3) if axes is None else axes, rotates=True)
+
+
+def slide(name: str, axis: ca.SX) -> tuple[ca.SX, list[Freedom]]:
+    """One displacement in mm along `axis` (chassis frame)."""
+    symbol = ca.SX.sym(name)
+    return symbol, [Freedom(name, symbol, axis, rotates=False)]
+
+
+def twist(name: str, axis: ca.SX) -> tuple[ca.SX, list[Freedom]]:
+    """One rotation tan(phi / 2) about `axis` (chassis frame) through the body's origin."""
+    symbol = ca.SX.sym(name)
+    return symbol, [Freedom(name, symbol, axis, rotates=True)]
+
+
+def _three(name: str, prefix: str, axes: ca.SX, *, rotates: bool) -> tuple[ca.SX, list[Freedom]]:
+    symbols = ca.SX.sym(name, 3)
+    freedoms = [
+        Freedom(f"{name}.{prefix}{letter}", symbols[i], axes[:, i], rotates)
+        for i, letter in enumerate("xyz")
+    ]
+    return symbols, freedoms

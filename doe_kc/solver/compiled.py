@@ -1,0 +1,175 @@
+"""Compiled kernels: generated C plus driver.c, built once per topology and kept in the user's cache."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import casadi as ca
+import numpy as np
+
+from doe_kc.solver.kernel import Kernel, kernel
+from doe_kc.solver.topology import Topology
+from doe_kc.typing import FloatArray
+
+if TYPE_CHECKING:
+    from doe_kc.solver import march as _march
+
+CACHE_VARIABLE = "DOE_KC_CACHE"
+COMPILE_VARIABLE = "DOE_KC_COMPILE"
+"""Set to 0 to stay interpreted."""
+KERNEL_FLAGS = ("-O1",)
+DRIVER_FLAGS = ("-O3",)
+COMPILE_TIMEOUT = 120.0
+DRIVER = Path(__file__).with_name("driver.c")
+
+
+class CompileError(Exception):
+    """There is no working C compiler, or the cache cannot be written; says which."""
+
+
+def cache_folder() -> Path:
+    """Where compiled kernels live: $DOE_KC_CACHE, else the platform's user cache."""
+    if own := os.environ.get(CACHE_VARIABLE):
+        return Path(own)
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "doe_kc"
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "doe_kc"
+
+
+def find_compiler() -> str | None:
+    """Path of $CC, cc, gcc or clang, whichever is found first."""
+    for name in (os.environ.get("CC"), "cc", "gcc", "clang"):
+        if name and (path := shutil.which(name)):
+            return path
+    return None
+
+
+@dataclass(frozen=True)
+class CompiledKernel:
+    """A loaded library."""
+
+    library: ctypes.CDLL
+    size_iw: int
+    size_w: int
+
+    def march(
+        self,
+        kernel: Kernel,
+        c: FloatArray,
+        start: _march.Start,
+        s: FloatArray,
+        u: FloatArray,
+        active: int,
+        settings: _march.Settings,
+    ) -> _march.Path:
+        """See `march.march`."""
+        from doe_kc.solver.march import Path as Marched
+
+        n = len(s)
+        x, z = np.zeros((n, kernel.nx)), np.zeros((n, kernel.nz))
+        y, level, r = np.zeros((n, kernel.ny)), np.zeros(n), np.zeros(kernel.nx)
+        iterations, counts = np.zeros(n, dtype=np.int32), np.zeros(4, dtype=np.int64)
+        tail = kernel.tail_controls
+        inputs = [
+            np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)
+        ]
+        s_known, x_known, u_start, z_start, s_in, u_in, c_in = inputs
+        code = self.library.march(
+            *(ctypes.c_int(v) for v in (kernel.nx, active, kernel.nu, kernel.nz, kernel.ny)),
+            ctypes.c_int(len(kernel.rows)),
+            *(_pointer(a) for a in (kernel.rows, kernel.cols, tail, kernel.scale, c_in)),
+            ctypes.c_double(settings.tol),
+            ctypes.c_double(settings.refresh),
+            ctypes.c_int(settings.max_iterations),
+            ctypes.c_int(settings.max_halvings),
+            ctypes.c_longlong(self.size_iw),
+            ctypes.c_longlong(self.size_w),
+            ctypes.c_int(len(s_known)),
+            *(_pointer(a) for a in (s_known, x_known, u_start, z_start)),
+            ctypes.c_int(n),
+            *(_pointer(a) for a in (s_in, u_in, x, z, y, iterations, level, r, counts)),
+        )
+        if code < 0:
+            raise MemoryError("the solver could not allocate its working memory")
+        return Marched(x, z, y, iterations, level, r, code - 1 if code else None, counts)
+
+
+def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+@lru_cache(maxsize=16)
+def compiled_kernel(topology: Topology) -> CompiledKernel:
+    """Build or load the library of a topology; CompileError when that cannot be done."""
+    functions = list(kernel(topology).functions.values())
+    path = build(functions, [DRIVER.read_text()])
+    return CompiledKernel(
+        ctypes.CDLL(str(path)),
+        max(f.sz_iw() for f in functions),
+        max(f.sz_w() for f in functions),
+    )
+
+
+def build(functions: list[ca.Function], extra_sources: list[str]) -> Path:
+    """Shared library of generated functions and C sources; from the cache when it has it."""
+    compiler = find_compiler()
+    if compiler is None:
+        raise CompileError("no C compiler (cc, gcc or clang) is on the path")
+    source = generate(functions)
+    flags = [*KERNEL_FLAGS, *DRIVER_FLAGS]
+    identity = "\0".join([platform.machine(), compiler, *flags, source, *extra_sources])
+    name = hashlib.sha256(identity.encode()).hexdigest()[:24]
+    folder = cache_folder()
+    target = folder / f"{name}{'.dll' if os.name == 'nt' else '.so'}"
+    if target.exists():
+        return target
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder) as scratch:
+            built = _compile(compiler, Path(scratch), source, extra_sources)
+            built.replace(target)
+    except OSError as error:
+        raise CompileError(f"the cache folder {folder} cannot be written ({error.strerror})") from error
+    return target
+
+
+def generate(functions: list[ca.Function]) -> str:
+    """C source of CasADi functions."""
+    generator = ca.CodeGenerator("kernel.c", {"with_header": False})
+    for function in functions:
+        generator.add(function)
+    return str(generator.dump())
+
+
+def _compile(compiler: str, scratch: Path, source: str, extra_sources: list[str]) -> Path:
+    """Kernel lightly, driver fully optimized: a generated function gains nothing beyond -O1."""
+    jobs = [(source, KERNEL_FLAGS), *((text, DRIVER_FLAGS) for text in extra_sources)]
+    objects, running = [], []
+    for i, (text, flags) in enumerate(jobs):
+        file = scratch / f"part{i}.c"
+        file.write_text(text)
+        objects.append(scratch / f"part{i}.o")
+        command = [compiler, *flags, "-fPIC", "-c", str(file), "-o", str(objects[-1])]
+        running.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
+    for process in running:
+        _, message = process.communicate(timeout=COMPILE_TIMEOUT)
+        if process.returncode:
+            raise CompileError(f"{compiler} failed: {message.strip()[:200]}")
+    library = scratch / "kernel.so"
+    link = [compiler, "-shared", "-o", str(library), *map(str, objects), "-lm"]
+    done = subprocess.run(link, capture_output=True, text=True, check=False, timeout=COMPILE_TIMEOUT)
+    if done.returncode:
+        raise CompileError(f"{compiler} failed to link: {done.stderr.strip()[:200]}")
+    return library

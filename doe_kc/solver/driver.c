@@ -1,0 +1,243 @@
+/* Marches an axle along a load case: predictor, Newton with a kept factorization, step bisection.
+   The same algorithm as march.py, statement by statement; `residual`, `jacobian`, `outputs`, `state_update` are generated. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef long long integer;
+typedef int (*generated)(const double **, double **, integer *, double *, int);
+
+int residual(const double **, double **, integer *, double *, int);
+int jacobian(const double **, double **, integer *, double *, int);
+int outputs(const double **, double **, integer *, double *, int);
+int state_update(const double **, double **, integer *, double *, int);
+
+#define HISTORY 4
+
+typedef struct {
+    int n, active, nu, nz, ny;          /* unknowns, solved ones, controls, states, outputs */
+    const int *row, *col;               /* of the Jacobian's nonzeros */
+    int nnz;
+    const int *tail_control;            /* control that prescribes each tail unknown */
+    const double *scale, *c;
+    double tol, refresh;                /* force residual in N; contraction that asks for a new Jacobian */
+    int max_iterations, max_halvings;
+    integer *iw;
+    double *w, *r, *trial_r, *x_trial, *d, *nz_jac, *lu;
+    int *pivot;
+    int have_lu;
+    long long counts[4];                /* residuals, Jacobians, factorizations, Newton steps */
+} problem;
+
+static void evaluate(problem *p, const double *x, const double *u, const double *z, double *r) {
+    const double *arg[4] = {x, p->c, u, z};
+    double *result[1] = {r};
+    residual(arg, result, p->iw, p->w, 0);
+    p->counts[0]++;
+}
+
+static double norm(const problem *p, const double *r) {
+    double worst = 0.0;
+    for (int i = 0; i < p->active; i++) {
+        double v = fabs(r[i]) / p->scale[i];
+        if (!(v <= worst)) worst = v;
+        if (v != v) return INFINITY;
+    }
+    return worst;
+}
+
+static int factor(problem *p, const double *x, const double *u, const double *z) {
+    const double *arg[4] = {x, p->c, u, z};
+    double *result[1] = {p->nz_jac};
+    int m = p->active;
+    double *a = p->lu;
+    jacobian(arg, result, p->iw, p->w, 0);
+    p->counts[1]++;
+    p->counts[2]++;
+    memset(a, 0, sizeof(double) * m * m);
+    for (int k = 0; k < p->nnz; k++)
+        if (p->row[k] < m && p->col[k] < m) a[p->row[k] + m * p->col[k]] = p->nz_jac[k] / p->scale[p->row[k]];
+    for (int k = 0; k < m; k++) {
+        int best = k;
+        double *ck = a + m * k;
+        for (int i = k + 1; i < m; i++)
+            if (fabs(ck[i]) > fabs(ck[best])) best = i;
+        p->pivot[k] = best;
+        if (!(fabs(ck[best]) > 0.0)) return 1;
+        if (best != k)
+            for (int j = 0; j < m; j++) {
+                double t = a[k + m * j];
+                a[k + m * j] = a[best + m * j];
+                a[best + m * j] = t;
+            }
+        double inverse = 1.0 / ck[k];
+        for (int i = k + 1; i < m; i++) ck[i] *= inverse;
+        for (int j = k + 1; j < m; j++) {
+            double *cj = a + m * j, f = cj[k];
+            if (f != 0.0)
+                for (int i = k + 1; i < m; i++) cj[i] -= f * ck[i];
+        }
+    }
+    p->have_lu = 1;
+    return 0;
+}
+
+static void solve(const problem *p, const double *r, double *d) {
+    int m = p->active;
+    const double *a = p->lu;
+    for (int i = 0; i < m; i++) d[i] = r[i] / p->scale[i];
+    for (int k = 0; k < m; k++) {
+        double t = d[p->pivot[k]];
+        d[p->pivot[k]] = d[k];
+        d[k] = t;
+    }
+    for (int k = 0; k < m; k++)
+        for (int i = k + 1; i < m; i++) d[i] -= a[i + m * k] * d[k];
+    for (int k = m - 1; k >= 0; k--) {
+        d[k] /= a[k + m * k];
+        for (int i = 0; i < k; i++) d[i] -= a[i + m * k] * d[k];
+    }
+}
+
+/* 0 = converged; x holds the result, p->r its residual, *level its norm. */
+static int newton(problem *p, double *x, const double *u, const double *z, int *iterations, double *level) {
+    int n = p->n, m = p->active, fresh = 0, halvings;
+    double now, next, damp, best;
+    evaluate(p, x, u, z, p->r);
+    now = best = norm(p, p->r);
+    for (*iterations = 0; *iterations < p->max_iterations; (*iterations)++) {
+        if (now <= p->tol) { *level = now; return 0; }
+        if (!isfinite(now) || now > 1e6 * best + 1e9) break;
+        if (!p->have_lu) {
+            if (factor(p, x, u, z)) break;
+            fresh = 1;
+        }
+        solve(p, p->r, p->d);
+        p->counts[3]++;
+        for (halvings = 0, damp = 1.0;; halvings++, damp *= 0.5) {
+            memcpy(p->x_trial, x, sizeof(double) * n);
+            for (int i = 0; i < m; i++) p->x_trial[i] -= damp * p->d[i];
+            evaluate(p, p->x_trial, u, z, p->trial_r);
+            next = norm(p, p->trial_r);
+            if (next <= 10.0 * now || halvings == 6 || (!fresh && p->have_lu)) break;
+        }
+        if (next > p->refresh * now) {
+            p->have_lu = 0;
+            if (!fresh && !(next <= 0.5 * now)) continue;   /* a stale factorization misled: try a new one */
+        }
+        fresh = 0;
+        memcpy(x, p->x_trial, sizeof(double) * n);
+        memcpy(p->r, p->trial_r, sizeof(double) * n);
+        now = next;
+        if (now < best) best = now;
+    }
+    *level = now;
+    return !(now <= p->tol);
+}
+
+/* Lagrange extrapolation of the known points to `at`. */
+static void predict(int n, int points, const double *s, const double *xs, double at, double *x) {
+    memset(x, 0, sizeof(double) * n);
+    for (int i = 0; i < points; i++) {
+        double weight = 1.0;
+        for (int j = 0; j < points; j++)
+            if (j != i) weight *= (at - s[j]) / (s[i] - s[j]);
+        for (int k = 0; k < n; k++) x[k] += weight * xs[i * n + k];
+    }
+}
+
+/* Returns 0, or 1 + index of the step that failed. history: `known` points, newest last. */
+int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
+          const int *tail_control, const double *scale, const double *c, double tol, double refresh,
+          int max_iterations, int max_halvings, integer size_iw, integer size_w,
+          int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
+          int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
+          int *iterations_out, double *level_out, double *r_out, long long *counts) {
+    problem p = {n, active, nu, nz, ny, row, col, nnz, tail_control, scale, c, tol, refresh,
+                 max_iterations, max_halvings};
+    double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next;
+    int points = known < HISTORY ? known : HISTORY, failed = 0;
+    size_t doubles = size_w + 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + n + (nz + 1) + 2 * nu;
+    memory = malloc(sizeof(double) * doubles);
+    p.iw = malloc(sizeof(integer) * (size_iw + 1));
+    p.pivot = malloc(sizeof(int) * n);
+    if (!memory || !p.iw || !p.pivot) { free(memory); free(p.iw); free(p.pivot); return -1; }
+    double *m = memory;
+    p.w = m; m += size_w;
+    p.r = m; m += n;
+    p.trial_r = m; m += n;
+    p.x_trial = m; m += n;
+    p.d = m; m += n;
+    p.nz_jac = m; m += nnz;
+    p.lu = m; m += (size_t)n * n;
+    hx = m; m += (HISTORY + 1) * n;
+    x = m; m += n;
+    z = m; m += nz + 1;
+    u_now = m; m += nu;
+    u_next = m;
+    for (int i = 0; i < points; i++) {
+        hs[i] = s_known[known - points + i];
+        memcpy(hx + i * n, x_known + (size_t)(known - points + i) * n, sizeof(double) * n);
+    }
+    memcpy(u_now, u_start, sizeof(double) * nu);
+    memcpy(z, z_start, sizeof(double) * nz);
+    for (int step = 0; step < steps && !failed; step++) {
+        const double *target = u + (size_t)step * nu;
+        double s_from = hs[points - 1], done = 0.0, part = 1.0, level = 0.0;
+        int total = 0, halved = 0;
+        while (done < 1.0) {
+            double to = done + part >= 1.0 - 1e-12 ? 1.0 : done + part, at = s_from + to * (s[step] - s_from);
+            int used;
+            for (int i = 0; i < nu; i++)
+                u_next[i] = to == 1.0 ? target[i] : u_now[i] + (to - done) / (1.0 - done) * (target[i] - u_now[i]);
+            predict(n, points, hs, hx, at, x);
+            for (int i = active; i < n; i++) x[i] = u_next[tail_control[i - active]];
+            int bad = newton(&p, x, u_next, z, &used, &level);
+            if (bad) {      /* the predictor may be at fault: start from the last equilibrium */
+                memcpy(x, hx + (points - 1) * n, sizeof(double) * n);
+                for (int i = active; i < n; i++) x[i] = u_next[tail_control[i - active]];
+                p.have_lu = 0;
+                total += used;
+                bad = newton(&p, x, u_next, z, &used, &level);
+            }
+            total += used;
+            if (bad) {
+                p.have_lu = 0;
+                if (++halved > max_halvings) { failed = step + 1; break; }
+                part *= 0.5;
+                continue;
+            }
+            if (nz) {
+                const double *arg[4] = {x, c, u_next, z};
+                double *result[1] = {z_out + (size_t)step * nz};
+                state_update(arg, result, p.iw, p.w, 0);
+                memcpy(z, z_out + (size_t)step * nz, sizeof(double) * nz);
+            }
+            if (points == HISTORY) {
+                memmove(hs, hs + 1, sizeof(double) * (HISTORY - 1));
+                memmove(hx, hx + n, sizeof(double) * (HISTORY - 1) * n);
+                points--;
+            }
+            hs[points] = at;
+            memcpy(hx + points * n, x, sizeof(double) * n);
+            points++;
+            memcpy(u_now, u_next, sizeof(double) * nu);
+            done = to;
+            if (done < 1.0 && part < 1.0 - done) part = part * 2.0 < 1.0 - done ? part * 2.0 : 1.0 - done;
+        }
+        iterations_out[step] = total;
+        level_out[step] = level;
+        memcpy(x_out + (size_t)step * n, x, sizeof(double) * n);
+        memcpy(r_out, p.r, sizeof(double) * n);
+        if (!failed && y_out) {
+            const double *arg[4] = {x, c, u_next, z};
+            double *result[1] = {y_out + (size_t)step * ny};
+            outputs(arg, result, p.iw, p.w, 0);
+        }
+    }
+    memcpy(counts, p.counts, sizeof(p.counts));
+    free(memory);
+    free(p.iw);
+    free(p.pivot);
+    return failed;
+}

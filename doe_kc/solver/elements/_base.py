@@ -1,0 +1,58 @@
+"""The contract of an element, and helpers that several elements share."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar, Literal
+
+import casadi as ca
+
+from doe_kc.solver.builder import Builder
+
+Stage = Literal["body", "force", "output"]
+STAGES: tuple[Stage, ...] = ("body", "force", "output")
+SIDES = ("L", "R")
+NM_PER_DEG = 1000.0 * 180.0 / ca.pi
+"""1 Nm/deg in N mm/rad."""
+
+
+class Element(ABC):
+    """Stateless: `assemble` adds bodies, forces or outputs of one kind to the builder."""
+
+    id: ClassVar[str]
+    stage: ClassVar[Stage]
+    rank: ClassVar[int] = 50
+    """Order inside the stage: a body is assembled after the bodies it hangs on."""
+
+    @abstractmethod
+    def assemble(self, b: Builder) -> None:
+        """Add this element to `b`."""
+
+
+ELEMENTS: list[Element] = []
+
+
+def element(cls: type[Element]) -> type[Element]:
+    """Class decorator: register an element, kept in the order of assembly."""
+    ELEMENTS.append(cls())
+    ELEMENTS.sort(key=lambda e: (STAGES.index(e.stage), e.rank, e.id))
+    return cls
+
+
+def mirror(side: str) -> int:
+    """+1 for the left side, -1 for the right."""
+    return 1 if side == "L" else -1
+
+
+def reflection(side: str) -> ca.SX:
+    """Matrix that takes left-side vectors to this side."""
+    return ca.diag(ca.SX([1, mirror(side), 1]))
+
+
+def hardpoint(b: Builder, name: str, side: str) -> ca.SX:
+    """Design position (3,) of a hardpoint in the chassis frame, mm."""
+    key = f"{name}@{side}"
+    if key not in b.points:
+        x, y, z = (b.parameter(f"{name}.{axis}@{side}") for axis in "xyz")
+        b.points[key] = b.constant(ca.vertcat(x, mirror(side) * y, z))
+    return b.points[key]

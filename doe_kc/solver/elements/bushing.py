@@ -1,0 +1,68 @@
+"""Six-axis bushing between an inner and an outer body.
+
+Force per local axis F = k (d + b d^3) + f0 or F = factor * table(d) + f0, d = outer minus inner point in
+the axes of the inner part; torque is the gradient of 1/2 phi^T K phi with phi the rotation vector of
+inner^T outer. The force pair acts at the displaced outer point, so the couple d x F loads the inner part.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from doe_kc.solver import curve, rotation
+from doe_kc.solver.builder import Body, Builder
+from doe_kc.solver.elements._base import NM_PER_DEG
+
+FORCE_AXES = ("Fx", "Fy", "Fz")
+TORQUE_AXES = ("Tx", "Ty", "Tz")
+
+
+def connect(
+    b: Builder, name: str, side: str, *, at: ca.SX, axes: ca.SX, inner: Body | None, outer: Body
+) -> None:
+    """Bushing `name` at the design point `at`; `axes`: (3, 3) local axes as columns, in the inner part.
+
+    inner None is the vehicle body.
+    """
+    outer_point = outer.point(at)
+    apart = outer_point - (inner.point(at) if inner is not None else at)
+    gibbs = outer.gibbs
+    if inner is not None:
+        apart = inner.axes.T @ apart
+        gibbs = rotation.relative(inner.gibbs, outer.gibbs)
+    d = axes.T @ apart
+    kappa, slope = rotation.angle_ratio(ca.dot(gibbs, gibbs))
+    phi = axes.T @ (kappa * gibbs)
+    force = axes @ ca.vertcat(*[_force(b, name, side, a, d[i]) for i, a in enumerate(FORCE_AXES)])
+    torque = axes @ ca.vertcat(*[_torque(b, name, side, a, phi[i]) for i, a in enumerate(TORQUE_AXES)])
+    moment = rotation.spring_moment(gibbs, torque, kappa, slope)
+    if inner is not None:
+        force, moment = inner.axes @ force, inner.axes @ moment
+        b.push(inner, force, outer_point)
+        b.turn(inner, moment)
+    b.push(outer, -force, outer_point)
+    b.turn(outer, -moment)
+
+
+def _force(b: Builder, name: str, side: str, axis: str, d: ca.SX) -> ca.SX:
+    factor = b.parameter(f"{name}.{axis}@{side}")
+    preload = b.constant(b.parameter(f"{name}.preload.{axis}@{side}"))
+    if table := _table(b, name, side, axis):
+        return b.constant(factor) * table(d) + preload
+    k = b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}"))
+    cubic = b.constant(b.parameter(f"{name}.cubic.{axis}@{side}"))
+    return k * (d + cubic * d**3) + preload
+
+
+def _torque(b: Builder, name: str, side: str, axis: str, phi: ca.SX) -> ca.SX:
+    factor = b.parameter(f"{name}.{axis}@{side}")
+    if table := _table(b, name, side, axis):
+        return b.constant(factor) * table(phi)
+    return b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}") * NM_PER_DEG) * phi
+
+
+def _table(b: Builder, name: str, side: str, axis: str) -> curve.SymbolicCurve | None:
+    for bushing, tabulated, points in b.topology.tables:
+        if (bushing, tabulated) == (name, axis):
+            return curve.symbolic(b, f"{name}.table.{axis}", points, side=side)
+    return None

@@ -1,0 +1,76 @@
+"""Dry friction with state: steering rack in its housing, strut rod in its tube.
+
+Dahl: dF/dx = (Fc / x_pre)(1 - F/Fc sgn dx), exact over a monotone step,
+F -> s Fc - (s Fc - F) exp(-|dx| / x_pre). Prandtl-Iwan: Jenkins elements in parallel,
+F = sum clip(k_j (x - z_j), +-F_j), closed minor loops; the distribution of yield displacements makes its
+virgin curve the Dahl one, Fc (1 - exp(-x / x_pre)): density y exp(-y / x_pre) of strength, a gamma law.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import casadi as ca
+import numpy as np
+from scipy.stats import gamma
+
+from doe_kc.solver.builder import Builder
+from doe_kc.solver.elements._base import SIDES, Element, Stage, element
+from doe_kc.solver.topology import FrictionLaw
+
+IWAN_ELEMENTS = 8
+
+
+def iwan_yields(count: int = IWAN_ELEMENTS) -> np.ndarray:
+    """(count,) yield displacements over x_pre of elements of equal strength, at the mid-quantiles."""
+    return np.asarray(gamma.ppf((np.arange(count) + 0.5) / count, 2.0))
+
+
+def dahl_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX) -> ca.SX:
+    """Force in N at x after a monotone step from (x0, f0)."""
+    sign = ca.if_else(x >= x0, 1, -1)
+    return sign * level - (sign * level - f0) * ca.exp(-sign * (x - x0) / presliding)
+
+
+def add_friction(b: Builder, freedom: str, law: FrictionLaw, x: ca.SX, prefix: str, side: str) -> ca.SX:
+    """Friction against the free motion x (mm); level and pre-sliding from `prefix.force` and `prefix.presliding`.
+
+    Off (and its state reset) where the control `friction` is 0. Returns the force against +x, N.
+    """
+    suffix = f"@{side}" if side else ""
+    level = b.constant(b.parameter(f"{prefix}.force{suffix}"))
+    presliding = b.constant(b.parameter(f"{prefix}.presliding{suffix}"))
+    on = b.control("friction")
+    if law == "dahl":
+        before = ca.SX.sym(f"{freedom} state", 2)
+        force = on * dahl_force(x, before[0], before[1], level, presliding)
+        b.state(before, ca.vertcat(x, force))
+    else:
+        before = ca.SX.sym(f"{freedom} state", IWAN_ELEMENTS)
+        strength = level / IWAN_ELEMENTS
+        rates = strength / (presliding * ca.SX(iwan_yields()))
+        each = on * ca.fmin(ca.fmax(rates * (x - before), -strength), strength)
+        force = ca.sum1(each)
+        b.state(before, x - each / rates)
+    b.resist(freedom, force)
+    return force
+
+
+@element
+class Friction(Element):
+    """`friction.steering`, `friction.strut.L`/`.R`: force in N against the sliding coordinate."""
+
+    id: ClassVar[str] = "friction"
+    stage: ClassVar[Stage] = "force"
+
+    def assemble(self, b: Builder) -> None:
+        steering, strut = b.topology.steering_friction, b.topology.strut_friction
+        if steering != "none":
+            b.points["friction.steering"] = add_friction(
+                b, "rack", steering, b.points["rack"], "steering_friction", ""
+            )
+        if strut != "none":
+            for side in SIDES:
+                b.points[f"friction.strut.{side}"] = add_friction(
+                    b, f"strut slide {side}", strut, b.points[f"slide.{side}"], "strut_friction", side
+                )

@@ -1,0 +1,66 @@
+"""Wheel on the knuckle: rigid, or sprung at the wheel centre (hub and bearing compliance)."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+import casadi as ca
+
+from doe_kc.solver import rotation
+from doe_kc.solver.builder import Body, Builder, body, rotations
+from doe_kc.solver.elements._base import (
+    NM_PER_DEG,
+    SIDES,
+    Element,
+    Stage,
+    element,
+    hardpoint,
+    mirror,
+)
+
+SPIN_STIFFNESS = 1e11
+"""N mm/rad about the knuckle's Y: the reference's brake lock, stiff but not ideal."""
+
+
+@element
+class Wheel(Element):
+    """Body `wheel.L`/`.R` and outward spin axis `spin.L`/`.R` (chassis frame)."""
+
+    id: ClassVar[str] = "wheel"
+    stage: ClassVar[Stage] = "body"
+    rank: ClassVar[int] = 50
+
+    def assemble(self, b: Builder) -> None:
+        for side in SIDES:
+            knuckle = b.bodies[f"knuckle.{side}"]
+            wheel = _sprung_wheel(b, knuckle, side) if b.topology.hub else knuckle
+            b.bodies[f"wheel.{side}"] = wheel
+            b.points[f"wheel centre.{side}"] = wheel.point(hardpoint(b, "WLC", side))
+            b.points[f"spin.{side}"] = wheel.axes @ _design_spin_axis(b, side)
+
+
+def _design_spin_axis(b: Builder, side: str) -> ca.SX:
+    toe = b.parameter(f"static.toe@{side}") * ca.pi / 180
+    camber = b.parameter(f"static.camber@{side}") * ca.pi / 180
+    return b.constant(
+        ca.vertcat(
+            -ca.sin(toe) * ca.cos(camber),
+            -mirror(side) * ca.cos(toe) * ca.cos(camber),
+            -ca.sin(camber),
+        )
+    )
+
+
+def _sprung_wheel(b: Builder, knuckle: Body, side: str) -> Body:
+    centre = hardpoint(b, "WLC", side)
+    name = f"wheel {side}"
+    turn, turns = rotations(name, knuckle.axes)
+    wheel = body(name, centre, knuckle.point(centre), rotation.compose(knuckle.gibbs, turn))
+    camber = b.constant(b.parameter(f"hub.camber@{side}") * NM_PER_DEG)
+    toe = b.constant(b.parameter(f"hub.toe@{side}") * NM_PER_DEG)
+    kappa, slope = rotation.angle_ratio(ca.dot(turn, turn))
+    torque = ca.vertcat(camber, SPIN_STIFFNESS, toe) * (kappa * turn)
+    moment = rotation.spring_moment(turn, torque, kappa, slope)
+    for i, freedom in enumerate(turns):
+        b.resist(freedom.name, moment[i])
+    return b.join(f"hub {side}", wheel, knuckle, turns)

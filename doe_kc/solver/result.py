@@ -1,0 +1,117 @@
+"""What solving an axle gives: static state, branches of equilibria, or the reason of a failure."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.errors import RunError
+from doe_kc.solver.load_cases import LoadCase, StaticPads
+from doe_kc.solver.march import Path
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why an axle has no solution: where on the path, and which joint is worst off.
+
+    residual: of that joint's row, in `unit`.
+    """
+
+    load_case: str
+    branch: str
+    step: int
+    input: float
+    input_unit: str
+    joint: str
+    residual: float
+    unit: str
+
+    def __str__(self) -> str:
+        where = f"load case {self.load_case}"
+        if self.branch:
+            where += f", branch {self.branch}, step {self.step} (input {self.input:g} {self.input_unit})"
+        return f"no equilibrium: {where}; worst residual {self.residual:.3g} {self.unit} at {self.joint}"
+
+
+class NotConverged(RunError):
+    """`solve(..., throw=True)` on an axle without a solution; `.failure` says where."""
+
+    def __init__(self, failure: Failure) -> None:
+        super().__init__(str(failure))
+        self.failure = failure
+
+
+@dataclass(frozen=True)
+class StaticState:
+    """The axle at rest at ride height: datum of every load case.
+
+    x0: state before the ride-height offset is applied; x: with it. y: (ny,) outputs.
+    """
+
+    x0: FloatArray
+    u0: FloatArray
+    x: FloatArray
+    u: FloatArray
+    z: FloatArray
+    y: FloatArray
+    pads: StaticPads
+
+
+@dataclass(frozen=True)
+class BranchSolution:
+    """Equilibria of one monotone part of a load case; row 0 is where it starts.
+
+    input: (n,) in the case's unit; path: states and outputs of rows 1..n-1; y: (n, ny) of all rows.
+    """
+
+    name: str
+    input: FloatArray
+    y: FloatArray
+    x: FloatArray
+    z: FloatArray
+    u: FloatArray
+    path: Path
+
+
+@dataclass(frozen=True)
+class CaseSolution:
+    """All branches of one load case."""
+
+    load_case: LoadCase
+    branches: tuple[BranchSolution, ...]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The whole suite of one axle. output_names: columns of every y.
+
+    failure: None when all cases converged; cases solved before it are kept.
+    """
+
+    axle_name: str
+    output_names: tuple[str, ...]
+    static: StaticState | None
+    cases: Mapping[str, CaseSolution]
+    failure: Failure | None
+    half_track: float
+
+    def column(self, name: str) -> int:
+        """Index of an output in y."""
+        return self.output_names.index(name)
+
+    @property
+    def equilibria(self) -> int:
+        """Number of equilibria solved."""
+        return sum(len(b.path.x) for c in self.cases.values() for b in c.branches)
+
+    @property
+    def counts(self) -> np.ndarray:
+        """(4,) residuals, Jacobians, factorizations, Newton steps."""
+        total = np.zeros(4, dtype=np.int64)
+        for case in self.cases.values():
+            for branch in case.branches:
+                total += branch.path.counts
+        return total

@@ -1,0 +1,193 @@
+"""Solves the load cases of an axle."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from doe_kc.axle.model import Axle
+from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE
+from doe_kc.solver.compiled import (
+    COMPILE_VARIABLE,
+    CompiledKernel,
+    CompileError,
+    compiled_kernel,
+)
+from doe_kc.solver.kernel import Kernel, kernel
+from doe_kc.solver.load_cases import CASE_ORDER, LoadCase
+from doe_kc.solver.march import Path, Settings, Start, march
+from doe_kc.solver.result import (
+    BranchSolution,
+    CaseSolution,
+    Failure,
+    NotConverged,
+    Solution,
+    StaticState,
+)
+from doe_kc.solver.static import control_matrix, static_state
+from doe_kc.solver.topology import Topology
+from doe_kc.typing import FloatArray
+
+log = logging.getLogger("doe_kc")
+SEEDS = 3
+
+
+def solve(
+    axle: Axle,
+    cases: Sequence[str] | None = None,
+    *,
+    compiled: bool | None = None,
+    settings: Settings | None = None,
+    throw: bool = True,
+) -> Solution:
+    """All equilibria of the axle's load cases (all, or those named in `cases`).
+
+    compiled: None takes compiled kernels when a C compiler is there. throw=False returns a failure as
+    `Solution.failure`; throw=True raises NotConverged.
+    """
+    chosen = {i: axle.load_cases[i] for i in (cases if cases is not None else _ordered(axle.load_cases))}
+    k = kernel(axle.topology)
+    library = library_for(axle.topology, compiled)
+    options = settings or Settings()
+    c = k.constant_values(dict(axle.values))
+    static = static_state(k, library, c, axle, options)
+    if isinstance(static, Path):
+        return _ended(
+            axle, k, None, {}, _failure(k, static, "static equilibrium", "", 0.0, "", 0), throw
+        )
+    solved: dict[str, CaseSolution] = {}
+    for ident, case in chosen.items():
+        result = _solve_case(k, library, c, static, case, options)
+        if isinstance(result, Failure):
+            return _ended(axle, k, static, solved, result, throw)
+        solved[ident] = result
+    return _ended(axle, k, static, solved, None, throw)
+
+
+def _ordered(cases: Mapping[str, LoadCase]) -> list[str]:
+    return [i for i in CASE_ORDER if i in cases] + [i for i in cases if i not in CASE_ORDER]
+
+
+def _ended(
+    axle: Axle,
+    k: Kernel,
+    static: StaticState | None,
+    cases: Mapping[str, CaseSolution],
+    failure: Failure | None,
+    throw: bool,
+) -> Solution:
+    if failure is not None and throw:
+        raise NotConverged(failure)
+    return Solution(axle.name, k.equations.output_names, static, cases, failure, axle.half_track)
+
+
+def library_for(topology: Topology, compiled: bool | None) -> CompiledKernel | None:
+    """The compiled kernel, or None to interpret; one notice when there is no compiler."""
+    import os
+
+    if compiled is False or (compiled is None and os.environ.get(COMPILE_VARIABLE) == "0"):
+        return None
+    try:
+        return compiled_kernel(topology)
+    except CompileError as error:
+        if compiled:
+            raise
+        _notice_once(str(error))
+        return None
+
+
+@lru_cache(maxsize=1)
+def _notice_once(reason: str) -> None:
+    log.warning("running interpreted, about ten times slower: %s", reason)
+
+
+def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
+    """Inputs of every branch, the first being where it starts: two from zero, or a loop with friction."""
+    up = np.linspace(0.0, 1.0, case.steps + 1) * case.amplitude
+    if not loop:
+        return {"pos": up, "neg": -up}
+    around = np.linspace(-1.0, 1.0, 2 * case.steps + 1) * case.amplitude
+    return {"init": up, "unload": around[::-1].copy(), "load": around}
+
+
+def _solve_case(
+    k: Kernel,
+    library: CompiledKernel | None,
+    c: FloatArray,
+    static: StaticState,
+    case: LoadCase,
+    settings: Settings,
+) -> CaseSolution | Failure:
+    loop = k.topology.frictional
+    done: list[BranchSolution] = []
+    full = False
+    for name, inputs in branch_inputs(case, loop=loop).items():
+        values = {"preload": static.pads.preload, **case.controls(inputs, static.pads)}
+        if loop:
+            values["friction"] = 1.0
+        full = "hold_wheel_centre" in values
+        u = control_matrix(k, values, len(inputs))
+        start, origin = _start(static, done, u, inputs, loop=loop)
+        path = march(k, library, c, start, inputs[1:], u[1:], full=full, settings=settings)
+        if path.failed is not None:
+            return _failure(k, path, case.id, name, inputs[path.failed + 1], case.unit, path.failed + 1)
+        x0, y0, z0 = origin
+        done.append(
+            BranchSolution(
+                name,
+                inputs,
+                np.vstack([y0, path.y]),
+                np.vstack([x0, path.x]),
+                np.vstack([z0, path.z]),
+                u,
+                path,
+            )
+        )
+    return CaseSolution(case, tuple(done))
+
+
+def _start(
+    static: StaticState,
+    done: list[BranchSolution],
+    u: FloatArray,
+    inputs: FloatArray,
+    *,
+    loop: bool,
+) -> tuple[Start, tuple[FloatArray, FloatArray, FloatArray]]:
+    """Where a branch starts, and first equilibria of the opposite branch as the predictor's history."""
+    if loop and done:
+        last = done[-1]
+        origin = (last.x[-1], last.y[-1], last.z[-1])
+        return Start(inputs[:1], last.x[-1:], u[0], last.z[-1]), origin
+    origin = (static.x, static.y, static.z)
+    if not done:
+        return Start(inputs[:1], static.x[None, :], u[0], static.z), origin
+    seeds = np.arange(SEEDS, 0, -1)
+    s = np.concatenate([done[0].input[seeds], inputs[:1]])
+    x = np.vstack([done[0].x[seeds], static.x])
+    return Start(s, x, u[0], static.z), origin
+
+
+def _failure(
+    k: Kernel, path: Path, case: str, branch: str, value: float, unit: str, step: int
+) -> Failure:
+    weighted = np.abs(path.residual / k.scale)
+    if path.failed is None or not np.isfinite(weighted).any():
+        worst = 0
+    else:
+        worst = int(np.nanargmax(np.where(np.isfinite(weighted), weighted, np.inf)))
+    unknown = k.equations.unknowns[worst]
+    units = {FORCE_SCALE: "N", MOMENT_SCALE: "N mm"}
+    return Failure(
+        case,
+        branch,
+        step,
+        float(value),
+        unit,
+        unknown.joint,
+        float(path.residual[worst]),
+        units.get(unknown.scale, "mm"),
+    )

@@ -1,0 +1,36 @@
+"""Which bodies, joints and laws the axle has: what decides the equations, not their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+FrictionLaw = Literal["none", "dahl", "iwan"]
+
+
+@dataclass(frozen=True)
+class Topology:
+    """One set of equations and one compiled kernel per topology; an absent effect costs nothing.
+
+    bump_points, rebound_points: number of points of the stop curves.
+    tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
+    """
+
+    hub: bool = False
+    strut_bending: bool = False
+    steer_arm: bool = False
+    rack_mount: bool = False
+    flexible_subframe: bool = False
+    tyre_horizontal: bool = False
+    free_play_left: bool = False
+    free_play_right: bool = False
+    steering_friction: FrictionLaw = "none"
+    strut_friction: FrictionLaw = "none"
+    bump_points: int = 7
+    rebound_points: int = 5
+    tables: tuple[tuple[str, str, int], ...] = ()
+
+    @property
+    def frictional(self) -> bool:
+        """True when the path matters, so that load cases run as loops."""
+        return self.steering_friction != "none" or self.strut_friction != "none"

@@ -1,0 +1,98 @@
+"""The reference axle of the tests: curves solved by an independent multibody code (EXUDYN 1.13.6)."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+
+import pandas as pd
+
+from doe_kc.axle import Axle, parameter_value, read_axle, with_values
+from doe_kc.effects import apply_effect
+from doe_kc.solver.load_cases import LoadCase
+from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.vertical import Vertical
+
+DATA = Path(__file__).parent / "data" / "reference"
+EXAMPLE = Path(__file__).parents[1] / "examples" / "front_axle"
+POINT_NAMES = {"WC": "WLC", "SAL": "LWD"}
+OTHER_PATHS = {
+    "spring.k_N_mm": "spring.rate",
+    "arb.k_N_mm": "arb.rate",
+    "steering.column_N_mm": "steering.column",
+    "tyre.k_radial_N_mm": "tyre.rate",
+    "wheel.toe_deg": "static.toe",
+    "wheel.camber_deg": "static.camber",
+}
+CASE_NAMES = {
+    "heave": "vertical",
+    "heave_wheel": "vertical_wheel",
+    "roll_pads": "roll_pads",
+    "roll_body": "roll",
+    "lat_inphase": "lateral",
+    "lat_antiphase": "lateral_opposite",
+    "lat_inphase_30mm": "lateral_offset",
+    "drive": "drive",
+    "brake": "brake",
+    "steer": "steer",
+}
+
+
+@lru_cache
+def nominal() -> Axle:
+    return read_axle(EXAMPLE / "axle.toml")
+
+
+def variant(number: int) -> Axle:
+    """The nominal axle with the changes of variant_N.toml."""
+    document = tomllib.loads((DATA / f"variant_{number}.toml").read_text())
+    axle = nominal()
+    values: dict[str, float] = {}
+    for point, change in document["points"].items():
+        for axis, delta in zip("xyz", change, strict=True):
+            path = f"{POINT_NAMES.get(point, point)}.{axis}"
+            values[path] = parameter_value(axle, path) + delta
+    for bushing, factors in document["bushing"].items():
+        for axis, factor in zip(("Fx", "Fy", "Fz", "Tx", "Ty", "Tz"), factors, strict=True):
+            values[f"{bushing.lower()}.{axis}"] = factor
+    for key, value in document["other"].items():
+        path = OTHER_PATHS[key]
+        base = parameter_value(axle, path)
+        values[path] = base + value if key.startswith("wheel.") else base * value
+    return with_values(axle, values)
+
+
+def with_effect(ident: str) -> Axle:
+    """The nominal axle with the effect of effect_ID.toml."""
+    (options,) = tomllib.loads((DATA / f"effect_{ident}.toml").read_text()).values()
+    return apply_effect(nominal(), ident, options, source="reference")
+
+
+def reference_cases(axle: Axle) -> dict[str, LoadCase]:
+    """The project's load cases plus the reference's two further techniques."""
+    return {
+        **axle.load_cases,
+        "vertical_wheel": Vertical(amplitude=80.0, steps=32, control="wheel"),
+        "roll_pads": TECHNIQUES["counter_phase"],
+    }
+
+
+def reference_axle(name: str) -> Axle:
+    """Axle of a reference file, with all ten load cases."""
+    if name == "nominal":
+        axle = nominal()
+    elif name.startswith("variant_"):
+        axle = variant(int(name.removeprefix("variant_")))
+    else:
+        axle = with_effect(name.removeprefix("effect_"))
+    return replace(axle, load_cases=reference_cases(axle))
+
+
+@lru_cache
+def reference_curves(name: str) -> pd.DataFrame:
+    return pd.read_csv(DATA / f"{name}.csv")
+
+
+FILES = sorted(p.stem for p in DATA.glob("*.csv"))
