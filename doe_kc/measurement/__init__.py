@@ -1,0 +1,34 @@
+"""K&C rig records: read, checked, reduced to curves, noise, trends, gradients and characteristics."""
+
+from __future__ import annotations
+
+from doe_kc.measurement.frames import MeasurementFrames, measurement_to_frames
+from doe_kc.measurement.gradients import Estimate, Gradient
+from doe_kc.measurement.manifest import Manifest, load_manifest
+from doe_kc.measurement.noise import CaseNoise, ErrorComponents, NoiseModel
+from doe_kc.measurement.records import Record, read_record
+from doe_kc.measurement.reduction import HALF_TRACK, Measurement, reduce_measurement
+from doe_kc.measurement.ride_height import Contribution, RideHeight, infer_ride_height
+from doe_kc.measurement.trend import Trend, fit_trends
+
+__all__ = [
+    "HALF_TRACK",
+    "CaseNoise",
+    "Contribution",
+    "ErrorComponents",
+    "Estimate",
+    "Gradient",
+    "Manifest",
+    "Measurement",
+    "MeasurementFrames",
+    "NoiseModel",
+    "Record",
+    "RideHeight",
+    "Trend",
+    "fit_trends",
+    "infer_ride_height",
+    "load_manifest",
+    "measurement_to_frames",
+    "read_record",
+    "reduce_measurement",
+]

@@ -76,9 +76,10 @@ def recorded_case(load_case: str, headings: Sequence[Heading]) -> LoadCase:
 
 
 def locate(label: str, texts: Sequence[str], load_case: str) -> tuple[LoadCase, dict[str, int]]:
-    """The load case as run and role -> column index; InputError for missing, double or wrong-unit columns.
+    """The load case as run and role -> column index; InputError for wrong columns.
 
-    label: the file (and sheet) for the message. Columns that nobody needs are left alone.
+    Wrong are missing, double and wrong-unit columns; those that nobody needs are left alone.
+    label: the file (and sheet) for the message.
     """
     headings = [parse_heading(t) for t in texts]
     case = recorded_case(load_case, headings)

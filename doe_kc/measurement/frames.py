@@ -20,7 +20,8 @@ GRADIENT_COLUMNS = (
     "load_case", "response", "side", "unit", "value", "sd", "window", "input_unit",
 )  # fmt: skip
 NOISE_COLUMNS = (
-    "load_case", "response", "unit", "white", "offset", "gain", "smooth", "length", "loop", "dof", "source",
+    "load_case", "response", "unit", "white", "offset", "gain",
+    "smooth", "length", "loop", "dof", "source",
 )  # fmt: skip
 
 

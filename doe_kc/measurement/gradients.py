@@ -67,7 +67,7 @@ def case_gradients(case: CaseCurves, noise: CaseNoise, windows: Windows) -> tupl
         for side, name in enumerate(SIDES):
             y = curve[side][inside]
             value = slope(x, y)
-            variance = weights @ noise[response].covariance(side=side) @ weights
+            variance = float(weights @ noise[response].covariance(side=side) @ weights)
             out.append(
                 Gradient(
                     load_case=case.load_case,
@@ -113,7 +113,7 @@ def _estimate(
     weights = _sensitivity(entry, case, curves.half_track, window)
     models = noise[entry.load_case]
     variance = sum(float(w @ models[r].covariance(side=LEFT) @ w) for r, w in weights.items())
-    return Estimate(value, max(variance, 0.0) ** 0.5)
+    return Estimate(value, float(np.sqrt(max(variance, 0.0))))
 
 
 def _sensitivity(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,7 +69,7 @@ def turning_points(values: FloatArray, threshold: float) -> list[int]:
 def _last_cycle(values: FloatArray, order: IndexArray, span: float) -> Loop | None:
     """The last two neighbouring segments that each cover the range, as indices into the record."""
     points = turning_points(values, REVERSAL * span)
-    segments = list(zip(points[:-1], points[1:], strict=True))
+    segments = list(pairwise(points))
     full = [abs(values[b] - values[a]) >= FULL * span for a, b in segments]
     for i in range(len(segments) - 2, -1, -1):
         if full[i] and full[i + 1]:
@@ -100,8 +101,8 @@ def _why_not(values: FloatArray, span: float, label: str) -> str:
     inner = [i for i in points[1:-1] if low < values[i] < high]
     if inner:
         return (
-            f"{label}: the input turns back at sample {inner[0] + 1} (value {values[inner[0]]:g}), so its "
-            "branch is not monotone; expected +A -> -A -> +A without reversal, record the loop again."
+            f"{label}: the input turns back at sample {inner[0] + 1} (value {values[inner[0]]:g}), so "
+            "its branch is not monotone; expected +A -> -A -> +A without reversal, record it again."
         )
     return (
         f"{label}: the input makes no loop, it runs from {values[0]:g} to {values[-1]:g} with "
@@ -117,7 +118,8 @@ def _check_monotone(values: FloatArray, loop: Loop, label: str) -> None:
         if wrong.mean() > 1.0 - RIGHT_WAY:
             at = int(sampled[int(np.flatnonzero(wrong)[0]) + 1])
             raise InputError(
-                f"{label}: the {name} branch is not monotone, {100 * wrong.mean():.0f} % of its steps go "
-                f"the other way, first at sample {at + 1}; expected at most {100 * (1 - RIGHT_WAY):.0f} %, "
+                f"{label}: the {name} branch is not monotone, {100 * wrong.mean():.0f} % of its steps "
+                f"go the other way, first at sample {at + 1}; expected at most "
+                f"{100 * (1 - RIGHT_WAY):.0f} %, "
                 "filter the input channel or record the loop again."
             )

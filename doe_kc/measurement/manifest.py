@@ -41,8 +41,9 @@ class Setup(_Section):
 
 
 class SideAlignment(_Section):
-    """Static angles of one wheel at ride height, deg; toe-in +, camber top outwards +, caster rearwards +.
+    """Static angles of one wheel at ride height, deg.
 
+    Toe-in +, camber top outwards +, caster top rearwards +.
     caster_deg is that of the design kingpin line carried by the knuckle: the static `spin`.
     """
 

@@ -57,7 +57,7 @@ class NoiseModel:
     runs: int
 
     def run_covariance(self, side: int) -> FloatArray:
-        """(n, n) covariance of one run's mean curve as recorded, before the static value is taken off."""
+        """(n, n) covariance of one run's mean curve with its static value still in it."""
         c = self.components
         relative = self.input / np.abs(self.input).max()
         level = np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2)
@@ -74,7 +74,8 @@ class NoiseModel:
         """(m, m) covariance of the mean curve of `runs` runs (default: those averaged), unit squared.
 
         Angles and positions are changes from static: the value at input 0 is taken off, so the offset
-        cancels and row and column of input 0 are zero. `input_grid` (m,) inside the range, default the own.
+        cancels and row and column of input 0 are zero. `input_grid`: (m,) inside the range,
+        default the own.
         """
         total = self.run_covariance(side) / (runs or self.runs)
         if self.response != TYRE_LOAD:

@@ -46,7 +46,7 @@ def estimate_noise(runs: Runs, resolution: Mapping[str, float]) -> dict[str, Cas
         for case, members in runs.items():
             for r in responses:
                 out[case][r] = _informed(partial[case][r], members, components)
-    return {case: models for case, models in out.items()}
+    return dict(out)
 
 
 def _uninformed(case: str, response: str, runs: Sequence[RunCurves], resolution: float) -> NoiseModel:
@@ -103,4 +103,4 @@ def _loop_scatter(model: NoiseModel, runs: Sequence[RunCurves]) -> float:
     half = np.stack([run.half_width(model.response) for run in runs])
     observed = float(np.mean(np.var(half, axis=0, ddof=1)))
     white = float(np.mean([np.diag(_white_covariance(model, side)).mean() for side in (0, 1)]))
-    return max(0.0, observed - white) ** 0.5
+    return float(np.sqrt(max(0.0, observed - white)))

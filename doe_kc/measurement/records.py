@@ -87,8 +87,8 @@ def _check_time(table: Table, time: FloatArray) -> None:
     late = np.flatnonzero(np.diff(time) <= 0.0)
     if late.size:
         raise InputError(
-            f"{table.label}: row {table.numbers[late[0] + 1]}, time does not increase; expected samples in "
-            "the order of recording, so sort or export the record again."
+            f"{table.label}: row {table.numbers[late[0] + 1]}, time does not increase; expected samples "
+            "in the order of recording, so sort or export the record again."
         )
 
 
@@ -101,8 +101,9 @@ def _check_sweep(label: str, case: LoadCase, values: FloatArray) -> None:
         )
     if min(high, -low) < case.window:
         raise InputError(
-            f'{label}: column "{case.channel} [{case.unit}]" covers {low:g} to {high:g}, expected at least '
-            f"±{case.window:g}, the fit window of {case.id}; record a larger loop or check the unit."
+            f'{label}: column "{case.channel} [{case.unit}]" covers {low:g} to {high:g}, expected '
+            f"at least ±{case.window:g}, the fit window of {case.id}; record a larger loop "
+            "or check the unit."
         )
     if high - low > 1e3 * case.amplitude:
         raise InputError(

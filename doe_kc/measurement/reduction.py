@@ -37,7 +37,8 @@ class Measurement:
     """A reduced rig measurement.
 
     curves: mean and half-width curves; they, not the trends, feed the characteristics, because a
-        polynomial over the whole travel rings around the bump-stop kink and shifts the gradient at static.
+        polynomial over the whole travel rings around the bump-stop kink, which shifts the gradient at
+        static.
     runs: load case -> runs, main run first, with the raw record and its branches for pictures.
     trends: load case -> response -> (left, right) one-valued polynomial of all runs.
     noise: load case -> response -> noise model of the mean curve.

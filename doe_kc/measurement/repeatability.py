@@ -78,7 +78,8 @@ def components_from_resolution(resolution: float) -> ErrorComponents:
 
 def _scatter(curve: Repeats) -> FloatArray:
     deviations = curve.runs - curve.runs.mean(axis=0)
-    return deviations.T @ deviations
+    out: FloatArray = deviations.T @ deviations
+    return out
 
 
 @dataclass(frozen=True)
@@ -104,7 +105,8 @@ class _Stack:
         )
         # Noise-free records leave nothing to factor; a thousandth of the resolution is no noise.
         jitter = (1e-3 * self.resolution) ** 2 * np.eye(POINTS)
-        return total + jitter
+        out: FloatArray = total + jitter
+        return out
 
     def deviance(self, log_parameters: FloatArray) -> float:
         """-2 log restricted likelihood + constant: sum (R-1) ln|C| + tr(C^-1 D'D), per curve."""

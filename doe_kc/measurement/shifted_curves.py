@@ -1,21 +1,23 @@
-"""The curves that an axle shows when its pads are raised, predicted from its curves at nominal height."""
+"""The curves that an axle shows when its pads are raised, predicted from those at nominal height."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from doe_kc.curves import CaseCurves
-from doe_kc.measurement.kinked_interpolation import interpolate_kinked
+from doe_kc.measurement.kinked_interpolation import KinkedCurve
 from doe_kc.typing import FloatArray
 
 SIDE_SIGN: Mapping[str, float] = {"wc_y": -1.0}
 """Factor that maps the right wheel's curve on the left's."""
 
-_SLOPE_ZONE = 10.0
+_RATE_ZONE = 10.0
+"""Half-width in mm of pad travel around static in which no stop is expected to act."""
 
 
 def both_sides(response: str, curve: FloatArray) -> FloatArray:
@@ -44,44 +46,60 @@ class ShiftedCurves:
 
     def travel(self, h: float) -> float:
         """Wheel travel z(h), mm."""
-        return float(PchipInterpolator(self.pad, self.curves["wc_z"])(h))
+        return float(self._travel(h))
 
     def kinematic(self, response: str, travel: FloatArray, h: float) -> FloatArray:
         """(m,) change of `response` from the raised static state at wheel travel (m,) from there."""
-        curve = self._over_travel(response)
+        curve = self._over_travel[response]
         datum = self.travel(h)
         out: FloatArray = curve(travel + datum) - curve(datum)
         return out
 
+    def kinematic_doubt(self, response: str, travel: FloatArray, h: float) -> FloatArray:
+        """(m,) sd of the interpolation: half the difference of two interpolants."""
+        at = travel + self.travel(h)
+        difference = self._over_travel[response](at) - self._over_travel_pchip[response](at)
+        out: FloatArray = np.abs(difference) / 2.0
+        return out
+
     def load(self, pad: FloatArray, h: float) -> FloatArray:
         """(m,) tyre load in N at pad travel (m,) from the raised static state."""
-        return interpolate_kinked(self.pad, self.curves["tyre_load"], pad + h)
+        return self._load(pad + h)
 
-    def static_rate(self) -> float:
-        """Ride rate at static, N/mm."""
-        ahead, behind = self.load(np.array([1.0, -1.0]), 0.0)
-        return float(ahead - behind) / 2.0
+    def load_doubt(self, pad: FloatArray, h: float) -> FloatArray:
+        """(m,) sd of the interpolation, N: half the difference of sharp and rounded kink."""
+        out: FloatArray = np.abs(self._load(pad + h) - self._load.smooth(pad + h)) / 2.0
+        return out
 
     def stop_force(self, pad: FloatArray, h: float) -> FloatArray:
-        """(m,) part of that load (N) beyond the smooth ride rate: what the stops add, from the curve alone.
+        """(m,) part of that load (N) beyond the smooth ride rate: what the stops add.
 
         The rate without stops is taken as linear in travel, fitted within ±10 mm of the model's static.
         """
-        near = np.linspace(-_SLOPE_ZONE, _SLOPE_ZONE, 21)
-        smooth = np.polynomial.Polynomial.fit(near, self.load(near, 0.0), 2)
-        out: FloatArray = self.load(pad, h) - smooth(pad + h)
+        out: FloatArray = self._load(pad + h) - self._without_stops(pad + h)
         return out
 
-    def interpolation_sd(self, response: str, travel: FloatArray, h: float) -> FloatArray:
-        """(m,) doubt about the curve between its points: half the difference of two interpolants."""
-        if response == "tyre_load":
-            other = PchipInterpolator(self.pad, self.curves[response])(travel + h)
-            rough: FloatArray = np.abs(other - self.load(travel, h)) / 2.0
-            return rough
-        at = travel + self.travel(h)
-        other = PchipInterpolator(self.curves["wc_z"], self.curves[response])(at)
-        out: FloatArray = np.abs(self._over_travel(response)(at) - other) / 2.0
-        return out
+    def static_rate(self) -> float:
+        """Ride rate at static, N/mm."""
+        return float(self._without_stops.deriv()(0.0))
 
-    def _over_travel(self, response: str) -> CubicSpline:
-        return CubicSpline(self.curves["wc_z"], self.curves[response])
+    @cached_property
+    def _travel(self) -> PchipInterpolator:
+        return PchipInterpolator(self.pad, self.curves["wc_z"])
+
+    @cached_property
+    def _load(self) -> KinkedCurve:
+        return KinkedCurve(self.pad, self.curves["tyre_load"])
+
+    @cached_property
+    def _without_stops(self) -> np.polynomial.Polynomial:
+        near = np.linspace(-_RATE_ZONE, _RATE_ZONE, 21)
+        return np.polynomial.Polynomial.fit(near, self._load(near), 2)
+
+    @cached_property
+    def _over_travel(self) -> dict[str, CubicSpline]:
+        return {r: CubicSpline(self.curves["wc_z"], c) for r, c in self.curves.items()}
+
+    @cached_property
+    def _over_travel_pchip(self) -> dict[str, PchipInterpolator]:
+        return {r: PchipInterpolator(self.curves["wc_z"], c) for r, c in self.curves.items()}

@@ -1,4 +1,4 @@
-"""Local quadratic regression: values of a noisy branch at given inputs, as a linear map of the samples."""
+"""Local quadratic regression: a noisy branch read at given inputs, linear in its samples."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ MIN_NEIGHBOURS = 7
 def local_weights(samples: FloatArray, grid: FloatArray, half_width: float) -> FloatArray:
     """(n, m) matrix S with S y = local quadratic fit to the samples (x, y), read at the n grid inputs.
 
-    samples: (m,) inputs x in any order; grid: (n,); half_width: support of the tricube kernel, input unit,
-    widened where it holds fewer than 7 samples. Exact on quadratics, for interior points on cubics too:
-    no bias up to third order, and kinks are rounded over one half-width only.
-    Raises numpy.linalg.LinAlgError never: a rank-deficient neighbourhood takes the pseudo-inverse.
+    samples: (m,) inputs x in any order; grid: (n,); half_width: support of the tricube kernel, input
+    unit, widened where it holds fewer than 7 samples. Exact on quadratics, for interior points on cubics
+    too: no bias up to third order, and kinks are rounded over one half-width only.
+    A rank-deficient neighbourhood takes the pseudo-inverse.
     Source: Cleveland, JASA 74 (1979) 829; Fan & Gijbels, Local Polynomial Modelling (1996).
     """
     distance = samples[None, :] - grid[:, None]

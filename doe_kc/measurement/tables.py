@@ -46,9 +46,9 @@ def read_bytes(path: Path) -> bytes:
 
 
 def read_csv_table(path: Path) -> Table:
-    """Table of a UTF-8 CSV file, comma separated, or semicolon separated with a decimal comma or point.
+    """Table of a UTF-8 CSV file, comma separated, or semicolon separated with decimal commas.
 
-    Raises InputError for Excel files in disguise, binary data, and rows shorter or longer than the heading.
+    Raises InputError for Excel files in disguise, binary data, and rows unlike the heading.
     """
     data = read_bytes(path)
     lines = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n").split("\n")
@@ -113,7 +113,7 @@ def _refuse_ragged(path: Path, headings: Sequence[str], rows: Sequence[tuple[int
                 "the file is truncated; copy or export it again."
             )
         raise InputError(
-            f"{path}: row {number} has {len(row)} columns, expected {len(headings)} as in the heading row; "
+            f"{path}: row {number} has {len(row)} columns, expected {len(headings)} as in the heading; "
             "look for a decimal comma or a missing separator there."
         )
 

@@ -10,7 +10,7 @@ from numpy.polynomial import chebyshev
 from doe_kc.typing import FloatArray
 
 MAX_DEGREE = 15
-FOLDS = 5
+FOLDS = 10
 BLOCKS = 40
 """Blocks of neighbouring inputs, dealt out to the folds in turn: neighbours share noise and a branch."""
 
@@ -22,7 +22,7 @@ class Trend:
     coefficients: (degree + 1,) in the response's unit. centre, scale: input unit.
     cv_rmse: cross-validated rms error; residual_rmse: of the final fit, both in the response's unit
     and with the loop's half-width in them.
-    Source: the one-valued "polyfit" of Wendeberg (2013), section 4; the 1-SE rule: Breiman et al. (1984).
+    Source: the one-valued "polyfit" of Wendeberg (2013), section 4; 1-SE rule: Breiman et al. (1984).
     """
 
     coefficients: FloatArray
@@ -34,8 +34,8 @@ class Trend:
 
     def __call__(self, inputs: FloatArray) -> FloatArray:
         """Trend values at `inputs` (n,)."""
-        out: FloatArray = chebyshev.chebval((inputs - self.centre) / self.scale, self.coefficients)
-        return out
+        position = (inputs - self.centre) / self.scale
+        return np.asarray(chebyshev.chebval(position, self.coefficients), dtype=np.float64)
 
 
 def fit_trends(
@@ -43,13 +43,14 @@ def fit_trends(
 ) -> tuple[Trend, ...]:
     """A trend for each row of `values` (k, n) over `inputs` (n,), both branches and all runs together.
 
-    The degree is the smallest whose blocked 5-fold cross-validation error is within one standard
-    error of the smallest error. n must exceed 2 (max_degree + 1).
+    The degree is the smallest whose blocked 10-fold cross-validation error is within one standard error
+    of the smallest one, the standard error being that of the difference, fold by fold.
+    n must exceed 2 (max_degree + 1).
     """
     centre = float(inputs.max() + inputs.min()) / 2.0
     scale = float(np.ptp(inputs)) / 2.0
     position = (inputs - centre) / scale
-    basis = chebyshev.chebvander(position, max_degree)
+    basis: FloatArray = chebyshev.chebvander(position, max_degree).astype(np.float64)
     folds = _folds(position)
     errors = _fold_errors(basis, values, folds)
     return tuple(
@@ -83,7 +84,8 @@ def _trend(
     basis: FloatArray, row: FloatArray, errors: FloatArray, *, centre: float, scale: float
 ) -> Trend:
     degree = _one_standard_error(errors)
-    coefficients, *_ = np.linalg.lstsq(basis[:, : degree + 1], row, rcond=None)
+    solution = np.linalg.lstsq(basis[:, : degree + 1], row, rcond=None)[0]
+    coefficients = np.asarray(solution, dtype=np.float64)
     residual = row - basis[:, : degree + 1] @ coefficients
     return Trend(
         coefficients=coefficients,
@@ -96,8 +98,10 @@ def _trend(
 
 
 def _one_standard_error(errors: FloatArray) -> int:
-    """Smallest degree within one standard error of the best; errors (degrees, folds)."""
-    mean = errors.mean(axis=1)
-    best = int(np.argmin(mean))
-    limit = mean[best] + errors[best].std(ddof=1) / np.sqrt(errors.shape[1])
-    return int(np.flatnonzero(mean <= limit)[0])
+    """Smallest degree within one standard error of the best; errors (degrees, folds).
+
+    The folds' errors differ by where they lie more than by degree, hence the paired difference.
+    """
+    excess = errors - errors[int(np.argmin(errors.mean(axis=1)))]
+    doubt = excess.std(axis=1, ddof=1) / np.sqrt(errors.shape[1])
+    return int(np.flatnonzero(excess.mean(axis=1) <= doubt)[0])

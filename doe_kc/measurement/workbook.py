@@ -14,7 +14,7 @@ from doe_kc.measurement.tables import ZIP_MAGIC, Cell, Table, read_bytes
 
 
 def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> Table:
-    """Table of a sheet of an .xlsx file: the named one, else the only one, else the one named `load_case`.
+    """Table of a sheet of an .xlsx file: the named, else the only one, else `load_case`.
 
     Values only: a formula counts by its stored result. InputError when file or sheet cannot be used.
     """

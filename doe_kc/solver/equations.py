@@ -79,13 +79,13 @@ def finish(b: Builder) -> Equations:
         p=ca.vertcat(*b.parameters.values()),
         c=ca.vertcat(*[s for s, _ in b.constants]),
         u=ca.vertcat(*b.controls.values()),
-        z=ca.vertcat(*[s for s, _ in b.states]),
+        z=ca.vertcat(ca.SX(0, 1), *[s for s, _ in b.states]),
         residual=ca.vertcat(
             *rows,
             *[v for _, _, v in b.multipliers],
             *[b.tail_equations[u.name] for u, _ in b.tail],
         ),
         outputs=ca.vertcat(*b.outputs.values()),
-        next_state=ca.vertcat(*[f for _, f in b.states]),
+        next_state=ca.vertcat(ca.SX(0, 1), *[f for _, f in b.states]),
         constants=_resolved_constants(b),
     )

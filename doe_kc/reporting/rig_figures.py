@@ -1,0 +1,157 @@
+"""Pictures of a reduced rig measurement: loop, branches, trend and gradient, one sheet per load case."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, SIDES
+from doe_kc.measurement import Gradient, Measurement
+from doe_kc.reporting.style import A4, PALETTE, figure, label, save
+from doe_kc.typing import FloatArray
+
+SIDE_TITLES = ("Left wheel", "Right wheel")
+LOOP = PALETTE["grey"]
+UNLOAD = PALETTE["blue"]
+LOAD = PALETTE["orange"]
+TREND = PALETTE["black"]
+GRADIENT = PALETTE["vermillion"]
+RESIDUAL = (PALETTE["blue"], PALETTE["vermillion"])
+WINDOW = "#EAF3EA"
+
+
+def rig_figure(measurement: Measurement, load_case: str) -> Figure:
+    """A4 sheet of one load case: a row per response; left wheel, right wheel, residual about the trend.
+
+    Raises KeyError when the load case was not measured.
+    """
+    case = measurement.curves.cases[load_case]
+    run = measurement.runs[load_case][0]
+    fig, axes = figure(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9))
+    gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
+    for row, response in zip(axes, RIG_RESPONSES, strict=True):
+        for side, name in enumerate(SIDES):
+            _panel(row[side], measurement, load_case, response, side)
+            _gradient(row[side], gradients[response, name])
+        _residual(row[2], measurement, load_case, response)
+        _same_scale(row[0], row[1])
+        label(row[0], None, f"{_short(response)} / {RESPONSE_UNITS[response]}")
+        label(row[2], None, f"residual / {RESPONSE_UNITS[response]}")
+    for ax in axes[-1]:
+        label(ax, f"{run.record.case.channel} / {case.input_unit}", None)
+    for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
+        ax.set_title(title)
+    fig.suptitle(f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11)
+    _legend(fig, len(measurement.runs[load_case]))
+    return fig
+
+
+def write_rig_figures(measurement: Measurement, folder: Path) -> tuple[Path, ...]:
+    """`rig_<load case>.png` and `.svg` of every measured load case; returns all paths.
+
+    Raises RunError when the folder cannot be written.
+    """
+    out: list[Path] = []
+    for load_case in measurement.curves.cases:
+        out.extend(save(rig_figure(measurement, load_case), folder / f"rig_{load_case}"))
+    return tuple(out)
+
+
+def _short(response: str) -> str:
+    """Label without its remark on signs, which does not fit a small panel."""
+    return RESPONSE_LABELS[response].split(" (")[0].replace("Wheel centre", "WC").replace(" angle", "")
+
+
+def _panel(ax: Axes, measurement: Measurement, load_case: str, response: str, side: int) -> None:
+    run = measurement.runs[load_case][0]
+    case = measurement.curves.cases[load_case]
+    ax.plot(run.record.input, _changes(measurement, load_case, response, side), color=LOOP, lw=0.7)
+    half = case.half_width[response][side]
+    mean = case.mean[response][side]
+    ax.plot(case.input, mean + half, color=UNLOAD, lw=0.9)
+    ax.plot(case.input, mean - half, color=LOAD, lw=0.9)
+    fit = measurement.trends[load_case][response][side]
+    ax.plot(case.input, fit(case.input), color=TREND, lw=0.8, ls="--")
+
+
+def _changes(measurement: Measurement, load_case: str, response: str, side: int) -> FloatArray:
+    """Raw samples of the main run, as change from static where the mean curve is one."""
+    run = measurement.runs[load_case][0]
+    own = run.mean(response)[side]
+    at = int(np.argmin(np.abs(run.input)))
+    samples: FloatArray = run.record.channels[response][side]
+    return samples if response == "tyre_load" else samples - own[at]
+
+
+def _gradient(ax: Axes, gradient: Gradient) -> None:
+    window = np.array([-gradient.window, gradient.window])
+    ax.axvspan(window[0], window[1], color=WINDOW, lw=0, zorder=0)
+    ax.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT, lw=1.6)
+    scale, unit = _readable(gradient.unit)
+    _note(ax, f"{scale * gradient.value:.4g} ± {scale * gradient.sd:.1g} {unit}", GRADIENT)
+
+
+def _readable(unit: str) -> tuple[float, str]:
+    """Factor and unit that spare small numbers: per m and per kN, rates stay in N/mm."""
+    for small, large in (("deg/mm", "deg/m"), ("mm/mm", "mm/m"), ("/N", "/kN")):
+        if unit.endswith(small):
+            return 1000.0, unit.removesuffix(small) + large
+    return 1.0, unit
+
+
+def _note(ax: Axes, content: str, color: str) -> None:
+    """Small text inside the panel's top edge, readable over curves."""
+    box = {"facecolor": "white", "alpha": 0.8, "lw": 0, "pad": 1.0}
+    text = ax.text(0.5, 0.98, content, transform=ax.transAxes, fontsize=6.5, color=color)
+    text.set(ha="center", va="top", bbox=box)
+
+
+def _residual(ax: Axes, measurement: Measurement, load_case: str, response: str) -> None:
+    run = measurement.runs[load_case][0]
+    for side in (0, 1):
+        fit = measurement.trends[load_case][response][side]
+        samples = _changes(measurement, load_case, response, side)
+        ax.plot(
+            run.record.input,
+            samples - fit(run.record.input),
+            ".",
+            ms=1.2,
+            color=RESIDUAL[side],
+            rasterized=True,
+        )
+    degrees = ", ".join(str(t.degree) for t in measurement.trends[load_case][response])
+    _note(ax, f"trend degree {degrees}", TREND)
+    ax.axhline(0.0, color=TREND, lw=0.6)
+    low, high = ax.get_ylim()
+    ax.set_ylim(low, high + 0.15 * (high - low))
+
+
+def _same_scale(left: Axes, right: Axes) -> None:
+    limits = [*left.get_ylim(), *right.get_ylim()]
+    # Room for the note in the top edge.
+    limits.append(max(limits) + 0.12 * (max(limits) - min(limits)))
+    for ax in (left, right):
+        ax.set_ylim(min(limits), max(limits))
+
+
+def _legend(fig: Figure, runs: int) -> None:
+    handles = [
+        Line2D([], [], color=LOOP, lw=1, label="main run, samples"),
+        Line2D([], [], color=UNLOAD, label=f"input falling, {_runs(runs)}"),
+        Line2D([], [], color=LOAD, label=f"input rising, {_runs(runs)}"),
+        Line2D([], [], color=TREND, ls="--", label="polynomial trend"),
+        Line2D([], [], color=GRADIENT, lw=1.6, label="gradient at static"),
+        Patch(color=WINDOW, label="fit window"),
+        Line2D([], [], color=RESIDUAL[0], ls="", marker=".", label="residual left"),
+        Line2D([], [], color=RESIDUAL[1], ls="", marker=".", label="residual right"),
+    ]
+    fig.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, frameon=False)
+
+
+def _runs(runs: int) -> str:
+    return "one run" if runs == 1 else f"mean of {runs} runs"

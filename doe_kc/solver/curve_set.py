@@ -1,0 +1,56 @@
+"""From equilibria to curves: mean and half-width on a rising input grid, changes from static."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.curves import ANGLES, RESPONSE_UNITS, TYRE_LOAD, CaseCurves, CurveSet
+from doe_kc.solver.result import CaseSolution, Solution
+from doe_kc.typing import FloatArray
+
+
+def rising(case: CaseSolution) -> FloatArray:
+    """(n,) inputs of a load case, rising, each once."""
+    branches = {b.name: b for b in case.branches}
+    if "load" in branches:
+        return branches["load"].input
+    return np.concatenate([branches["neg"].input[:0:-1], branches["pos"].input])
+
+
+def mean_and_half_width(case: CaseSolution, values: list[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Mean of the falling and rising branch and half their difference, on `rising(case)`.
+
+    values: one array per branch of `case`, rows as in its input, any further axes.
+    """
+    by_name = {b.name: v for b, v in zip(case.branches, values, strict=True)}
+    if "load" in by_name:
+        falling, climbing = by_name["unload"][::-1], by_name["load"]
+        return (falling + climbing) / 2.0, (falling - climbing) / 2.0
+    both = np.concatenate([by_name["neg"][:0:-1], by_name["pos"]])
+    return both, np.zeros_like(both)
+
+
+def case_curves(solution: Solution, case: CaseSolution) -> CaseCurves:
+    """Curves of one load case; angles and wheel centre are changes from the mean curve at input 0."""
+    grid = rising(case)
+    mean, half = mean_and_half_width(case, [b.y for b in case.branches])
+    zero = int(np.argmin(np.abs(grid)))
+    means, halves = {}, {}
+    for response in RESPONSE_UNITS:
+        columns = [solution.column(f"{response}@{side}") for side in ("L", "R")]
+        curve = mean[:, columns].T
+        means[response] = curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
+        halves[response] = half[:, columns].T
+    return CaseCurves(case.load_case.id, case.load_case.unit, grid, means, halves)
+
+
+def curve_set(solution: Solution) -> CurveSet:
+    """Curves of every solved load case, with the static angles; ValueError without a static state."""
+    if solution.static is None:
+        raise ValueError("the axle has no static state, so it has no curves")
+    static = {
+        name: solution.static.y[[solution.column(f"{name}@{side}") for side in ("L", "R")]]
+        for name in ANGLES
+    }
+    cases = {ident: case_curves(solution, case) for ident, case in solution.cases.items()}
+    return CurveSet(solution.axle_name, cases, static, solution.half_track)

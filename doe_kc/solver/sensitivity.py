@@ -1,0 +1,202 @@
+"""Exact sensitivities of every equilibrium to every parameter, by the implicit function theorem.
+
+R(x, c, u, z) = 0 at an equilibrium, so dx = -J^-1 (R_c dc + R_u du + R_z dz). The constants c depend on
+the parameters; the controls u through the static state (pad heights, preload); the friction states z
+through the path, z_next = g(x, c, u, z), so they are carried along with their derivatives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import casadi as ca
+import numpy as np
+from scipy import sparse
+from scipy.linalg import lapack
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import internal_gradient
+from doe_kc.solver.kernel import Buffered, kernel
+from doe_kc.solver.load_cases import LoadCase, StaticPads
+from doe_kc.solver.result import BranchSolution, Solution, StaticState
+from doe_kc.solver.static import control_matrix
+from doe_kc.solver.topology import Topology
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Sensitivities:
+    """Derivatives of outputs to parameters, per unit of the parameter.
+
+    paths: (np,). static: (ny, np). branches: load case -> one (n, ny, np) per branch, rows as in the
+    branch's input. Output columns as in `Solution.output_names`.
+    """
+
+    paths: tuple[str, ...]
+    static: FloatArray
+    branches: Mapping[str, tuple[FloatArray, ...]]
+
+
+@lru_cache(maxsize=16)
+def _blocks(topology: Topology) -> Mapping[str, ca.Function]:
+    """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on."""
+    eq = kernel(topology).equations
+    symbols = [eq.x, eq.c, eq.u, eq.z]
+    parts = {"R": eq.residual, "Y": eq.outputs, "Z": eq.next_state}
+    by = {"x": eq.x, "c": eq.c, "u": eq.u, "z": eq.z}
+    out = {
+        f"{part}_{name}": ca.Function(
+            f"{part}_{name}_block", symbols, [ca.jacobian(expression, symbol)], {"cse": True}
+        )
+        for part, expression in parts.items()
+        for name, symbol in by.items()
+    }
+    out["constants"] = ca.Function(
+        "constants_block", [eq.p], [ca.jacobian(eq.constants, eq.p)], {"cse": True}
+    )
+    return out
+
+
+class _Matrix:
+    """A sparse derivative block evaluated through buffers."""
+
+    def __init__(self, function: ca.Function) -> None:
+        pattern = function.sparsity_out(0)
+        self._evaluate = Buffered(function)
+        self._colind, self._row = np.array(pattern.colind()), np.array(pattern.row())
+        self._shape = pattern.shape
+
+    def __call__(self, *arguments: FloatArray) -> sparse.csc_array:
+        values = self._evaluate(*arguments).copy()
+        return sparse.csc_array((values, self._row, self._colind), shape=self._shape)
+
+
+def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
+    """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
+
+    ValueError when the solution has no static state; cases that it lacks are left out.
+    """
+    if solution.static is None:
+        raise ValueError("a solution without a static state has no sensitivities")
+    return _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+
+
+class _Differentiator:
+    def __init__(self, axle: Axle, static: StaticState, paths: tuple[str, ...]) -> None:
+        self._axle, self._static, self._paths = axle, static, paths
+        self._kernel = kernel(axle.topology)
+        self._c = self._kernel.constant_values(dict(axle.values))
+        functions = _blocks(axle.topology)
+        self._block = {n: _Matrix(f) for n, f in functions.items() if n != "constants"}
+        self._dp = self._parameter_directions()
+        p = np.array([axle.values[n] for n in self._kernel.equations.parameter_names])
+        self._dc = _Matrix(functions["constants"])(p) @ self._dp
+        self._outputs = self._kernel.equations.output_names
+
+    def _parameter_directions(self) -> FloatArray:
+        """(internal parameters, paths): how internal values move with each path."""
+        names = {n: i for i, n in enumerate(self._kernel.equations.parameter_names)}
+        out = np.zeros((len(names), len(self._paths)))
+        for column, path in enumerate(self._paths):
+            for internal, weight in internal_gradient(self._axle, path).items():
+                if internal in names:
+                    out[names[internal], column] = weight
+        return out
+
+    def run(self, solution: Solution) -> Sensitivities:
+        dx, dy, dz, datum = self._static_state()
+        branches = {
+            ident: self._case(case.load_case, case.branches, dx, dy, dz, datum)
+            for ident, case in solution.cases.items()
+        }
+        return Sensitivities(self._paths, dy, branches)
+
+    def _point(
+        self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(dx, dy, dz_next) at one equilibrium; z, dz: friction state before it."""
+        at = (x, self._c, u, z)
+        block = self._block
+        right = block["R_c"](*at) @ self._dc + block["R_u"](*at) @ du
+        if self._kernel.nz:
+            right += block["R_z"](*at) @ dz
+        scale = self._kernel.scale[:, None]
+        matrix = block["R_x"](*at).toarray(order="F") / scale
+        _, _, solved, info = lapack.dgesv(matrix, -right / scale, overwrite_a=True, overwrite_b=True)
+        if info:
+            raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists")
+
+        def total(name: str) -> FloatArray:
+            change = block[f"{name}_x"](*at) @ solved + block[f"{name}_c"](*at) @ self._dc
+            change += block[f"{name}_u"](*at) @ du
+            return np.asarray(change + block[f"{name}_z"](*at) @ dz if self._kernel.nz else change)
+
+        return solved, total("Y"), total("Z") if self._kernel.nz else dz
+
+    def _static_state(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+        """Derivatives of the static state and of its datum (pads, wheel-centre heights, preload)."""
+        k, s, count = self._kernel, self._static, len(self._paths)
+        no_z, no_du = np.zeros((k.nz, count)), np.zeros((k.nu, count))
+        z0 = np.zeros(k.nz)
+        dx0, _, _ = self._point(s.x0, s.u0, z0, no_du, no_z)
+        raised = np.array(
+            [internal_gradient(self._axle, p).get("ride_height", 0.0) for p in self._paths]
+        )
+        du = no_du.copy()
+        for control, unknown, shift in (
+            ("pad_L", "pad L", raised),
+            ("pad_R", "pad R", raised),
+            ("preload", "preload", 0.0),
+        ):
+            du[k.equations.control_names.index(control)] = dx0[k.index(unknown)] + shift
+        dx, dy, dz = self._point(s.x, s.u, z0, du, no_z)
+        heights = [dy[self._outputs.index(f"wc_z@{side}")] for side in ("L", "R")]
+        loads = [dy[self._outputs.index(f"tyre_load@{side}")] for side in ("L", "R")]
+        pads = [du[k.equations.control_names.index(f"pad_{side}")] for side in ("L", "R")]
+        preload = du[k.equations.control_names.index("preload")]
+        return dx, dy, dz, np.array([*pads, *heights, *loads, preload])
+
+    def _case(
+        self,
+        case: LoadCase,
+        branches: tuple[BranchSolution, ...],
+        dx0: FloatArray,
+        dy0: FloatArray,
+        dz0: FloatArray,
+        datum: FloatArray,
+    ) -> tuple[FloatArray, ...]:
+        out: list[FloatArray] = []
+        loop = self._kernel.topology.frictional
+        dz, dy_start = dz0, dy0
+        for branch in branches:
+            if not (loop and out):
+                dz, dy_start = dz0, dy0
+            du = self._control_gradient(case, branch.input) @ datum
+            rows = [dy_start]
+            for step in range(1, len(branch.input)):
+                _, dy, dz = self._point(branch.x[step], branch.u[step], branch.z[step - 1], du[step], dz)
+                rows.append(dy)
+            dy_start = rows[-1]
+            out.append(np.array(rows))
+        return tuple(out)
+
+    def _control_gradient(self, case: LoadCase, inputs: FloatArray) -> FloatArray:
+        """(n, nu, 7) derivative of the controls to the datum; they are affine in it."""
+        pads = self._static.pads
+        base = self._controls(case, inputs, pads)
+        flat = [*pads.pad, *pads.wheel_centre_z, *pads.tyre_load, pads.preload]
+        columns = []
+        for i in range(len(flat)):
+            moved = list(flat)
+            moved[i] += 1.0
+            shifted = StaticPads(
+                (moved[0], moved[1]), (moved[2], moved[3]), (moved[4], moved[5]), moved[6]
+            )
+            columns.append(self._controls(case, inputs, shifted) - base)
+        return np.stack(columns, axis=-1)
+
+    def _controls(self, case: LoadCase, inputs: FloatArray, pads: StaticPads) -> FloatArray:
+        values = {"preload": pads.preload, **case.controls(inputs, pads)}
+        return control_matrix(self._kernel, values, len(inputs))
