@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from doe_kc.axle.model import (
@@ -123,7 +123,7 @@ def _parameter(axle: Axle, path: str, kind: _Kind) -> Parameter:
 
 def is_active(axle: Axle, path: str) -> bool:
     """Whether the axle's equations contain the parameter."""
-    if path.startswith("strut."):
+    if path in {"strut.bending", "strut.torsion"}:
         return axle.topology.strut_bending
     if path.startswith("steer_arm.") or path.split(".")[0] == "SAH":
         return axle.topology.steer_arm
@@ -157,7 +157,15 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
             if follower and (follower in values or f"{_prefix(path)}{follower}" in values):
                 continue
             result[internal] = result.get(internal, axle.values[internal]) + change
-    return axle.changed(result)
+    return _with_matching_topology(axle.changed(result))
+
+
+def _with_matching_topology(axle: Axle) -> Axle:
+    """A strut bends once its flexibility is above zero, and is rigid at zero."""
+    bends = max(axle.values["strut.flexibility@L"], axle.values["strut.flexibility@R"]) > 0
+    if bends == axle.topology.strut_bending:
+        return axle
+    return replace(axle, topology=replace(axle.topology, strut_bending=bends))
 
 
 def _prefix(path: str) -> str:
@@ -195,11 +203,17 @@ def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[s
                 yield f"{follower}.{axis}@{each}", change
 
 
+def _not_below_zero(name: str) -> bool:
+    return name in {"strut.flexibility", "arb.rate", "damper.gas_force"} or ".cubic." in name
+
+
 def check_value(path: str, value: float, source: str) -> None:
     """InputError for a value that no axle can have."""
     if not math.isfinite(value):
         raise InputError(f"{source}: {path} = {value}, expected a finite number.")
     name = path.removeprefix(_prefix(path))
+    if value < 0 and _not_below_zero(name):
+        raise InputError(f"{source}: {path} = {value:g}, expected a number >= 0.")
     if value <= 0 and _must_be_positive(name):
         raise InputError(
             f"{source}: {path} = {value:g}, expected a number > 0; "

@@ -1,4 +1,4 @@
-"""Roll motion: gradients per metre of wheel travel in the chassis frame, roll rate per mm of pad travel."""
+"""Roll motion: gradients per metre of wheel travel in the body, roll rate per mm of pad travel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Static wheel angles of the left wheel at ride height."""
+"""Static wheel angles of the left wheel at ride height; caster as the knuckle carries it."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
     for ax in axes[-1]:
         label(ax, f"{run.record.case.channel} / {case.input_unit}", None)
     for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
-        ax.set_title(title)
+        ax.set_title(title, fontsize=9)
     fig.suptitle(f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11)
     _legend(fig, len(measurement.runs[load_case]))
     return fig

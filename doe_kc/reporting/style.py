@@ -89,13 +89,12 @@ def save(fig: Figure, path_without_suffix: Path) -> tuple[Path, Path]:
     Raises RunError naming the path when it cannot be written (full disk, read-only folder).
     """
     # Not Path.with_suffix: it would cut a name such as "run 1.5".
-    name = path_without_suffix.name
-    name = path_without_suffix.name
     # Not Path.with_suffix: it would cut a name such as "run 1.5".
+    name = path_without_suffix.name
     png, svg = (path_without_suffix.with_name(f"{name}.{kind}") for kind in ("png", "svg"))
     _lay_out(fig)
-    _write(png, lambda: FigureCanvasAgg(fig).print_png(png, metadata={"Software": "doe_kc"}))
-    _write(svg, lambda: FigureCanvasSVG(fig).print_svg(svg, metadata={"Date": None}))
+    _write(png, lambda: FigureCanvasAgg(fig).print_png(png, metadata={"Software": "doe_kc"}))  # type: ignore[no-untyped-call]
+    _write(svg, lambda: FigureCanvasSVG(fig).print_svg(svg, metadata={"Date": None}))  # type: ignore[no-untyped-call]
     return png, svg
 
 

@@ -1,0 +1,160 @@
+"""Which parameters set a characteristic, and which characteristics move together (the thesis's Table 2).
+
+Reference: E. Wendeberg, Using optimization to auto-correlate suspension characteristics to K&C
+measurements, Chalmers 2013, section 5.2.1 and Table 2.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.spatial.distance import squareform
+
+from doe_kc.axle.parameters import Parameter
+from doe_kc.characteristics import Characteristic
+from doe_kc.influence.result import Influence
+from doe_kc.typing import FloatArray
+
+STRONG_PERCENT = 20.0
+"""Entries below this share of a column's peak are left out."""
+AT_MOST = 8
+TOGETHER = 0.9
+"""|correlation| of two columns from which they count as one."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """One strong entry. percent: of the characteristic's largest entry; + = both grow together."""
+
+    parameter: str
+    characteristic: str
+    percent: float
+
+
+@dataclass(frozen=True)
+class CharacteristicLinks:
+    """The strongest parameters of a characteristic, strongest first."""
+
+    characteristic: Characteristic
+    links: tuple[Link, ...]
+
+
+@dataclass(frozen=True)
+class ParameterLinks:
+    """The characteristics that a parameter moves most, strongest first."""
+
+    parameter: Parameter
+    links: tuple[Link, ...]
+
+
+@dataclass(frozen=True)
+class Together:
+    """Characteristics of which every pair is correlated over the parameters: correlating one does for all.
+
+    signs: +1 moves as the first of the group does, -1 against it. weakest: smallest |r| of its pairs.
+    """
+
+    characteristics: tuple[str, ...]
+    signs: tuple[int, ...]
+    weakest: float
+
+
+@dataclass(frozen=True)
+class Relations:
+    """Table 2 of a study. threshold: percent from which a link is listed."""
+
+    by_characteristic: tuple[CharacteristicLinks, ...]
+    by_parameter: tuple[ParameterLinks, ...]
+    together: tuple[Together, ...]
+    threshold: float
+
+    def to_frame(self) -> pd.DataFrame:
+        """One row per characteristic and link: characteristic, unit, rank, parameter, percent."""
+        rows = [
+            (entry.characteristic.id, entry.characteristic.unit, rank, link.parameter, link.percent)
+            for entry in self.by_characteristic
+            for rank, link in enumerate(entry.links, start=1)
+        ]
+        return pd.DataFrame(rows, columns=["characteristic", "unit", "rank", "parameter", "percent"])
+
+
+def relations(
+    influence: Influence,
+    *,
+    threshold: float = STRONG_PERCENT,
+    at_most: int = AT_MOST,
+    together: float = TOGETHER,
+) -> Relations:
+    """Strongest links both ways, and groups of characteristics with |r| >= `together` in every pair.
+
+    threshold: percent of the column's peak; at_most: links listed per characteristic and per parameter.
+    """
+    percent = influence.percent
+    return Relations(
+        by_characteristic=tuple(
+            CharacteristicLinks(entry, _strongest(influence, percent, None, j, threshold, at_most))
+            for j, entry in enumerate(influence.characteristics)
+        ),
+        by_parameter=tuple(
+            ParameterLinks(entry, _strongest(influence, percent, i, None, threshold, at_most))
+            for i, entry in enumerate(influence.parameters)
+        ),
+        together=tuple(_groups(influence, together)),
+        threshold=threshold,
+    )
+
+
+def _strongest(
+    influence: Influence,
+    percent: FloatArray,
+    row: int | None,
+    column: int | None,
+    threshold: float,
+    at_most: int,
+) -> tuple[Link, ...]:
+    line = percent[row] if row is not None else percent[:, column]
+    order = np.argsort(-np.abs(line), kind="stable")[:at_most]
+    return tuple(
+        Link(
+            parameter=influence.parameters[row if row is not None else k].path,
+            characteristic=influence.characteristics[column if column is not None else k].id,
+            percent=float(line[k]),
+        )
+        for k in map(int, order)
+        if abs(line[k]) >= threshold
+    )
+
+
+def column_correlation(values: FloatArray) -> FloatArray:
+    """(k, k) Pearson correlation of the columns; 0 with a column that does not vary, 1 on the diagonal."""
+    centred = np.nan_to_num(values) - np.nan_to_num(values).mean(axis=0)
+    norm = np.linalg.norm(centred, axis=0)
+    scaled = np.divide(centred, norm, out=np.zeros_like(centred), where=norm > 0)
+    out = np.clip(scaled.T @ scaled, -1.0, 1.0)
+    np.fill_diagonal(out, 1.0)
+    return np.asarray(out)
+
+
+def _groups(influence: Influence, together: float) -> Iterator[Together]:
+    r = column_correlation(influence.absolute)
+    for members in _clusters(r, together):
+        yield Together(
+            characteristics=tuple(influence.characteristics[j].id for j in members),
+            signs=tuple(1 if r[members[0], j] >= 0 else -1 for j in members),
+            weakest=float(min(abs(r[a, b]) for a in members for b in members)),
+        )
+
+
+def _clusters(r: FloatArray, together: float) -> list[Sequence[int]]:
+    """Groups of two and more by complete linkage, so that no pair of a group is below the limit."""
+    if len(r) < 2:
+        return []
+    distance = squareform(1.0 - np.abs(r), checks=False)
+    # A pair exactly at the limit belongs together, whatever the rounding of 1 - |r|.
+    names = fcluster(linkage(distance, "complete"), 1.0 - together + 1e-12, "distance")
+    clusters = [np.flatnonzero(names == name).tolist() for name in dict.fromkeys(names.tolist())]
+    return [c for c in clusters if len(c) > 1]

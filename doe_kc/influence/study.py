@@ -1,0 +1,85 @@
+"""Runs the influence study: one parameter at a time by the true solver, and exact sensitivities beside."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import Parameter, design_parameters, with_values
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
+from doe_kc.errors import RunError
+from doe_kc.influence.result import Influence
+from doe_kc.sampling.batch import Evaluation, evaluate_all
+from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
+from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.suite import solve
+from doe_kc.typing import FloatArray
+
+NEARLY_RIGID = 1e-3
+"""Flexibility at which the sensitivity of a rigid strut is taken: its stiffness is infinite at zero."""
+
+
+def influence_study(
+    axle: Axle,
+    parameters: Sequence[Parameter] | None = None,
+    characteristics: Sequence[Characteristic] | None = None,
+    *,
+    workers: int | None = None,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Influence:
+    """Central one-at-a-time runs of +-1 mm and +-10 % and exact sensitivities of the nominal axle.
+
+    parameters: all design parameters by default; characteristics: the 21 columns of Appendix C. An axle
+    without equilibrium leaves nan and its reason in `failures`. RunError when the nominal axle has none.
+    """
+    started = time.perf_counter()
+    rows = list(parameters) if parameters is not None else design_parameters(axle)
+    columns = list(characteristics) if characteristics is not None else appendix_c()
+    evaluations = evaluate_all(
+        axle, list(one_at_a_time(rows).rows()), workers=workers, progress=progress
+    )
+    if evaluations[0].reason:
+        raise RunError(f"the nominal axle cannot be solved: {evaluations[0].reason}")
+    index = [list(CHARACTERISTICS).index(c.id) for c in columns]
+    values = np.array([e.characteristics[index] for e in evaluations])
+    plus, minus = values[1::2], values[2::2].copy()
+    for i, parameter in enumerate(rows):
+        if is_one_sided(parameter):  # so that (plus - minus) / 2 is the whole one-sided change
+            minus[i] = 2.0 * values[0] - plus[i]
+    return Influence(
+        parameters=tuple(rows),
+        characteristics=tuple(columns),
+        baseline=values[0],
+        plus=plus,
+        minus=minus,
+        exact=exact_changes(axle, rows, columns),
+        seconds=time.perf_counter() - started,
+        failures=_failures(rows, evaluations),
+    )
+
+
+def exact_changes(
+    axle: Axle, rows: Sequence[Parameter], columns: Sequence[Characteristic]
+) -> FloatArray:
+    """(parameters, characteristics) exact derivative times the parameter's step."""
+    paths = [p.path for p in rows]
+    gradients = characteristic_gradients(axle, solve(axle), paths, columns).T
+    if "strut.flexibility" in paths and not axle.topology.strut_bending:
+        bending = with_values(axle, {"strut.flexibility": NEARLY_RIGID})
+        solution = solve(bending, compiled=False)
+        gradients[paths.index("strut.flexibility")] = characteristic_gradients(
+            bending, solution, ["strut.flexibility"], columns
+        )[:, 0]
+    return gradients * np.array([p.step for p in rows])[:, None]
+
+
+def _failures(rows: Sequence[Parameter], evaluations: Sequence[Evaluation]) -> dict[str, str]:
+    out = {}
+    for i, parameter in enumerate(rows):
+        reasons = [e.reason for e in evaluations[1 + 2 * i : 3 + 2 * i] if e.reason]
+        if reasons:
+            out[parameter.path] = reasons[0]
+    return out

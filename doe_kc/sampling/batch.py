@@ -1,0 +1,94 @@
+"""True-solver evaluations of many designs, in this process or over worker processes."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import with_values
+from doe_kc.characteristics import CHARACTERISTICS, reduce_all
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import library_for, solve
+from doe_kc.typing import FloatArray
+
+CHUNK = 8
+Values = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """characteristics: (n_char,) in the order of the registry, nan after a failure; reason: why, or empty."""
+
+    characteristics: FloatArray
+    reason: str
+
+
+def evaluate(axle: Axle, values: Values) -> Evaluation:
+    """One design: failure is a value."""
+    changed = with_values(axle, values)
+    same = changed.topology == axle.topology
+    solution = solve(changed, throw=False, compiled=None if same else False)
+    if solution.failure is not None:
+        return Evaluation(np.full(len(CHARACTERISTICS), np.nan), str(solution.failure))
+    return Evaluation(np.array(list(reduce_all(curve_set(solution)).values())), "")
+
+
+def evaluate_all(
+    axle: Axle,
+    designs: Sequence[Values],
+    *,
+    workers: int | None = None,
+    progress: Callable[[int], None] = lambda _: None,
+) -> list[Evaluation]:
+    """Every design, in order; `progress` is told how many more are done.
+
+    workers: processes, default one per core; 1 stays in this process.
+    """
+    count = workers if workers is not None else available_cores()
+    if count <= 1 or len(designs) < 2 * CHUNK:
+        results = []
+        for values in designs:
+            results.append(evaluate(axle, values))
+            progress(1)
+        return results
+    library_for(axle.topology, None)
+    return list(_in_processes(axle, designs, count, progress))
+
+
+def available_cores() -> int:
+    """Cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+def _in_processes(
+    axle: Axle, designs: Sequence[Values], workers: int, progress: Callable[[int], None]
+) -> Iterator[Evaluation]:
+    chunks = [list(designs[i : i + CHUNK]) for i in range(0, len(designs), CHUNK)]
+    with ProcessPoolExecutor(workers, mp_context=start_context()) as pool:
+        futures = [pool.submit(_chunk, axle, chunk) for chunk in chunks]
+        try:
+            for future in futures:
+                results = future.result()
+                progress(len(results))
+                yield from results
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def start_context() -> multiprocessing.context.BaseContext:
+    """Fork where the platform allows it: workers inherit the assembled equations."""
+    method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
+    return multiprocessing.get_context(method)
+
+
+def _chunk(axle: Axle, designs: list[Values]) -> list[Evaluation]:
+    return [evaluate(axle, values) for values in designs]
