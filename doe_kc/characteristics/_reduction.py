@@ -67,20 +67,24 @@ def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None 
     return entry.scale * slope(x, case.mean[entry.response][LEFT][inside])
 
 
-def reduce_all(curves: CurveSet) -> dict[str, float]:
-    """Every registered characteristic by id."""
-    return {ident: reduce_one(entry, curves) for ident, entry in CHARACTERISTICS.items()}
+def reduce_all(curves: CurveSet, windows: Mapping[str, float] | None = None) -> dict[str, float]:
+    """Every registered characteristic by id; windows: load case -> half-width in place of the default."""
+    chosen = windows or {}
+    return {
+        ident: reduce_one(entry, curves, window=chosen.get(entry.load_case))
+        for ident, entry in CHARACTERISTICS.items()
+    }
 
 
 def reduction_gradient(
-    entry: Characteristic, case: CaseCurves, half_track: float
+    entry: Characteristic, case: CaseCurves, half_track: float, *, window: float | None = None
 ) -> Mapping[str, FloatArray]:
     """Derivative of a gradient characteristic to the left curves: name -> (n,), zero outside the window.
 
     With b = Sxy / Sxx: db = sum (dx_i dy_i + (dy_i - 2 b dx_i) dx_i') / Sxx. Names are the response,
     and `wc_z` when the abscissa is the wheel's travel.
     """
-    inside = fit_window(case)
+    inside = fit_window(case, window)
     x = abscissa(entry, case, half_track)[inside]
     y = case.mean[entry.response][LEFT][inside]
     dx, dy = x - x.mean(), y - y.mean()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -28,6 +28,7 @@ def influence_study(
     characteristics: Sequence[Characteristic] | None = None,
     *,
     workers: int | None = None,
+    windows: Mapping[str, float] | None = None,
     progress: Callable[[int], None] = lambda _: None,
 ) -> Influence:
     """Central one-at-a-time runs of +-1 mm and +-10 % and exact sensitivities of the nominal axle.
@@ -39,7 +40,7 @@ def influence_study(
     rows = list(parameters) if parameters is not None else design_parameters(axle)
     columns = list(characteristics) if characteristics is not None else appendix_c()
     evaluations = evaluate_all(
-        axle, list(one_at_a_time(rows).rows()), workers=workers, progress=progress
+        axle, list(one_at_a_time(rows).rows()), workers=workers, windows=windows, progress=progress
     )
     if evaluations[0].reason:
         raise RunError(f"the nominal axle cannot be solved: {evaluations[0].reason}")
@@ -55,23 +56,26 @@ def influence_study(
         baseline=values[0],
         plus=plus,
         minus=minus,
-        exact=exact_changes(axle, rows, columns),
+        exact=exact_changes(axle, rows, columns, windows),
         seconds=time.perf_counter() - started,
         failures=_failures(rows, evaluations),
     )
 
 
 def exact_changes(
-    axle: Axle, rows: Sequence[Parameter], columns: Sequence[Characteristic]
+    axle: Axle,
+    rows: Sequence[Parameter],
+    columns: Sequence[Characteristic],
+    windows: Mapping[str, float] | None = None,
 ) -> FloatArray:
     """(parameters, characteristics) exact derivative times the parameter's step."""
     paths = [p.path for p in rows]
-    gradients = characteristic_gradients(axle, solve(axle), paths, columns).T
+    gradients = characteristic_gradients(axle, solve(axle), paths, columns, windows=windows).T
     if "strut.flexibility" in paths and not axle.topology.strut_bending:
         bending = with_values(axle, {"strut.flexibility": NEARLY_RIGID})
         solution = solve(bending, compiled=False)
         gradients[paths.index("strut.flexibility")] = characteristic_gradients(
-            bending, solution, ["strut.flexibility"], columns
+            bending, solution, ["strut.flexibility"], columns, windows=windows
         )[:, 0]
     return gradients * np.array([p.step for p in rows])[:, None]
 

@@ -9,18 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.errors import InputError
+from doe_kc.measurement.white_noise import white_sd
 from doe_kc.typing import FloatArray
 
 IndexArray = NDArray[np.intp]
 
 REVERSAL = 0.05
 """Largest reversal inside a branch, fraction of the input's range; more is a turning point."""
-FULL = 0.90
-"""A branch must cover this fraction of the range; the last sample is short of +A by one step."""
+SHORT = 0.05
+"""Fraction of the range that a branch may miss; three steps on coarse loops (end short by one)."""
 RIGHT_WAY = 0.95
 """Fraction of steps that must go the branch's way."""
 STEPS_PER_BRANCH = 64
 """Steps are counted at this resolution at least, so that noise on slow loops is no reversal."""
+NOISE_STEP = 0.01
+"""Backward steps within the sensor's noise are none, if that is below this fraction of the range."""
 
 
 @dataclass(frozen=True)
@@ -37,16 +40,11 @@ def split_loop(values: FloatArray, *, label: str) -> Loop:
     A single cycle may start anywhere: it is closed by its periodicity. label: file for the message.
     """
     span = float(np.ptp(values))
-    order = np.arange(values.size)
-    branches = _last_cycle(values, order, span)
-    if branches is None and _closes(values, span):
-        order = np.roll(order, -int(np.argmax(values)))
-        branches = _last_cycle(values[order], order, span)
+    branches = _one_cycle(values, span) or _last_cycle(values, span)
     if branches is None:
         raise InputError(_why_not(values, span, label))
-    loop = _closed(values, branches, span)
-    _check_monotone(values, loop, label)
-    return loop
+    _check_monotone(values, branches, label)
+    return branches
 
 
 def turning_points(values: FloatArray, threshold: float) -> list[int]:
@@ -66,15 +64,28 @@ def turning_points(values: FloatArray, threshold: float) -> list[int]:
     return [*points, high if way > 0 else low]
 
 
-def _last_cycle(values: FloatArray, order: IndexArray, span: float) -> Loop | None:
-    """The last two neighbouring segments that each cover the range, as indices into the record."""
+def _one_cycle(values: FloatArray, span: float) -> Loop | None:
+    """Branches of a record that is one period, begun at its largest input and closed by it."""
+    if not _closes(values, span):
+        return None
+    order = np.roll(np.arange(values.size), -int(np.argmax(values)))
+    order = np.append(order, order[0])
+    points = turning_points(values[order], REVERSAL * span)
+    if len(points) != 3:
+        return None
+    return Loop(order[: points[1] + 1], order[points[1] :])
+
+
+def _last_cycle(values: FloatArray, span: float) -> Loop | None:
+    """The last two neighbouring segments that each cover the range."""
     points = turning_points(values, REVERSAL * span)
     segments = list(pairwise(points))
-    full = [abs(values[b] - values[a]) >= FULL * span for a, b in segments]
+    enough = (1.0 - max(SHORT, 6.0 / values.size)) * span
+    full = [abs(values[b] - values[a]) >= enough for a, b in segments]
     for i in range(len(segments) - 2, -1, -1):
         if full[i] and full[i + 1]:
-            first, second = (order[a : b + 1] for a, b in segments[i : i + 2])
-            falling = values[segments[i][1]] < values[segments[i][0]]
+            first, second = (np.arange(a, b + 1) for a, b in segments[i : i + 2])
+            falling = values[first[-1]] < values[first[0]]
             return Loop(first, second) if falling else Loop(second, first)
     return None
 
@@ -83,16 +94,6 @@ def _closes(values: FloatArray, span: float) -> bool:
     """Whether the record is one whole period: the step from last to first sample is like the others."""
     step = 2.0 * span / values.size
     return bool(abs(values[0] - values[-1]) <= 3.0 * step + 0.01 * span)
-
-
-def _closed(values: FloatArray, loop: Loop, span: float) -> Loop:
-    """Give the last branch of a one-cycle record the first sample as its end."""
-    if loop.unload[0] == loop.load[-1] or not _closes(values, span):
-        return loop
-    used = {int(loop.unload[0]), int(loop.load[-1])}
-    if used == {0, values.size - 1} and loop.load[-1] == values.size - 1:
-        return Loop(loop.unload, np.append(loop.load, 0))
-    return loop
 
 
 def _why_not(values: FloatArray, span: float, label: str) -> str:
@@ -111,10 +112,11 @@ def _why_not(values: FloatArray, span: float, label: str) -> str:
 
 
 def _check_monotone(values: FloatArray, loop: Loop, label: str) -> None:
+    noise = min(4.0 * white_sd(values), NOISE_STEP * float(np.ptp(values)))
     for branch, way, name in ((loop.unload, -1.0, "falling"), (loop.load, 1.0, "rising")):
         stride = max(1, branch.size // STEPS_PER_BRANCH)
         sampled = branch[::stride]
-        wrong = way * np.diff(values[sampled]) <= 0.0
+        wrong = way * np.diff(values[sampled]) <= -noise
         if wrong.mean() > 1.0 - RIGHT_WAY:
             at = int(sampled[int(np.flatnonzero(wrong)[0]) + 1])
             raise InputError(

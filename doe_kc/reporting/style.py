@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from doe_kc.errors import RunError
 
@@ -61,7 +62,7 @@ def figure(
     size: tuple[float, float] = A4,
     width_ratios: Sequence[float] | None = None,
     share_x: bool = True,
-) -> tuple[Figure, np.ndarray[tuple[int, int], np.dtype[np.object_]]]:
+) -> tuple[Figure, NDArray[Any]]:
     """A figure and its (rows, columns) axes in the product's style, laid out so that nothing is cut off.
 
     size: inches. share_x: one horizontal axis for all panels.

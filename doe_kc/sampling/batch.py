@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Iterator, Sequence
+import signal
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 
@@ -19,6 +20,7 @@ from doe_kc.typing import FloatArray
 
 CHUNK = 8
 Values = dict[str, float]
+Windows = Mapping[str, float] | None
 
 
 @dataclass(frozen=True)
@@ -29,14 +31,14 @@ class Evaluation:
     reason: str
 
 
-def evaluate(axle: Axle, values: Values) -> Evaluation:
+def evaluate(axle: Axle, values: Values, windows: Windows = None) -> Evaluation:
     """One design: failure is a value."""
     changed = with_values(axle, values)
     same = changed.topology == axle.topology
     solution = solve(changed, throw=False, compiled=None if same else False)
     if solution.failure is not None:
         return Evaluation(np.full(len(CHARACTERISTICS), np.nan), str(solution.failure))
-    return Evaluation(np.array(list(reduce_all(curve_set(solution)).values())), "")
+    return Evaluation(np.array(list(reduce_all(curve_set(solution), windows).values())), "")
 
 
 def evaluate_all(
@@ -44,21 +46,22 @@ def evaluate_all(
     designs: Sequence[Values],
     *,
     workers: int | None = None,
+    windows: Windows = None,
     progress: Callable[[int], None] = lambda _: None,
 ) -> list[Evaluation]:
     """Every design, in order; `progress` is told how many more are done.
 
-    workers: processes, default one per core; 1 stays in this process.
+    workers: processes, default one per core; 1 stays in this process. windows: as in `reduce_all`.
     """
     count = workers if workers is not None else available_cores()
     if count <= 1 or len(designs) < 2 * CHUNK:
         results = []
         for values in designs:
-            results.append(evaluate(axle, values))
+            results.append(evaluate(axle, values, windows))
             progress(1)
         return results
     library_for(axle.topology, None)
-    return list(_in_processes(axle, designs, count, progress))
+    return list(_in_processes(axle, designs, count, windows, progress))
 
 
 def available_cores() -> int:
@@ -69,11 +72,17 @@ def available_cores() -> int:
 
 
 def _in_processes(
-    axle: Axle, designs: Sequence[Values], workers: int, progress: Callable[[int], None]
+    axle: Axle,
+    designs: Sequence[Values],
+    workers: int,
+    windows: Windows,
+    progress: Callable[[int], None],
 ) -> Iterator[Evaluation]:
     chunks = [list(designs[i : i + CHUNK]) for i in range(0, len(designs), CHUNK)]
-    with ProcessPoolExecutor(workers, mp_context=start_context()) as pool:
-        futures = [pool.submit(_chunk, axle, chunk) for chunk in chunks]
+    with ProcessPoolExecutor(
+        workers, mp_context=start_context(), initializer=_leave_interrupts_to_parent
+    ) as pool:
+        futures = [pool.submit(_chunk, axle, chunk, windows) for chunk in chunks]
         try:
             for future in futures:
                 results = future.result()
@@ -90,5 +99,9 @@ def start_context() -> multiprocessing.context.BaseContext:
     return multiprocessing.get_context(method)
 
 
-def _chunk(axle: Axle, designs: list[Values]) -> list[Evaluation]:
-    return [evaluate(axle, values) for values in designs]
+def _leave_interrupts_to_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _chunk(axle: Axle, designs: list[Values], windows: Windows) -> list[Evaluation]:
+    return [evaluate(axle, values, windows) for values in designs]

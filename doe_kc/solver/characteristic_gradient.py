@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -21,6 +21,8 @@ def characteristic_gradients(
     solution: Solution,
     paths: Sequence[str],
     characteristics: Sequence[Characteristic] | None = None,
+    *,
+    windows: Mapping[str, float] | None = None,
 ) -> FloatArray:
     """(characteristics, paths) derivatives, unit of the characteristic per unit of the parameter.
 
@@ -29,7 +31,10 @@ def characteristic_gradients(
     entries = list(CHARACTERISTICS.values()) if characteristics is None else characteristics
     exact, curves = sensitivities(axle, solution, paths), curve_set(solution)
     half_track = np.array([_half_track_gradient(axle, path) for path in paths])
-    return np.array([_one(e, solution, curves, exact, half_track) for e in entries])
+    chosen = windows or {}
+    return np.array(
+        [_one(e, solution, curves, exact, half_track, chosen.get(e.load_case)) for e in entries]
+    )
 
 
 def _half_track_gradient(axle: Axle, path: str) -> float:
@@ -43,6 +48,7 @@ def _one(
     curves: CurveSet,
     exact: Sensitivities,
     half_track: FloatArray,
+    window: float | None,
 ) -> FloatArray:
     if entry.kind == "static":
         return exact.static[solution.column(f"{entry.response}@L")]
@@ -53,8 +59,8 @@ def _one(
         solution.cases[entry.load_case], list(exact.branches[entry.load_case])
     )
     gradient = np.zeros(len(exact.paths))
-    for name, weight in reduction_gradient(entry, case, curves.half_track).items():
+    for name, weight in reduction_gradient(entry, case, curves.half_track, window=window).items():
         gradient += weight @ means[:, solution.column(f"{name}@L")]
     if entry.abscissa == "pad_travel" and entry.load_case == "roll" and case.input_unit == "deg":
-        gradient -= reduce_one(entry, curves) / curves.half_track * half_track
+        gradient -= reduce_one(entry, curves, window=window) / curves.half_track * half_track
     return gradient

@@ -79,7 +79,10 @@ def record_columns(
     curves = reference("nominal").cases[load_case]
     relative = triangle(samples)
     falling = np.where(np.arange(samples) < samples // 2, 1.0, -1.0)
-    out = {"time [s]": np.arange(samples) * 0.1, f"{case.channel} [{case.unit}]": case.amplitude * relative}
+    out = {
+        "time [s]": np.arange(samples) * 0.1,
+        f"{case.channel} [{case.unit}]": case.amplitude * relative,
+    }
     rng = rng or np.random.default_rng(0)
     for side, name in enumerate("LR"):
         for response in RIG_RESPONSES:
@@ -97,6 +100,13 @@ def record_columns(
             )
             out[f"{RIG_NAMES[response]}_{name} [{RESPONSE_UNITS[response]}]"] = y
     return out
+
+
+def truth(load_case: str, response: str) -> FloatArray:
+    """(2, n) noise-free curve on the load case's own grid."""
+    curves = reference("nominal").cases[load_case]
+    grid = LOAD_CASES[load_case].inputs()
+    return np.stack([PchipInterpolator(curves.input, c)(grid) for c in curves.mean[response]])
 
 
 def csv_text(columns: Mapping[str, FloatArray]) -> str:

@@ -14,7 +14,10 @@ from doe_kc.measurement import load_manifest, read_record
 from tests.measurement.synthetic import csv_text, record_columns
 
 GOOD_CSV = csv_text(record_columns("vertical", samples=64)).encode()
-GOOD_TOML = b'name = "a"\n[setup]\nrack_mm_per_rev = 52\n[alignment]\nleft = { toe_deg = 0.1 }\n[records]\nroll = ["r"]\n'
+GOOD_TOML = (
+    b'name = "a"\n'
+    + b"[setup]\nrack_mm_per_rev = 52\n[alignment]\nleft = { toe_deg = 0.1 }\n[records]\nroll = 'r'\n"
+)
 
 
 @st.composite
@@ -53,7 +56,16 @@ TOML_TEXT = st.recursive(
     lambda inner: st.lists(inner, max_size=3).map(lambda v: "[" + ", ".join(v) + "]"),
 )
 KEYS = st.sampled_from(
-    ["name", "records", "records.roll", "alignment.left", "alignment.left.toe_deg", "setup", "setup.body", "x"]
+    [
+        "name",
+        "records",
+        "records.roll",
+        "alignment.left",
+        "alignment.left.toe_deg",
+        "setup",
+        "setup.body",
+        "x",
+    ]
 )
 TOML = st.lists(st.tuples(KEYS, TOML_TEXT), max_size=6).map(
     lambda pairs: "\n".join(f"{k} = {v}" for k, v in pairs).encode()

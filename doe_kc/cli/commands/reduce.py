@@ -1,0 +1,46 @@
+"""`doe-kc reduce`: rig records to curves and targets."""
+
+from __future__ import annotations
+
+import typer
+
+from doe_kc.cli._app import app
+from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument
+from doe_kc.measurement import RideHeight
+from doe_kc.output import write_json
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
+from doe_kc.study import read_study
+from doe_kc.workflow.compare import compare_model, comparison_lines, write_comparison
+from doe_kc.workflow.measure import reduce_records, reduced_document, write_reduced
+
+
+@app.command()
+def reduce(
+    study: StudyArgument,
+    measurement: MeasurementOption = None,
+    out: OutOption = None,
+    json: JsonOption = None,
+) -> None:
+    """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
+    found = read_study(study, measurement=measurement, out=out)
+    model = curve_set(solve(found.axle))
+    reduced = reduce_records(found, model)
+    if json is not None:
+        write_json(json, reduced_document(reduced))
+    comparison = compare_model(found, model, reduced.measurement)
+    written = write_reduced(reduced, found.out / "reduce")
+    written += write_comparison(comparison, found.out / "compare")
+    for line in comparison_lines(comparison):
+        typer.echo(line)
+    if reduced.ride_height is not None:
+        typer.echo(ride_height_line(reduced.ride_height))
+    typer.echo(f"{len(written)} files in {found.out / 'reduce'} and {found.out / 'compare'}", err=True)
+
+
+def ride_height_line(height: RideHeight) -> str:
+    """The inferred difference in words."""
+    return (
+        f"ride height: measured car {height.estimate:+.2f} +- {height.sd:.2f} mm against the model "
+        f"(+ = body lower); consistency {height.consistency:.2f}"
+    )

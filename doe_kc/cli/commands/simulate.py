@@ -1,0 +1,73 @@
+"""`doe-kc simulate`: K&C curves and characteristics of a model."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from doe_kc.axle import read_axle
+from doe_kc.axle.model import Axle
+from doe_kc.cli._app import app
+from doe_kc.cli.changes import apply_effects, apply_settings
+from doe_kc.cli.options import JsonOption
+from doe_kc.errors import InputError, nearest
+from doe_kc.output import write_json
+from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
+from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.suite import solve
+
+
+@app.command()
+def simulate(
+    axle: Annotated[Path, typer.Argument(help="Axle file (TOML).")],
+    settings: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="PATH=VALUE", help="PATH=VALUE, PATH+=DELTA or PATH*=FACTOR."),
+    ] = None,
+    effects: Annotated[
+        list[str] | None,
+        typer.Option("--effect", metavar="ID:key=value,...", help="Add an optional effect."),
+    ] = None,
+    case: Annotated[list[str] | None, typer.Option(help="Load case; all by default.")] = None,
+    roll: Annotated[str | None, typer.Option(help="Roll technique: body or counter_phase.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for curves.csv, characteristics.csv.")] = None,
+    json: JsonOption = None,
+) -> None:
+    """Solve the K&C load cases of an axle: curves (tidy CSV) and characteristics."""
+    model = apply_settings(apply_effects(read_axle(axle), effects or []), settings or [])
+    model = with_roll(model, roll)
+    started = time.perf_counter()
+    solution = solve(model, checked_cases(model, case))
+    seconds = time.perf_counter() - started
+    document = characteristics_document(solution, seconds)
+    if json is not None:
+        write_json(json, document)
+    if out is not None:
+        for path in write_simulation(solution, out):
+            typer.echo(f"wrote {path}", err=True)
+    for name, entry in document["characteristics"].items():
+        typer.echo(f"{name:36}{entry['value']:>14.6g}  {entry['unit']}")
+
+
+def with_roll(axle: Axle, technique: str | None) -> Axle:
+    """The axle with the other roll technique; InputError for an unknown one."""
+    if technique is None:
+        return axle
+    if technique not in TECHNIQUES:
+        raise InputError(f"--roll {technique}: expected {' or '.join(TECHNIQUES)}.")
+    return replace(axle, load_cases={**axle.load_cases, "roll": TECHNIQUES[technique]})
+
+
+def checked_cases(axle: Axle, cases: list[str] | None) -> list[str] | None:
+    """The load cases asked for; InputError for an unknown one."""
+    for name in cases or []:
+        if name not in axle.load_cases:
+            raise InputError(
+                f"--case {name}: is not a load case; known are {', '.join(axle.load_cases)}."
+                f"{nearest(name, axle.load_cases)}"
+            )
+    return cases or None

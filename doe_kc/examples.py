@@ -1,0 +1,35 @@
+"""The shipped example study."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from doe_kc.errors import InputError, RunError
+
+NAME = "front_axle"
+
+
+def example_folder() -> Path:
+    """Where the example lies: in the installed package, or in the source tree beside it."""
+    package = Path(__file__).parent
+    for folder in (package / "examples" / NAME, package.parent / "examples" / NAME):
+        if (folder / "study.toml").is_file():
+            return folder
+    raise RunError("the example study is not part of this installation; reinstall doe-kc.")
+
+
+def copy_example(target: Path) -> list[Path]:
+    """Copy the example to a new or empty folder; returns the files written."""
+    if target.exists() and (not target.is_dir() or any(target.iterdir())):
+        raise InputError(f"{target}: exists and is not an empty folder; name another one.")
+    try:
+        shutil.copytree(
+            example_folder(),
+            target,
+            dirs_exist_ok=True,
+            ignore=shutil.ignore_patterns("out", "__pycache__"),
+        )
+    except OSError as error:
+        raise RunError(f"{target}: the example cannot be written ({error.strerror or error}).") from None
+    return sorted(p for p in target.rglob("*") if p.is_file())

@@ -1,0 +1,106 @@
+"""Model against measurement, one figure a load case."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from doe_kc.comparison.compare import Comparison, same_input
+from doe_kc.curves import (
+    RESPONSE_LABELS,
+    RESPONSE_UNITS,
+    RIG_RESPONSES,
+    TYRE_LOAD,
+    CaseCurves,
+)
+from doe_kc.reporting import style
+from doe_kc.solver.load_cases import LOAD_CASES
+
+SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
+SIDE_NAMES = ("left", "right")
+
+
+def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
+    """Responses of both wheels over the input: measured (dots, band = both branches), model (lines).
+
+    Angles and wheel centre are changes from static.
+    """
+    model = comparison.model.cases[load_case]
+    measured = comparison.measured.cases[load_case]
+    case = LOAD_CASES[load_case]
+    fig, axes = style.figure(3, 3, size=style.A4_LANDSCAPE, share_x=False)
+    panels = list(axes.flat)
+    for ax, response in zip(panels, RIG_RESPONSES, strict=False):
+        _draw(ax, model, measured, response)
+        change = "" if response == TYRE_LOAD else "Δ "
+        style.label(ax, None, f"{change}{_short(response)} [{RESPONSE_UNITS[response]}]")
+        ax.set_title(RESPONSE_LABELS[response])
+        ax.set_xlabel(f"{case.input_label} [{case.unit}]")
+    _table(panels[7], comparison, load_case)
+    _legend(panels[8])
+    fig.suptitle(f"{case.label}: {comparison.model.source} against {comparison.measured.source}")
+    return fig
+
+
+def write_comparison_figures(comparison: Comparison, folder: Path) -> list[Path]:
+    """PNG and SVG of every load case that both have; returns the PNG paths."""
+    out = []
+    for load_case, measured in comparison.measured.cases.items():
+        model = comparison.model.cases.get(load_case)
+        if model is not None and same_input(model, measured):
+            png, _ = style.save(
+                comparison_figure(comparison, load_case), folder / f"compare_{load_case}"
+            )
+            out.append(png)
+    return out
+
+
+def _short(response: str) -> str:
+    return {"spin": "caster (knuckle)", "tyre_load": "tyre load"}.get(
+        response, response.replace("_", " ")
+    )
+
+
+def _draw(ax: Axes, model: CaseCurves, measured: CaseCurves, response: str) -> None:
+    for side, colour in enumerate(SIDE_COLOURS):
+        mean, half = measured.mean[response][side], np.abs(measured.half_width[response][side])
+        ax.fill_between(measured.input, mean - half, mean + half, color=colour, alpha=0.2, lw=0)
+        ax.plot(measured.input[::2], mean[::2], ".", color=colour, ms=3)
+        ax.plot(model.input, model.mean[response][side], color=colour)
+        loop = np.abs(model.half_width[response][side])
+        if loop.max() > 0:
+            for sign in (-1, 1):
+                ax.plot(model.input, model.mean[response][side] + sign * loop, ":", color=colour, lw=0.8)
+
+
+def _legend(ax: Axes) -> None:
+    ax.axis("off")
+    for side, colour in enumerate(SIDE_COLOURS):
+        ax.plot(
+            [], [], ".", color=colour, label=f"measured, {SIDE_NAMES[side]} wheel (mean of branches)"
+        )
+        ax.fill_between([], [], [], color=colour, alpha=0.2, lw=0, label="   between its branches")
+        ax.plot([], [], color=colour, label=f"model, {SIDE_NAMES[side]} wheel")
+    ax.legend(loc="upper left", title="Legend", alignment="left")
+
+
+def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:
+    """Characteristics of the load case, and the RMS of its curves on the left wheel."""
+    ax.axis("off")
+    lines = [f"{'Left wheel':<26}{'model':>10}{'target':>10}"]
+    for row in comparison.characteristics:
+        if row.entry.load_case == load_case and row.entry.kind == "gradient":
+            name = f"{row.entry.label[:17]} {row.entry.unit}"
+            mark = "" if row.inside else " *"
+            lines.append(f"{name:<26}{row.value:>10.4g}{row.target:>10.4g}{mark}")
+    lines += ["", f"{'RMS of curve':<26}{'':>10}"]
+    for curve in comparison.curves:
+        if curve.load_case == load_case and curve.side == "L":
+            lines.append(
+                f"{_short(curve.response):<26}{curve.rms:>10.3g} {RESPONSE_UNITS[curve.response]}"
+            )
+    lines.append("* outside the constraint interval")
+    ax.text(0, 1, "\n".join(lines), family="monospace", fontsize=6.5, va="top", transform=ax.transAxes)

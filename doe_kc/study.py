@@ -1,0 +1,102 @@
+"""A study: what the user asks for, in one TOML file; the shortest names an axle and a measurement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
+from doe_kc.axle.schema import Positive, Strict
+from doe_kc.errors import InputError, nearest
+from doe_kc.files import read_toml, validate
+from doe_kc.solver.load_cases import LOAD_CASES
+
+SCHEMA = "doe_kc.study/1"
+
+
+class InfluenceOptions(Strict):
+    """parameters: globs over parameter paths, e.g. ["LLF.*", "llr.F?"]."""
+
+    parameters: list[str] = Field(default=["*"])
+
+
+class StudyFile(Strict):
+    """Paths are relative to the study file."""
+
+    schema_: Literal["doe_kc.study/1"] = Field(default="doe_kc.study/1", alias="schema")
+    name: str | None = None
+    axle: str
+    measurement: str | None = None
+    out: str = "out"
+    seed: Annotated[int, Field(ge=0)] = 1
+    windows: dict[str, Positive] = Field(default={})
+    influence: InfluenceOptions = InfluenceOptions()
+
+
+@dataclass(frozen=True)
+class Study:
+    """A checked study. windows: load case -> half-width of the fit window in the input's unit."""
+
+    name: str
+    source: Path
+    axle: Axle
+    axle_path: Path
+    measurement: Path | None
+    out: Path
+    seed: int
+    windows: dict[str, float]
+    parameters: tuple[Parameter, ...]
+
+    def measured(self) -> Path:
+        """The measurement's folder or `test.toml`; InputError when the study names none."""
+        if self.measurement is None:
+            raise InputError(
+                f'{self.source}: names no measurement; add measurement = "FOLDER" (with its test.toml) '
+                "or give --measurement DIR."
+            )
+        return self.measurement
+
+
+def read_study(path: Path, *, measurement: Path | None = None, out: Path | None = None) -> Study:
+    """Study from its file, or from the folder that holds `study.toml`.
+
+    measurement, out: in place of the study's own. InputError naming file and key for anything wrong.
+    """
+    source = path / "study.toml" if path.is_dir() else path
+    file = validate(StudyFile, read_toml(source), str(source))
+    for case in file.windows:
+        if case not in LOAD_CASES:
+            raise InputError(
+                f"{source}: [windows] {case} is not a load case; known are {', '.join(LOAD_CASES)}."
+                f"{nearest(case, LOAD_CASES)}"
+            )
+    folder = source.parent
+    axle = read_axle(folder / file.axle)
+    own = folder / file.measurement if file.measurement is not None else None
+    return Study(
+        name=file.name or folder.resolve().name,
+        source=source,
+        axle=axle,
+        axle_path=folder / file.axle,
+        measurement=measurement or own,
+        out=out or folder / file.out,
+        seed=file.seed,
+        windows=dict(file.windows),
+        parameters=select(axle, file.influence.parameters, str(source)),
+    )
+
+
+def select(axle: Axle, globs: list[str], source: str) -> tuple[Parameter, ...]:
+    """Design parameters whose path matches a glob; InputError for a glob that matches none."""
+    everything = design_parameters(axle)
+    for glob in globs:
+        if not any(fnmatchcase(p.path, glob) for p in everything):
+            raise InputError(
+                f"{source}: parameters: {glob!r} matches no parameter; expected a path or glob such as "
+                f"LLF.* or llr.F?.{nearest(glob, [p.path for p in everything])}"
+            )
+    return tuple(p for p in everything if any(fnmatchcase(p.path, g) for g in globs))

@@ -1,0 +1,1 @@
+"""The steps of a study, each from checked input to written results."""

@@ -1,0 +1,50 @@
+"""Compare: the model's curves and characteristics beside the measured ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from doe_kc.comparison import Comparison, compare
+from doe_kc.curves import CurveSet
+from doe_kc.measurement import Measurement
+from doe_kc.output import write_csv
+from doe_kc.reporting.comparison_figures import write_comparison_figures
+from doe_kc.study import Study
+
+
+def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Comparison:
+    """Model against measurement in the study's fit windows."""
+    spread = {name: estimate.sd for name, estimate in measurement.characteristics.items()}
+    return compare(model, measurement.curves, target_sd=spread, windows=study.windows)
+
+
+def write_comparison(comparison: Comparison, folder: Path) -> list[Path]:
+    """characteristics.csv, curves.csv (RMS) and one figure a load case."""
+    return [
+        write_csv(folder / "characteristics.csv", comparison.characteristics_frame()),
+        write_csv(folder / "curves.csv", comparison.curves_frame()),
+        *write_comparison_figures(comparison, folder),
+    ]
+
+
+def comparison_lines(comparison: Comparison) -> list[str]:
+    """The table for a terminal; * marks what lies outside its constraint interval."""
+    lines = [f"{'characteristic':34}{'model':>12}{'target':>12}{'difference':>12}  unit"]
+    for row in comparison.characteristics:
+        mark = " " if row.inside else "*"
+        lines.append(
+            f"{row.entry.id:34}{row.value:>12.5g}{row.target:>12.5g}{row.difference:>12.3g} {mark}"
+            f"{row.entry.unit}"
+        )
+    outside = sum(not row.inside for row in comparison.characteristics)
+    lines.append(f"{outside} of {len(comparison.characteristics)} outside their constraint interval (*)")
+    return lines
+
+
+def comparison_document(comparison: Comparison) -> dict[str, Any]:
+    """Characteristics and RMS deviations as records."""
+    return {
+        "characteristics": comparison.characteristics_frame().to_dict("records"),
+        "curves": comparison.curves_frame().to_dict("records"),
+    }

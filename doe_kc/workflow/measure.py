@@ -1,0 +1,95 @@
+"""Reduce: rig records to curves, noise, gradients, targets, ride height and pictures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from doe_kc.curves import CurveSet
+from doe_kc.errors import InputError
+from doe_kc.measurement import (
+    Manifest,
+    Measurement,
+    RideHeight,
+    infer_ride_height,
+    load_manifest,
+    measurement_to_frames,
+    read_record,
+    reduce_measurement,
+)
+from doe_kc.output import write_csv
+from doe_kc.reporting.rig_figures import write_rig_figures
+from doe_kc.study import Study
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """ride_height: difference to the study's axle; None without a `vertical` record."""
+
+    measurement: Measurement
+    ride_height: RideHeight | None
+
+
+def reduce_records(study: Study, model: CurveSet) -> Reduced:
+    """The study's records, and their ride height relative to the model's curves."""
+    measurement = reduce_measurement(
+        study.measured(), windows=study.windows, half_track=study.axle.half_track
+    )
+    height = None
+    if "vertical" in measurement.curves.cases and "vertical" in model.cases:
+        height = infer_ride_height(measurement.curves, model, measurement.noise["vertical"])
+    return Reduced(measurement, height)
+
+
+def write_reduced(reduced: Reduced, folder: Path) -> list[Path]:
+    """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
+    frames = measurement_to_frames(reduced.measurement)
+    tables = {
+        "curves.csv": frames.curves,
+        "characteristics.csv": frames.characteristics,
+        "gradients.csv": frames.gradients,
+        "noise.csv": frames.noise,
+    }
+    written = [write_csv(folder / name, frame) for name, frame in tables.items()]
+    return written + list(write_rig_figures(reduced.measurement, folder))
+
+
+def reduced_document(reduced: Reduced) -> dict[str, Any]:
+    """What `reduce --json` writes: characteristics with standard errors, ride height, noise."""
+    frames = measurement_to_frames(reduced.measurement)
+    height = reduced.ride_height
+    return {
+        "name": reduced.measurement.manifest.name,
+        "characteristics": {
+            row["name"]: {k: row[k] for k in ("value", "sd", "unit", "load_case")}
+            for row in frames.characteristics.to_dict("records")
+        },
+        "ride_height_mm": None
+        if height is None
+        else {
+            "estimate": height.estimate,
+            "sd": height.sd,
+            "consistency": height.consistency,
+            "contributions": {
+                c.response: {"estimate": c.estimate, "sd": c.sd, "used": c.used}
+                for c in height.contributions
+            },
+        },
+        "noise": frames.noise.to_dict("records"),
+    }
+
+
+def check_measurement(path: Path) -> tuple[Manifest, int]:
+    """The manifest and how many records it names, every one of them read; InputError if one is bad."""
+    file = path / "test.toml" if path.is_dir() else path
+    manifest = load_manifest(file)
+    count = 0
+    for case, entries in manifest.records.items():
+        for entry in entries:
+            name, _, sheet = entry.partition("#")
+            read_record(file.parent / name, case, sheet=sheet or None)
+            count += 1
+    if not count:
+        raise InputError(f"{file}: names no record; list the files of each load case under [records].")
+    return manifest, count

@@ -1,0 +1,45 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+import pytest
+
+from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
+from doe_kc.errors import RunError
+from doe_kc.measurement import Measurement
+from doe_kc.reporting.rig_figures import rig_figure
+from doe_kc.reporting.style import PALETTE, figure, save
+
+
+def test_every_panel_has_its_unit(car_a: Measurement) -> None:
+    fig = rig_figure(car_a, "vertical")
+    axes = fig.axes
+    assert len(axes) == 21
+    for row, response in enumerate(RIG_RESPONSES):
+        unit = RESPONSE_UNITS[response]
+        assert axes[3 * row].get_ylabel().endswith(f"/ {unit}")
+        assert axes[3 * row + 2].get_ylabel() == f"residual / {unit}"
+    assert [ax.get_xlabel() for ax in axes[-3:]] == ["pad_z / mm"] * 3
+    assert any("26.26 ± 0.04 N/mm" in t.get_text() for t in axes[18].texts)
+
+
+def test_a_figure_is_saved_twice_the_same(tmp_path: Path) -> None:
+    before = dict(matplotlib.rcParams)
+    contents = []
+    for name in ("a.1", "b.1"):
+        fig, axes = figure(1, 2, size=(4.0, 2.0))
+        axes[0, 0].plot([0.0, 1.0], color=PALETTE["blue"])
+        png, svg = save(fig, tmp_path / "new" / name)
+        assert (png.name, svg.name) == (f"{name}.png", f"{name}.svg")
+        assert png.read_bytes().startswith(b"\x89PNG")
+        contents.append((png.read_bytes(), svg.read_bytes()))
+    assert contents[0] == contents[1]
+    assert dict(matplotlib.rcParams) == before
+
+
+def test_an_unwritable_folder_is_a_run_error(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    fig, _ = figure(1, 1)
+    with pytest.raises(RunError, match=r"file/x\.png: the figure cannot be written"):
+        save(fig, tmp_path / "file" / "x")

@@ -1,0 +1,70 @@
+"""Exact tangents dy/du of an equilibrium, and paths through any sequence of controls."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import casadi as ca
+import numpy as np
+
+from doe_kc.axle import Axle
+from doe_kc.solver.kernel import Kernel, kernel
+from doe_kc.solver.march import Path, Settings, Start, march
+from doe_kc.solver.result import StaticState
+from doe_kc.solver.static import control_matrix, static_state
+
+PADS = ("pad L", "pad R", "preload")
+
+
+class Rig:
+    """An axle at rest, on which any controls may be applied."""
+
+    def __init__(self, axle: Axle) -> None:
+        self.axle = axle
+        self.kernel: Kernel = kernel(axle.topology)
+        self.c = self.kernel.constant_values(dict(axle.values))
+        found = static_state(self.kernel, None, self.c, axle, Settings())
+        assert isinstance(found, StaticState)
+        self.static = found
+
+    def controls(self, n: int, values: Mapping[str, object]) -> np.ndarray:
+        pads = self.static.pads
+        held = {"pad_L": pads.pad[0], "pad_R": pads.pad[1], "preload": pads.preload}
+        return control_matrix(self.kernel, {**held, **values}, n)  # type: ignore[dict-item]
+
+    def path(self, waypoints: Sequence[Mapping[str, float]], steps: int, *, friction: bool = False) -> Path:
+        """Straight lines between waypoints, which hold changes from rest (pads) or values; from rest."""
+        names = sorted({n for w in waypoints for n in w})
+        pads = {"pad_L": self.static.pads.pad[0], "pad_R": self.static.pads.pad[1]}
+        corners = np.array([[w.get(n, 0.0) + pads.get(n, 0.0) for n in names] for w in ({}, *waypoints)])
+        t = np.linspace(0.0, len(waypoints), steps * len(waypoints) + 1)[1:]
+        columns = {n: np.interp(t, range(len(corners)), corners[:, i]) for i, n in enumerate(names)}
+        self.u = self.controls(len(t), {**columns, "friction": float(friction)})
+        start = Start(
+            np.zeros(1), self.static.x[None, :], self.controls(1, {"friction": float(friction)})[0],
+            self.static.z,
+        )
+        found = march(self.kernel, None, self.c, start, t, self.u)
+        assert found.failed is None
+        return found
+
+    def output(self, path: Path, name: str) -> np.ndarray:
+        """Output along the path, the static state first."""
+        column = self.kernel.equations.output_names.index(name)
+        return np.concatenate([[self.static.y[column]], path.y[:, column]])
+
+    def input(self, name: str) -> np.ndarray:
+        """Control along the last path, the static state first."""
+        column = self.kernel.equations.control_names.index(name)
+        return np.concatenate([[self.controls(1, {})[0][column]], self.u[:, column]])
+
+    def tangent(self, x: np.ndarray, u: np.ndarray, outputs: Sequence[str], inputs: Sequence[str]) -> np.ndarray:
+        """dy/du by the implicit function theorem at an equilibrium with prescribed pads."""
+        eq = self.kernel.equations
+        symbols = [eq.x, eq.c, eq.u, eq.z]
+        wanted = [eq.output_names.index(n) for n in outputs]
+        blocks = [ca.jacobian(e, s) for e in (eq.residual, eq.outputs[wanted]) for s in (eq.x, eq.u)]
+        at = (x, self.c, u, np.zeros(self.kernel.nz))
+        rx, ru, yx, yu = (np.array(m) for m in ca.Function("t", symbols, blocks)(*at))
+        columns = [eq.control_names.index(n) for n in inputs]
+        return yu[:, columns] - yx @ np.linalg.solve(rx, ru[:, columns])

@@ -1,0 +1,102 @@
+"""Designs without an equilibrium fail as a value that says where, and with throw=True as NotConverged."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from doe_kc.axle import Axle, with_values
+from doe_kc.effects import apply_effect
+from doe_kc.errors import DoeKcError, RunError
+from doe_kc.solver.march import Settings
+from doe_kc.solver.result import Failure, NotConverged
+from doe_kc.solver.suite import solve
+from tests.reference import nominal
+
+
+def far_steer() -> Axle:
+    """A rack that travels half a metre: the tie rod cannot follow."""
+    from dataclasses import replace
+
+    axle = nominal()
+    case = replace(axle.load_cases["steer"], amplitude=3600.0)
+    return replace(axle, load_cases={**axle.load_cases, "steer": case})
+
+
+def test_the_reason_names_load_case_step_input_and_joint() -> None:
+    found = solve(far_steer(), ["vertical", "steer"], compiled=False, throw=False)
+    failure = found.failure
+    assert failure is not None
+    assert failure.load_case == "steer"
+    assert failure.branch == "pos"
+    assert failure.input_unit == "deg"
+    assert failure.input == pytest.approx(failure.step * 3600.0 / 30)
+    assert 400.0 < failure.input < 3600.0
+    assert failure.joint
+    assert failure.unit in {"N", "N mm", "mm"}
+    text = str(failure)
+    for part in ("steer", "pos", f"step {failure.step}", f"{failure.input:g} deg", failure.joint, failure.unit):
+        assert part in text
+
+
+def test_what_was_solved_before_the_failure_is_kept() -> None:
+    found = solve(far_steer(), ["vertical", "steer", "drive"], compiled=False, throw=False)
+    assert set(found.cases) == {"vertical"}
+    assert found.static is not None
+
+
+def test_throw_raises_not_converged_with_the_failure() -> None:
+    with pytest.raises(NotConverged) as caught:
+        solve(far_steer(), ["steer"], compiled=False)
+    assert isinstance(caught.value, RunError)
+    assert isinstance(caught.value, DoeKcError)
+    assert caught.value.exit_code == 1
+    assert isinstance(caught.value.failure, Failure)
+    assert str(caught.value) == str(caught.value.failure)
+
+
+def test_a_static_failure_says_so() -> None:
+    found = solve(nominal(), compiled=False, throw=False, settings=Settings(max_iterations=1, max_halvings=0))
+    assert found.failure is not None
+    assert found.static is None
+    assert found.cases == {}
+    assert "static equilibrium" in str(found.failure)
+    assert math.isfinite(found.failure.residual)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"ROB.x": 152.0, "ROB.y": -350.0, "ROB.z": 279.0},  # on RIB
+        {"LWD.x": 40.0, "LWD.y": -575.0, "LWD.z": 860.0},  # on UPB
+        {"LLF.x": 300.0, "LLF.y": -370.0, "LLF.z": 218.0, "LLR.Tx": 1.0}
+        | {"LLF.x": 300.0},  # on LLR
+        {"WLC.z": -5000.0},
+        {"tyre.static_load": 1e9},
+        {"LWB.z": 2000.0},
+        {"RIB.x": -1500.0},
+    ],
+    ids=["no tie rod", "no strut axis", "no pivot axis", "underground", "heavy", "inside out", "long rod"],
+)
+def test_impossible_designs_are_a_value_never_an_exception(values: dict[str, float]) -> None:
+    values = {k: v for k, v in values.items() if k != "LLR.Tx"}
+    found = solve(with_values(nominal(), values), compiled=False, throw=False)
+    if found.failure is not None:
+        assert found.failure.joint
+        assert found.failure.load_case in str(found.failure)
+
+
+@pytest.mark.parametrize(
+    "values",
+    [{"ROB.x": 152.0, "ROB.y": -350.0, "ROB.z": 279.0}, {"LWD.x": 40.0, "LWD.y": -575.0, "LWD.z": 860.0}],
+    ids=["no tie rod", "no strut axis"],
+)
+def test_coincident_points_do_not_pass_for_a_solution(values: dict[str, float]) -> None:
+    assert solve(with_values(nominal(), values), compiled=False, throw=False).failure is not None
+
+
+def test_a_huge_gap_still_ends_in_a_value() -> None:
+    axle = apply_effect(nominal(), "tie_rod_free_play", {"gap_mm": 200.0}, source="test")
+    found = solve(axle, compiled=False, throw=False)
+    assert found.failure is None or found.failure.load_case

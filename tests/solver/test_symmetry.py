@@ -1,0 +1,198 @@
+"""Mirror symmetry, independence of the path without friction, loops with friction, effects in their limits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.axle import Axle, with_values
+from doe_kc.effects import apply_effect
+from doe_kc.solver.elements.responses import OUTPUT_UNITS
+from doe_kc.solver.load_cases import LoadCase
+from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.march import Settings
+from doe_kc.solver.result import Solution
+from doe_kc.solver.suite import solve
+from tests.reference import nominal
+from tests.solver.tangent import Rig
+
+LATERAL = ("wc_y", "cp_y")
+SYMMETRIC = ("vertical", "lateral_opposite", "drive", "brake")
+ANTISYMMETRIC = ("roll", "lateral", "lateral_offset", "steer")
+
+
+@pytest.fixture(scope="module")
+def solution() -> Solution:
+    return solve(nominal(), compiled=False)
+
+
+def curves(solution: Solution, case: str, side: str) -> np.ndarray:
+    """(branches, n, outputs) of a side in left-hand coordinates."""
+    columns = [solution.column(f"{n}@{side}") for n in OUTPUT_UNITS]
+    signs = np.array([-1.0 if side == "R" and n in LATERAL else 1.0 for n in OUTPUT_UNITS])
+    return np.array([b.y[:, columns] * signs for b in solution.cases[case].branches])
+
+
+@pytest.mark.parametrize("case", SYMMETRIC)
+def test_left_equals_right_in_symmetric_load_cases(solution: Solution, case: str) -> None:
+    np.testing.assert_allclose(
+        curves(solution, case, "L"), curves(solution, case, "R"), rtol=0, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("case", ANTISYMMETRIC)
+def test_left_with_plus_equals_right_with_minus(solution: Solution, case: str) -> None:
+    left, right = curves(solution, case, "L"), curves(solution, case, "R")
+    np.testing.assert_allclose(left, right[::-1], rtol=0, atol=1e-6)
+    assert np.abs(left - right).max() > 0.1
+
+
+def test_counter_phase_roll_is_antisymmetric_and_rolls_the_same_way() -> None:
+    axle = replace(
+        nominal(), load_cases={"roll": nominal().load_cases["roll"], "pads": TECHNIQUES["counter_phase"]}
+    )
+    found = solve(axle, compiled=False)
+    left, right = curves(found, "pads", "L"), curves(found, "pads", "R")
+    np.testing.assert_allclose(left, right[::-1], rtol=0, atol=1e-6)
+    load = found.column("tyre_load@R")
+    for case in ("roll", "pads"):
+        up = found.cases[case].branches[0].y[:, load]
+        assert up[1] > up[0]
+
+
+def test_a_right_side_override_breaks_the_symmetry() -> None:
+    found = solve(with_values(nominal(), {"right.llr.Fx": 1.5}), ["drive"], compiled=False)
+    assert np.abs(curves(found, "drive", "L") - curves(found, "drive", "R")).max() > 0.01
+
+
+def test_an_axle_with_its_sides_swapped_gives_mirrored_curves() -> None:
+    cases = ["vertical", "roll", "steer", "brake"]
+    one = with_values(nominal(), {"right.llr.Fx": 1.5, "right.ROB.y": 711.0})
+    other = with_values(nominal(), {"left.llr.Fx": 1.5, "left.ROB.y": -711.0})
+    a, b = solve(one, cases, compiled=False), solve(other, cases, compiled=False)
+    for case in cases:
+        mirrored = curves(b, case, "R")
+        if case in ANTISYMMETRIC:
+            mirrored = mirrored[::-1]
+        np.testing.assert_allclose(curves(a, case, "L"), mirrored, rtol=0, atol=1e-6)
+
+
+def test_the_same_point_by_another_path() -> None:
+    rig = Rig(nominal())
+    there = {"pad_L": 30.0, "pad_R": -20.0, "lateral_L": 1500.0, "brake_R": 1000.0, "rack": 15.0}
+    direct = rig.path([there], 10)
+    detour = rig.path(
+        [{"pad_L": -40.0, "lateral_R": -1000.0}, {"rack": -40.0, "roll": 0.03}, there], 7
+    )
+    np.testing.assert_allclose(direct.y[-1], detour.y[-1], rtol=1e-9, atol=1e-7)
+
+
+def with_steps(axle: Axle, factor: int) -> Axle:
+    cases: dict[str, LoadCase] = {i: replace(c, steps=c.steps * factor) for i, c in axle.load_cases.items()}
+    return replace(axle, load_cases=cases)
+
+
+def test_twice_the_steps_give_the_same_points(solution: Solution) -> None:
+    fine = solve(with_steps(nominal(), 2), compiled=False)
+    for case, coarse in solution.cases.items():
+        for a, b in zip(coarse.branches, fine.cases[case].branches, strict=True):
+            np.testing.assert_allclose(b.y[::2], a.y, rtol=1e-9, atol=1e-7)
+
+
+@pytest.mark.parametrize("law", ["dahl", "iwan"])
+@pytest.mark.parametrize(
+    ("effect", "case", "output"),
+    [("steering_friction", "steer", "column_force"), ("strut_friction", "vertical", "tyre_load@L")],
+)
+def test_friction_opens_a_closed_loop(law: str, effect: str, case: str, output: str) -> None:
+    axle = apply_effect(nominal(), effect, {"law": law}, source="test")
+    found = solve(axle, [case], compiled=False)
+    init, unload, load = found.cases[case].branches
+    column = found.column(output)
+    # continuous at the reversals, state included
+    np.testing.assert_array_equal(unload.x[0], init.x[-1])
+    np.testing.assert_array_equal(unload.z[0], init.z[-1])
+    np.testing.assert_array_equal(load.z[0], unload.z[-1])
+    # closed: what was left at +A is met again
+    np.testing.assert_allclose(load.y[-1], unload.y[0], rtol=1e-6, atol=1e-3)
+    zero = len(load.input) // 2
+    assert load.input[zero] == 0.0
+    assert unload.input[zero] == 0.0
+    half_width = (load.y[zero, column] - unload.y[zero, column]) / 2
+    expected = {"steering_friction": 250.0, "strut_friction": 100.0}[effect]
+    assert 0.8 * expected < half_width < 1.3 * expected
+    assert np.abs(init.y[0] - found.static.y).max() == 0.0  # type: ignore[union-attr]
+
+
+def test_half_the_friction_is_nearly_half_the_loop() -> None:
+    widths = []
+    for force in (50.0, 100.0):
+        axle = apply_effect(nominal(), "steering_friction", {"force_N": force}, source="test")
+        found = solve(axle, ["steer"], compiled=False)
+        _, unload, load = found.cases["steer"].branches
+        column, zero = found.column("toe@L"), len(load.input) // 2
+        widths.append(abs(load.y[zero, column] - unload.y[zero, column]))
+    assert widths[1] / widths[0] == pytest.approx(2.0, rel=0.02)
+
+
+LIMITS = {
+    "hub_compliance": {"camber_Nm_deg": 1e10, "toe_Nm_deg": 1e10},
+    "strut_bending": {"k_Nm_deg": 1e10, "torsion_Nm_deg": 1e10},
+    "rack_mount_compliance": {"k_N_mm": 1e11},
+    "subframe_flexibility": {"scale": 1e6},
+    "tyre_horizontal_compliance": {"k_lat_N_mm": 1e11, "k_long_N_mm": 1e11},
+    "steer_arm_compliance": {"radius_mm": 2000.0},
+    "steering_friction": {"force_N": 1e-6},
+    "strut_friction": {"force_N": 1e-6},
+    "bushing_preload": {"LLR": [0.0, 0.0, 0.0]},
+    "bushing_progression": {"LLR": [0.01, 0.01, 0.01]},
+    "left_right_asymmetry": {"LLR_R": 1.0},
+    "ride_height_offset": {"offset_mm": 0.0},
+}
+STIFF = ("subframe_flexibility",)
+TOLERANCE = {"tie_rod_free_play": 2e-2, "hub_compliance": 2e-3}
+"""mm and deg. Free play: its contact stays elastic; hub: 1e8 Nm/rad about the spin axis."""
+
+
+@pytest.mark.parametrize("ident", LIMITS)
+def test_an_effect_in_its_limit_is_the_nominal_axle(ident: str, solution: Solution) -> None:
+    axle = apply_effect(nominal(), ident, LIMITS[ident], source="test")
+    # in the stiffest limits the rounding of a coordinate weighs 1e-3 N
+    found = solve(axle, compiled=False, settings=Settings(tol=1e-2 if ident in STIFF else 1e-7))
+    names = [f"{n}@{s}" for n in ("toe", "camber", "spin", "wc_x", "wc_y", "wc_z") for s in "LR"]
+    columns = [solution.column(n) for n in names]
+    for case, expected in solution.cases.items():
+        branches = found.cases[case].branches
+        if branches[0].name == "init":
+            pairs = [(branches[0].y, expected.branches[0].y)]
+        else:
+            pairs = [(a.y, b.y) for a, b in zip(branches, expected.branches, strict=True)]
+        for a, b in pairs:
+            np.testing.assert_allclose(
+                a[:, columns], b[:, columns], rtol=0, atol=TOLERANCE.get(ident, 1e-4)
+            )
+
+
+def test_free_play_without_a_gap_leaves_the_contact_s_stiffness_alone(solution: Solution) -> None:
+    found = solve(
+        apply_effect(nominal(), "tie_rod_free_play", {"gap_mm": 1e-6}, source="test"), ["drive"], compiled=False
+    )
+    column, tension = found.column("toe@L"), found.column("tie_rod@L")
+    ours, rigid = found.cases["drive"].branches[0].y, solution.cases["drive"].branches[0].y
+    # lengthening = tension / 20 kN/mm and the smoothing, on the steer-arm lever of about 120 mm
+    stretch = np.abs(rigid[-1, tension]) / 20000.0 + 2e-3
+    assert np.abs(ours[:, column] - rigid[:, column]).max() < np.degrees(stretch / 100.0)
+
+
+def test_absent_effects_cost_no_unknowns() -> None:
+    from doe_kc.solver.kernel import kernel
+
+    sizes = {i: kernel(apply_effect(nominal(), i, {}, source="t").topology).nx for i in LIMITS}
+    base = kernel(nominal().topology).nx
+    assert sizes["bushing_preload"] == sizes["tyre_horizontal_compliance"] == base
+    assert sizes["hub_compliance"] == sizes["strut_bending"] == base + 6
+    assert sizes["rack_mount_compliance"] == base + 1
+    assert sizes["subframe_flexibility"] == base + 12
+    assert sizes["steering_friction"] == base
