@@ -53,7 +53,7 @@ class ParameterLinks:
 
 @dataclass(frozen=True)
 class Together:
-    """Characteristics of which every pair is correlated over the parameters: correlating one does for all.
+    """Characteristics that are correlated pair by pair over the parameters: one stands for all.
 
     signs: +1 moves as the first of the group does, -1 against it. weakest: smallest |r| of its pairs.
     """
@@ -130,7 +130,7 @@ def _strongest(
 
 
 def column_correlation(values: FloatArray) -> FloatArray:
-    """(k, k) Pearson correlation of the columns; 0 with a column that does not vary, 1 on the diagonal."""
+    """(k, k) Pearson correlation of the columns; 0 with a constant column, 1 on the diagonal."""
     centred = np.nan_to_num(values) - np.nan_to_num(values).mean(axis=0)
     norm = np.linalg.norm(centred, axis=0)
     scaled = np.divide(centred, norm, out=np.zeros_like(centred), where=norm > 0)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import Comparison, same_input
 from doe_kc.curves import (
@@ -17,6 +19,7 @@ from doe_kc.curves import (
     CaseCurves,
 )
 from doe_kc.reporting import style
+from doe_kc.reporting.series import draw_series
 from doe_kc.solver.load_cases import LOAD_CASES
 
 SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
@@ -37,25 +40,25 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
         _draw(ax, model, measured, response)
         change = "" if response == TYRE_LOAD else "Δ "
         style.label(ax, None, f"{change}{_short(response)} [{RESPONSE_UNITS[response]}]")
-        ax.set_title(RESPONSE_LABELS[response])
+        ax.set_title(RESPONSE_LABELS[response], fontsize=9)
+        ax.xaxis.set_major_locator(MaxNLocator(5))
         ax.set_xlabel(f"{case.input_label} [{case.unit}]")
     _table(panels[7], comparison, load_case)
     _legend(panels[8])
-    fig.suptitle(f"{case.label}: {comparison.model.source} against {comparison.measured.source}")
+    fig.get_layout_engine().set(w_pad=0.12, h_pad=0.08)  # type: ignore[union-attr]  # set by style.figure
+    fig.suptitle(f"{case.label}: {comparison.model.source} against {comparison.measured.source}", fontsize=11)
     return fig
 
 
 def write_comparison_figures(comparison: Comparison, folder: Path) -> list[Path]:
-    """PNG and SVG of every load case that both have; returns the PNG paths."""
-    out = []
-    for load_case, measured in comparison.measured.cases.items():
-        model = comparison.model.cases.get(load_case)
-        if model is not None and same_input(model, measured):
-            png, _ = style.save(
-                comparison_figure(comparison, load_case), folder / f"compare_{load_case}"
-            )
-            out.append(png)
-    return out
+    """PNG of every load case that both have; returns the paths. Raises RunError as `style.save`."""
+    return draw_series(
+        [
+            (folder / f"compare_{case}", partial(comparison_figure, comparison, case))
+            for case, measured in comparison.measured.cases.items()
+            if case in comparison.model.cases and same_input(comparison.model.cases[case], measured)
+        ]
+    )
 
 
 def _short(response: str) -> str:
@@ -84,7 +87,7 @@ def _legend(ax: Axes) -> None:
         )
         ax.fill_between([], [], [], color=colour, alpha=0.2, lw=0, label="   between its branches")
         ax.plot([], [], color=colour, label=f"model, {SIDE_NAMES[side]} wheel")
-    ax.legend(loc="upper left", title="Legend", alignment="left")
+    ax.legend(loc="upper left", fontsize=8)
 
 
 def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:

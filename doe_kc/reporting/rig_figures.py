@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,8 @@ from matplotlib.patches import Patch
 
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.measurement import Gradient, Measurement
-from doe_kc.reporting.style import A4, PALETTE, figure, label, save
+from doe_kc.reporting.series import draw_series
+from doe_kc.reporting.style import A4, PALETTE, figure, label
 from doe_kc.typing import FloatArray
 
 SIDE_TITLES = ("Left wheel", "Right wheel")
@@ -51,15 +53,14 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
     return fig
 
 
-def write_rig_figures(measurement: Measurement, folder: Path) -> tuple[Path, ...]:
-    """`rig_<load case>.png` and `.svg` of every measured load case; returns all paths.
+def write_rig_figures(measurement: Measurement, folder: Path) -> list[Path]:
+    """`rig_<load case>.png` of every measured load case; returns the paths.
 
     Raises RunError when the folder cannot be written.
     """
-    out: list[Path] = []
-    for load_case in measurement.curves.cases:
-        out.extend(save(rig_figure(measurement, load_case), folder / f"rig_{load_case}"))
-    return tuple(out)
+    return draw_series(
+        [(folder / f"rig_{case}", partial(rig_figure, measurement, case)) for case in measurement.curves.cases]
+    )
 
 
 def _short(response: str) -> str:

@@ -84,17 +84,22 @@ def label(ax: Axes, x: str | None, y: str | None) -> None:
         ax.set_ylabel(y)
 
 
+def save_png(fig: Figure, path_without_suffix: Path) -> Path:
+    """Write PNG alone (150 dpi), for the many sheets of a series; raises as `save`."""
+    png = path_without_suffix.with_name(f"{path_without_suffix.name}.png")
+    _lay_out(fig)
+    _write(png, lambda: FigureCanvasAgg(fig).print_png(png, metadata={"Software": "doe_kc"}))  # type: ignore[no-untyped-call]
+    return png
+
+
 def save(fig: Figure, path_without_suffix: Path) -> tuple[Path, Path]:
     """Write PNG (150 dpi) and SVG, making the folder; returns both paths.
 
     Raises RunError naming the path when it cannot be written (full disk, read-only folder).
     """
     # Not Path.with_suffix: it would cut a name such as "run 1.5".
-    # Not Path.with_suffix: it would cut a name such as "run 1.5".
-    name = path_without_suffix.name
-    png, svg = (path_without_suffix.with_name(f"{name}.{kind}") for kind in ("png", "svg"))
-    _lay_out(fig)
-    _write(png, lambda: FigureCanvasAgg(fig).print_png(png, metadata={"Software": "doe_kc"}))  # type: ignore[no-untyped-call]
+    svg = path_without_suffix.with_name(f"{path_without_suffix.name}.svg")
+    png = save_png(fig, path_without_suffix)
     _write(svg, lambda: FigureCanvasSVG(fig).print_svg(svg, metadata={"Date": None}))  # type: ignore[no-untyped-call]
     return png, svg
 

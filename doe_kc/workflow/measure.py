@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from doe_kc.curves import CurveSet
 from doe_kc.errors import InputError
 from doe_kc.measurement import (
     Manifest,
@@ -20,7 +19,10 @@ from doe_kc.measurement import (
 )
 from doe_kc.output import write_csv
 from doe_kc.reporting.rig_figures import write_rig_figures
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.result import Solution
 from doe_kc.study import Study
+from doe_kc.workflow.scatter import vertical_scatter
 
 
 @dataclass(frozen=True)
@@ -31,14 +33,19 @@ class Reduced:
     ride_height: RideHeight | None
 
 
-def reduce_records(study: Study, model: CurveSet) -> Reduced:
-    """The study's records, and their ride height relative to the model's curves."""
+def reduce_records(study: Study, solution: Solution) -> Reduced:
+    """The study's records, and their ride height relative to the solved model."""
     measurement = reduce_measurement(
         study.measured(), windows=study.windows, half_track=study.axle.half_track
     )
     height = None
-    if "vertical" in measurement.curves.cases and "vertical" in model.cases:
-        height = infer_ride_height(measurement.curves, model, measurement.noise["vertical"])
+    if "vertical" in measurement.curves.cases and "vertical" in solution.cases:
+        height = infer_ride_height(
+            measurement.curves,
+            curve_set(solution),
+            measurement.noise["vertical"],
+            scatter=vertical_scatter(study.axle, solution),
+        )
     return Reduced(measurement, height)
 
 

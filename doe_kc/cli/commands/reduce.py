@@ -24,11 +24,11 @@ def reduce(
 ) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
     found = read_study(study, measurement=measurement, out=out)
-    model = curve_set(solve(found.axle))
-    reduced = reduce_records(found, model)
+    solution = solve(found.axle)
+    reduced = reduce_records(found, solution)
     if json is not None:
         write_json(json, reduced_document(reduced))
-    comparison = compare_model(found, model, reduced.measurement)
+    comparison = compare_model(found, curve_set(solution), reduced.measurement)
     written = write_reduced(reduced, found.out / "reduce")
     written += write_comparison(comparison, found.out / "compare")
     for line in comparison_lines(comparison):

@@ -1,0 +1,141 @@
+"""Speed of the whole suite on one core: compiled, interpreted, first call, sensitivities, two processes.
+
+Also what a user would pick instead: each equilibrium handed to scipy's general root finder with the same
+exact Jacobian, started from the last equilibrium.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+
+import numpy as np
+from _common import example_axle, machine, publish
+from scipy.optimize import root
+
+from doe_kc.axle import design_parameters
+from doe_kc.axle.parameters import settable_paths
+from doe_kc.sampling.batch import evaluate_all
+from doe_kc.sampling.latin_hypercube import latin_hypercube
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.kernel import Buffered, kernel
+from doe_kc.solver.sensitivity import sensitivities
+from doe_kc.solver.suite import solve
+from doe_kc.characteristics import reduce_all
+
+FIRST_CALL = """
+import time
+started = time.perf_counter()
+from benchmarks._common import example_axle
+from doe_kc.solver.suite import solve
+solve(example_axle())
+print(time.perf_counter() - started)
+"""
+
+
+def median_ms(run: Callable[[], object], repeats: int) -> float:
+    times = []
+    for _ in range(repeats):
+        started = time.perf_counter()
+        run()
+        times.append(1e3 * (time.perf_counter() - started))
+    return statistics.median(times)
+
+
+def function_us(name: str) -> float:
+    """One interpreted evaluation of a kernel function, microseconds."""
+    k = kernel(example_axle().topology)
+    f = Buffered(k.functions[name])
+    c = k.constant_values(dict(example_axle().values))
+    x, u, z = np.zeros(k.nx), np.zeros(k.nu), np.zeros(k.nz)
+    x[k.index("preload")] = 4500.0
+    return 1e3 * median_ms(lambda: [f(x, c, u, z) for _ in range(50)], 11) / 50
+
+
+def first_call_seconds() -> float:
+    with tempfile.TemporaryDirectory() as empty:
+        done = subprocess.run(
+            [sys.executable, "-c", FIRST_CALL],
+            env={**os.environ, "DOE_KC_CACHE": empty, "PYTHONPATH": os.pathsep.join(sys.path)},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+    return float(done.stdout)
+
+
+def scipy_seconds() -> float:
+    """The same equilibria by scipy.optimize.root (hybr) with the exact Jacobian."""
+    axle = example_axle()
+    k, solution = kernel(axle.topology), solve(axle)
+    c = k.constant_values(dict(axle.values))
+    residual, jacobian = Buffered(k.functions["residual"]), Buffered(k.functions["jacobian"])
+    z, scale = np.zeros(0), k.scale
+
+    def fun(x: np.ndarray, u: np.ndarray) -> np.ndarray:
+        return residual(x, c, u, z) / scale
+
+    def jac(x: np.ndarray, u: np.ndarray) -> np.ndarray:
+        out = np.zeros((k.nx, k.nx))
+        out[k.rows, k.cols] = jacobian(x, c, u, z) / scale[k.rows]
+        return out
+
+    started = time.perf_counter()
+    for case in solution.cases.values():
+        for branch in case.branches:
+            x = branch.x[0]
+            for u, expected in zip(branch.u[1:], branch.x[1:], strict=True):
+                x = root(fun, x, args=(u,), jac=jac, tol=1e-12).x
+                assert np.abs(x - expected).max() < 1e-5
+    return time.perf_counter() - started
+
+
+def main() -> None:
+    axle = example_axle()
+    solution = solve(axle)
+    counts, n = solution.counts, solution.equilibria
+    compiled = median_ms(lambda: solve(axle), 31)
+    interpreted = median_ms(lambda: solve(axle, compiled=False), 11)
+    reduce_ms = median_ms(lambda: reduce_all(curve_set(solution)), 31)
+    paths = settable_paths(axle)
+    sensitivities(axle, solution, paths)
+    exact = median_ms(lambda: sensitivities(axle, solution, paths), 5)
+    parameters = [p for p in design_parameters(axle) if p.active]
+    rows = list(latin_hypercube(parameters, 400, seed=3).rows())
+    batch = {w: median_ms(lambda w=w: evaluate_all(axle, rows, workers=w), 1) / len(rows) for w in (1, 2)}
+    scipy = 1e3 * scipy_seconds()
+    publish(
+        "solver_speed",
+        [
+            "# Speed",
+            "",
+            f"Whole suite of the example axle: 8 load cases, both directions, {n} equilibria. {machine()}.",
+            "",
+            "| | ms a design | equilibria/s | wanted |",
+            "|---|---|---|---|",
+            f"| compiled kernels, one core | {compiled:.1f} | {1e3 * n / compiled:.0f} | 30 ms |",
+            f"| interpreted, one core | {interpreted:.1f} | {1e3 * n / interpreted:.0f} | 300 ms |",
+            f"| scipy.optimize.root, same exact Jacobian, interpreted | {scipy:.0f} "
+            f"| {1e3 * n / scipy:.0f} | {scipy / interpreted:.1f} x slower than interpreted |",
+            f"| exact sensitivities of all outputs to {len(paths)} parameters | {exact:.0f} | | 1000 ms |",
+            f"| batch with characteristics, 1 process | {batch[1]:.1f} | | |",
+            f"| batch with characteristics, 2 processes | {batch[2]:.1f} | | {batch[1] / batch[2]:.2f} x |",
+            "",
+            f"- per equilibrium: {counts[3] / n:.2f} Newton steps, {counts[0] / n:.2f} residuals, "
+            f"{counts[1] / n:.2f} Jacobians and factorizations",
+            f"- interpreted evaluations: residual {function_us('residual'):.1f} us, "
+            f"Jacobian {function_us('jacobian'):.1f} us, outputs {function_us('outputs'):.1f} us",
+            f"- reduction of curves to {len(reduce_all(curve_set(solution)))} characteristics: {reduce_ms:.1f} ms",
+            f"- first call on a new machine, import, assembly and compiling included: "
+            f"{first_call_seconds():.1f} s (wanted: below 10 s)",
+        ],
+    )
+
+
+if __name__ == "__main__":
+    main()

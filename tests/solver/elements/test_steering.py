@@ -1,0 +1,49 @@
+"""Rack, column spring, rack mount."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doe_kc.solver.elements.steering import Steering
+from tests.solver.elements.mini import builder, number, stub, turned
+
+PHI = [0.01, -0.02, 0.1]
+
+
+def assembled(**topology: object):
+    b = builder(**topology)
+    b.bodies["subframe.centre"] = stub("sub-frame", [180.0, 0.0, 247.5], [0.5, 1.0, -0.5], PHI)
+    Steering().assemble(b)
+    return b
+
+
+def test_the_rack_slides_along_the_sub_frame_s_y() -> None:
+    b = assembled()
+    point = np.array([152.0, -350.0, 279.0])
+    still = number(b, b.bodies["rack"].point(point))
+    moved = number(b, b.bodies["rack"].point(point), {"rack": 12.0})
+    # `rack` names both the pinion input and the travel: with both at 12 the column is at rest
+    np.testing.assert_allclose(moved - still, 12.0 * turned(PHI)[:, 1])
+
+
+def test_the_column_pulls_the_rack_to_the_pinion() -> None:
+    b = assembled()
+    travel, pinion = b.joints[-1].freedoms[0].symbol, b.controls["rack"]
+    import casadi as ca
+
+    force = ca.substitute(ca.vertcat(b.points["column force"], b.resistances["rack"]), ca.vertcat(travel, pinion), ca.SX([3.0, 5.0]))
+    on_rack, resistance = number(b, force, {"scb.Tz": 1.5})
+    assert on_rack == pytest.approx(1.5 * 2070.0 * 2.0)
+    assert resistance == pytest.approx(-on_rack)
+
+
+def test_a_rack_mount_carries_rack_and_pinion() -> None:
+    b = assembled(rack_mount=True)
+    assert [j.label for j in b.joints] == ["rack housing", "rack"]
+    given = {"rack_mount.rate": 6000.0, "rack housing": 0.4}
+    assert number(b, b.resistances["rack housing"], given) == pytest.approx(2400.0)
+    # the pinion rides on the housing: its motion winds nothing up
+    assert number(b, b.points["column force"], given) == pytest.approx(0.0)
+    still = number(b, b.bodies["rack"].origin, given | {"rack housing": 0.0})
+    np.testing.assert_allclose(number(b, b.bodies["rack"].origin, given) - still, 0.4 * turned(PHI)[:, 1], atol=1e-12)

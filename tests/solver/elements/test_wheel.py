@@ -1,0 +1,63 @@
+"""Wheel: design spin axis, and the hub's springs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doe_kc.solver.elements.wheel import SPIN_STIFFNESS, Wheel
+from tests.solver.elements.mini import MIRROR, SIDES, builder, gibbs, hardpoint, number, stub, turned
+
+NM_PER_DEG = 1000 * 180 / np.pi
+HUB = {f"hub.{n}@{s}": v for n, v in (("camber", 6000.0), ("toe", 9000.0)) for s in SIDES}
+
+
+def assembled(rotation: object = (0.0, 0.0, 0.0), **topology: object):
+    b = builder(**topology)
+    for side in SIDES:
+        b.bodies[f"knuckle.{side}"] = stub(f"knuckle {side}", hardpoint("LWB", side), rotation=rotation)
+    Wheel().assemble(b)
+    return b
+
+
+@pytest.mark.parametrize(("toe", "camber"), [(0.05, -0.5), (2.0, 3.0), (-1.0, 0.0)])
+def test_the_spin_axis_reads_back_toe_and_camber(toe: float, camber: float) -> None:
+    b = assembled()
+    given = {f"static.{n}@{s}": v for n, v in (("toe", toe), ("camber", camber)) for s in SIDES}
+    left, right = (number(b, b.points[f"spin.{s}"], given) for s in SIDES)
+    assert np.linalg.norm(left) == pytest.approx(1.0)
+    assert left[1] < 0 < right[1]  # outwards
+    assert np.degrees(np.arctan2(-left[0], -left[1])) == pytest.approx(toe)
+    assert -np.degrees(np.arcsin(left[2])) == pytest.approx(camber)
+    np.testing.assert_allclose(right, MIRROR @ left)
+
+
+def test_a_rigid_wheel_is_the_knuckle() -> None:
+    phi = [0.02, 0.1, -0.3]
+    b = assembled(phi)
+    assert b.bodies["wheel.L"] is b.bodies["knuckle.L"]
+    ball = hardpoint("LWB")
+    expected = ball + turned(phi) @ (hardpoint("WLC") - ball)
+    np.testing.assert_allclose(number(b, b.points["wheel centre.L"]), expected)
+
+
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize(("axis", "stiffness"), [(0, 6000.0 * NM_PER_DEG), (1, SPIN_STIFFNESS), (2, 9000.0 * NM_PER_DEG)])
+def test_hub_springs(side: str, axis: int, stiffness: float) -> None:
+    """About the knuckle's X (camber) and Z (toe); 1e8 Nm/rad about Y."""
+    b = assembled(hub=True)
+    phi = 0.01 * np.eye(3)[axis]
+    given = HUB | {f"wheel {side}.{a}": v for a, v in zip(("rx", "ry", "rz"), gibbs(phi), strict=True)}
+    moment = [number(b, b.resistances[f"wheel {side}.{a}"], given) for a in ("rx", "ry", "rz")]
+    np.testing.assert_allclose(moment, stiffness * phi, rtol=1e-9, atol=1e-4)
+
+
+def test_the_sprung_wheel_turns_about_its_centre_in_the_knuckle_s_axes() -> None:
+    phi = [0.02, 0.1, -0.3]
+    b = assembled(phi, hub=True)
+    given = HUB | {"wheel L.rz": float(np.tan(0.005))}
+    ball = hardpoint("LWB")
+    expected = ball + turned(phi) @ (hardpoint("WLC") - ball)
+    np.testing.assert_allclose(number(b, b.points["wheel centre.L"], given), expected)
+    axes = number(b, b.bodies["wheel.L"].axes, given)
+    np.testing.assert_allclose(axes, turned(phi) @ turned([0, 0, 0.01]), atol=1e-12)

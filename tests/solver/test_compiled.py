@@ -1,0 +1,125 @@
+"""Compiled kernels: the same figures as interpreted, and a machine that cannot compile still works."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doe_kc.solver import compiled, suite
+from doe_kc.solver.compiled import CACHE_VARIABLE, CompileError, cache_folder, compiled_kernel, find_compiler
+from doe_kc.solver.suite import library_for, solve
+from tests.reference import nominal
+
+needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
+TOPOLOGY = nominal().topology
+TINY = {"one": "int one(void) { return 1; }\n"}
+"""Sources that compile in no time."""
+
+
+@pytest.fixture
+def fresh(monkeypatch: pytest.MonkeyPatch):
+    """No kernel in memory, and a notice that may come once."""
+    monkeypatch.delenv("DOE_KC_COMPILE", raising=False)
+    compiled_kernel.cache_clear()
+    suite._notice_once.cache_clear()
+    yield
+    compiled_kernel.cache_clear()
+    suite._notice_once.cache_clear()
+
+
+@needs_compiler
+def test_compiled_and_interpreted_agree() -> None:
+    a, b = solve(nominal(), compiled=True), solve(nominal(), compiled=False)
+    assert a.equilibria == b.equilibria
+    for case, expected in b.cases.items():
+        for one, other in zip(a.cases[case].branches, expected.branches, strict=True):
+            np.testing.assert_allclose(one.y, other.y, rtol=1e-9, atol=1e-7)
+            np.testing.assert_allclose(one.x, other.x, rtol=1e-9, atol=1e-9)
+
+
+@pytest.mark.usefixtures("fresh")
+def test_without_a_compiler_everything_works_with_one_notice(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(compiled, "find_compiler", lambda: None)
+    with caplog.at_level(logging.INFO, logger="doe_kc"):
+        for _ in range(3):
+            found = solve(nominal(), ["drive"])
+    assert found.failure is None
+    assert len(caplog.records) == 1
+    assert "compiler" in caplog.text
+    with pytest.raises(CompileError, match="no C compiler"):
+        library_for(TOPOLOGY, True)
+
+
+@needs_compiler
+@pytest.mark.usefixtures("fresh")
+def test_a_cache_that_cannot_be_written_falls_back_with_a_notice(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    (tmp_path / "file").write_text("not a folder")
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path / "file" / "cache"))
+    assert cache_folder() == tmp_path / "file" / "cache"
+    with caplog.at_level(logging.INFO, logger="doe_kc"):
+        assert solve(nominal(), ["drive"]).failure is None
+    assert len(caplog.records) == 1
+    assert "cache" in caplog.text
+
+
+@pytest.mark.usefixtures("fresh")
+def test_a_compiler_that_fails_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    broken = tmp_path / "cc"
+    broken.write_text("#!/bin/sh\necho 'license expired' >&2\nexit 1\n")
+    broken.chmod(0o755)
+    monkeypatch.setattr(compiled, "find_compiler", lambda: str(broken))
+    with caplog.at_level(logging.INFO, logger="doe_kc"):
+        assert solve(nominal(), ["drive"]).failure is None
+    assert "license expired" in caplog.text
+
+
+@needs_compiler
+def test_a_library_is_built_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    first = compiled.build(TINY)
+    stamp = first.stat().st_mtime_ns
+    assert compiled.build(TINY) == first
+    assert first.stat().st_mtime_ns == stamp
+    assert compiled.build({"one": "int one(void) { return 2; }\n"}) != first
+    assert [p.suffix for p in tmp_path.iterdir()] == [first.suffix] * 2
+    assert compiled.load(first).one() == 1
+
+
+@needs_compiler
+def test_a_damaged_library_is_taken_out_of_the_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    path = compiled.build(TINY)
+    path.write_bytes(b"not a library")
+    with pytest.raises(CompileError, match="damaged"):
+        compiled.load(path)
+    assert not path.exists()
+    assert compiled.load(compiled.build(TINY)).one() == 1
+
+
+@needs_compiler
+@pytest.mark.parametrize("keep", [0, 100, 0.3, 0.6, 0.9])
+def test_a_truncated_library_is_no_crash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, keep: float) -> None:
+    """Loaded in a process of its own, since a bad mapping kills it."""
+    import subprocess
+    import sys
+
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    path = compiled.build(TINY)
+    whole = path.read_bytes()
+    path.unlink()
+    path.write_bytes(whole[: int(keep if keep >= 1 else keep * len(whole))])
+    script = (
+        "import sys; from pathlib import Path; from doe_kc.solver import compiled\n"
+        "try: compiled.load(Path(sys.argv[1]))\n"
+        "except compiled.CompileError: pass\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True)
+    assert done.returncode == 0, f"exit {done.returncode}: {done.stderr[-300:]}"
