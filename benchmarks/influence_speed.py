@@ -16,7 +16,8 @@ def main() -> None:
         [
             "# Influence study",
             "",
-            f"{len(again.parameters)} parameters, {runs} true-solver runs and all exact sensitivities. {machine()}.",
+            f"{len(again.parameters)} parameters, {runs} true-solver runs and all exact sensitivities. "
+            f"{machine()}.",
             "",
             f"- first in a process (assembles the equations): {first.seconds:.2f} s",
             f"- again: {again.seconds:.2f} s (goal: below 5 s on 2 cores)",

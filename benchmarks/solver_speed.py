@@ -20,13 +20,13 @@ from scipy.optimize import root
 
 from doe_kc.axle import design_parameters
 from doe_kc.axle.parameters import settable_paths
+from doe_kc.characteristics import reduce_all
 from doe_kc.sampling.batch import evaluate_all
 from doe_kc.sampling.latin_hypercube import latin_hypercube
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
-from doe_kc.characteristics import reduce_all
 
 FIRST_CALL = """
 import time
@@ -130,7 +130,8 @@ def main() -> None:
             f"{counts[1] / n:.2f} Jacobians and factorizations",
             f"- interpreted evaluations: residual {function_us('residual'):.1f} us, "
             f"Jacobian {function_us('jacobian'):.1f} us, outputs {function_us('outputs'):.1f} us",
-            f"- reduction of curves to {len(reduce_all(curve_set(solution)))} characteristics: {reduce_ms:.1f} ms",
+            f"- reduction of curves to {len(reduce_all(curve_set(solution)))} characteristics: "
+            f"{reduce_ms:.1f} ms",
             f"- first call on a new machine, import, assembly and compiling included: "
             f"{first_call_seconds():.1f} s (wanted: below 10 s)",
         ],

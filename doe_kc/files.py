@@ -85,7 +85,5 @@ def _siblings(model: type[BaseModel], keys: list[str]) -> list[str]:
     for key in keys[:-1]:
         field = current.model_fields.get(key) if current is not None else None
         annotation = field.annotation if field is not None else None
-        current = (
-            annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
-        )
+        current = annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
     return list(current.model_fields) if current is not None else []

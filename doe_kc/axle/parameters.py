@@ -72,12 +72,8 @@ def _kinds() -> dict[str, _Kind]:
         "bump_stop.clearance": _Kind("Bump stop clearance", "OTHER", "mm", (-10.0, 10.0), 1.0),
         "rebound_stop.clearance": _Kind("Rebound stop clearance", "OTHER", "mm", (-10.0, 10.0), 1.0),
         "spring.rate": _Kind("Spring rate", "OTHER", "N/mm", (0.8, 1.25), 0.1, relative=True),
-        "arb.radius": _Kind(
-            "Anti-roll bar outer radius", "OTHER", "mm", (0.8, 1.25), 0.1, relative=True
-        ),
-        "steer_arm.radius": _Kind(
-            "Steer arm outer radius", "OTHER", "mm", (0.7, 1.3), 0.1, relative=True
-        ),
+        "arb.radius": _Kind("Anti-roll bar outer radius", "OTHER", "mm", (0.8, 1.25), 0.1, relative=True),
+        "steer_arm.radius": _Kind("Steer arm outer radius", "OTHER", "mm", (0.7, 1.3), 0.1, relative=True),
         "tyre.rate": _Kind("Tyre vertical stiffness", "OTHER", "N/mm", (0.8, 1.25), 0.1, relative=True),
         "static.toe": _Kind("Static toe", "OTHER", "deg", (-0.3, 0.3), 0.1),
         "static.camber": _Kind("Static camber", "OTHER", "deg", (-0.5, 0.5), 0.1),
@@ -93,9 +89,7 @@ POSITIVE = ("stiffness", "rate", "radius", "nominal_radius", "static_load", "col
 def design_parameters(axle: Axle) -> list[Parameter]:
     """Every design variable of Table 1 and Appendix A, in their order; followers only when freed."""
     return [
-        _parameter(axle, path, kind)
-        for path, kind in KINDS.items()
-        if path.split(".")[0] not in axle.follow
+        _parameter(axle, path, kind) for path, kind in KINDS.items() if path.split(".")[0] not in axle.follow
     ]
 
 
@@ -227,9 +221,7 @@ def _must_be_positive(name: str) -> bool:
         return rest in BUSHING_AXES or rest.startswith("stiffness.")
     if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
         return False
-    return (
-        name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"} or rest in POSITIVE
-    )
+    return name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"} or rest in POSITIVE
 
 
 def _is_ratio(name: str) -> bool:
@@ -242,7 +234,7 @@ def _split(axle: Axle, path: str, source: str) -> tuple[str, str | None]:
     name = rest if side else path
     if f"{name}@L" in axle.values or (name in axle.values and side is None):
         return name, side
-    known = [p for p in settable_paths(axle)]
+    known = settable_paths(axle)
     if name in known:
         raise InputError(f"{source}: {path}: {name} belongs to the whole axle; leave out {head!r}.")
     raise InputError(

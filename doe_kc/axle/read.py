@@ -17,6 +17,7 @@ from doe_kc.files import read_toml, validate
 from doe_kc.solver.curve import curve_values
 from doe_kc.solver.load_cases import LOAD_CASES, LoadCase
 from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.steer import Steer
 from doe_kc.solver.topology import Topology
 
 NM_PER_DEG = 1000.0 * 180.0 / np.pi
@@ -126,10 +127,9 @@ def _stop_values(name: str, stop: Stop) -> dict[str, float]:
 
 
 def _load_cases(file: AxleFile, source: str) -> dict[str, LoadCase]:
+    ratio = file.steering.rack_mm_per_rev
     cases = {
-        ident: replace(case, rack_mm_per_rev=file.steering.rack_mm_per_rev)
-        if hasattr(case, "rack_mm_per_rev")
-        else case
+        ident: replace(case, rack_mm_per_rev=ratio) if isinstance(case, Steer) else case
         for ident, case in LOAD_CASES.items()
     }
     for ident, sweep in file.load_cases.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -82,7 +83,7 @@ def check_table(points: list[list[float]], name: str, *, through_zero: bool = Fa
     """ValueError unless the points rise strictly in deflection and never fall in force."""
     if len(points) < 2:
         raise ValueError(f"{name} needs at least two points [deflection, force]")
-    for row, (before, after) in enumerate(zip(points, points[1:], strict=False), start=2):
+    for row, (before, after) in enumerate(pairwise(points), start=2):
         if after[0] <= before[0]:
             raise ValueError(
                 f"{name} is not monotone: point {row} has deflection {after[0]:g} after {before[0]:g}; "
@@ -201,7 +202,5 @@ class AxleFile(Strict):
                 if point not in known:
                     raise ValueError(f"follow names {point!r}, which is not a hardpoint")
             if leader in self.follow:
-                raise ValueError(
-                    f"follow: {follower} follows {leader}, which itself follows another point"
-                )
+                raise ValueError(f"follow: {follower} follows {leader}, which itself follows another point")
         return self

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic, appendix_b, appendix_c
-from doe_kc.characteristics._reduction import reduce_all, reduce_one, reduction_gradient
+from doe_kc.characteristics.reduction import reduce_all, reduce_one, reduction_gradient
 from doe_kc.registry import import_members
 
 import_members(sys.modules[__name__])

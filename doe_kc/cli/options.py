@@ -13,7 +13,5 @@ MeasurementOption = Annotated[
 ]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for all results, in place of the study's.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the figures to this JSON file.")]
-WorkersOption = Annotated[
-    int | None, typer.Option(min=1, help="Worker processes; default one per core.")
-]
+WorkersOption = Annotated[int | None, typer.Option(min=1, help="Worker processes; default one per core.")]
 SeedOption = Annotated[int | None, typer.Option(min=0, help="Seed, in place of the study's.")]

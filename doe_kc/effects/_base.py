@@ -41,9 +41,7 @@ class Effect(ABC):
                     f"{source}: effect {self.id} has no key {key!r}; "
                     f"its keys are {', '.join(self.options) or 'none'}.{nearest(key, self.options)}"
                 )
-        return {
-            key: self._checked(key, given.get(key, o.default), source) for key, o in self.options.items()
-        }
+        return {key: self._checked(key, given.get(key, o.default), source) for key, o in self.options.items()}
 
     def _checked(self, key: str, value: Any, source: str) -> Any:
         option = self.options[key]

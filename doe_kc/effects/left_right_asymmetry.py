@@ -22,9 +22,7 @@ class LeftRightAsymmetry(Effect):
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
         nested = given.get("scale", {})
         if not isinstance(nested, Mapping):
-            raise InputError(
-                f"{source}: effect {self.id}: scale = {nested!r}, expected {{ LLR_R = 1.25 }}."
-            )
+            raise InputError(f"{source}: effect {self.id}: scale = {nested!r}, expected {{ LLR_R = 1.25 }}.")
         flat = {k.removeprefix("scale."): v for k, v in given.items() if k != "scale"} | dict(nested)
         for key in flat:
             if key not in KEYS:

@@ -153,9 +153,7 @@ def _outcomes(problem: _Problem, variables: list[Variable]) -> Iterator[Outcome]
 def per_unit(influence: Influence) -> FloatArray:
     """(parameters, characteristics) exact slope per unit of the parameter; one at a time where none."""
     steps = np.array([p.step for p in influence.parameters])[:, None]
-    return np.asarray(
-        np.where(np.isfinite(influence.exact), influence.exact, influence.absolute) / steps
-    )
+    return np.asarray(np.where(np.isfinite(influence.exact), influence.exact, influence.absolute) / steps)
 
 
 def suggested_bounds(parameter: Parameter, side: str, wanted: float) -> tuple[float, float]:
@@ -176,9 +174,7 @@ def suggested_bounds(parameter: Parameter, side: str, wanted: float) -> tuple[fl
     return lower, upper
 
 
-def _variable(
-    problem: _Problem, pivots: Pivots, i: int, z: float, free: float, ratio: float
-) -> Variable:
+def _variable(problem: _Problem, pivots: Pivots, i: int, z: float, free: float, ratio: float) -> Variable:
     parameter, scaled = problem.parameters[i], problem.scaled
     others = [j for j in pivots.order if j != i]
     length = float(np.linalg.norm(scaled[:, i]))
@@ -244,15 +240,11 @@ def _rows(influence: Influence, targets: Mapping[str, float]) -> list[int]:
     ids = [c.id for c in influence.characteristics]
     for name in targets:
         if name not in ids:
-            raise InputError(
-                f"target {name!r} is not a characteristic of the study.{nearest(name, ids)}"
-            )
+            raise InputError(f"target {name!r} is not a characteristic of the study.{nearest(name, ids)}")
     known = [math.isfinite(targets.get(i, math.nan)) for i in ids]
     rows = [j for j in range(len(ids)) if known[j] and math.isfinite(influence.baseline[j])]
     if not rows:
-        raise InputError(
-            "no characteristic has a measured value; a selection needs at least one target."
-        )
+        raise InputError("no characteristic has a measured value; a selection needs at least one target.")
     return rows
 
 

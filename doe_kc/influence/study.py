@@ -77,7 +77,7 @@ def exact_changes(
         gradients[paths.index("strut.flexibility")] = characteristic_gradients(
             bending, solution, ["strut.flexibility"], columns, windows=windows
         )[:, 0]
-    return gradients * np.array([p.step for p in rows])[:, None]
+    return np.asarray(gradients * np.array([p.step for p in rows])[:, None])
 
 
 def _failures(rows: Sequence[Parameter], evaluations: Sequence[Evaluation]) -> dict[str, str]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one
-from doe_kc.characteristics._reduction import LEFT, abscissa, default_window, fit_window, slope
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one, reduction_gradient
+from doe_kc.characteristics.reduction import LEFT, default_window, fit_window, slope
 from doe_kc.curves import RESPONSE_UNITS, SIDES, CaseCurves, CurveSet
 from doe_kc.measurement.noise import CaseNoise
 from doe_kc.typing import FloatArray
@@ -91,8 +91,7 @@ def characteristic_estimates(
     static_sd: of the alignment's angles, deg.
     """
     return {
-        ident: _estimate(entry, curves, noise, windows, static_sd)
-        for ident, entry in CHARACTERISTICS.items()
+        ident: _estimate(entry, curves, noise, windows, static_sd) for ident, entry in CHARACTERISTICS.items()
     }
 
 
@@ -110,32 +109,7 @@ def _estimate(
     if entry.kind == "static":
         return Estimate(value, static_sd)
     case = curves.cases[entry.load_case]
-    weights = _sensitivity(entry, case, curves.half_track, window)
+    weights = reduction_gradient(entry, case, curves.half_track, window=window)
     models = noise[entry.load_case]
     variance = sum(float(w @ models[r].covariance(side=LEFT) @ w) for r, w in weights.items())
     return Estimate(value, float(np.sqrt(max(variance, 0.0))))
-
-
-def _sensitivity(
-    entry: Characteristic, case: CaseCurves, half_track: float, window: float | None
-) -> dict[str, FloatArray]:
-    """Derivative of the gradient b = Sxy / Sxx to the left curves, name -> (n,).
-
-    As `reduction_gradient`, for a window of choice: noise of the abscissa wc_z counts too.
-    """
-    inside = fit_window(case, window)
-    x = abscissa(entry, case, half_track)[inside]
-    y = case.mean[entry.response][LEFT][inside]
-    weights = slope_weights(x)
-    out = {entry.response: _spread(entry.scale * weights, inside)}
-    if entry.abscissa == "wheel_travel":
-        residual = (y - y.mean()) - 2.0 * (weights @ y) * (x - x.mean())
-        dx = x - x.mean()
-        out["wc_z"] = _spread(entry.scale * residual / (dx @ dx), inside) + out.get("wc_z", 0.0)
-    return out
-
-
-def _spread(values: FloatArray, inside: FloatArray) -> FloatArray:
-    out = np.zeros(inside.size)
-    out[np.asarray(inside, dtype=bool)] = values
-    return out

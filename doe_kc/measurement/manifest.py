@@ -129,15 +129,9 @@ def _parse(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
-        raise InputError(
-            f"{path}: no such file; expected the rig's test.toml, check the path."
-        ) from None
+        raise InputError(f"{path}: no such file; expected the rig's test.toml, check the path.") from None
     except IsADirectoryError:
-        raise InputError(
-            f"{path}: is a folder; expected a test.toml, name the file inside it."
-        ) from None
+        raise InputError(f"{path}: is a folder; expected a test.toml, name the file inside it.") from None
     except (OSError, ValueError, RecursionError) as error:
         what = " ".join(str(error).split())
-        raise InputError(
-            f"{path}: is not readable TOML ({what}); expected UTF-8 TOML, mend it."
-        ) from None
+        raise InputError(f"{path}: is not readable TOML ({what}); expected UTF-8 TOML, mend it.") from None

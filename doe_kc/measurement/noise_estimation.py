@@ -87,9 +87,7 @@ def _white_covariance(model: NoiseModel, side: int) -> FloatArray:
     return out
 
 
-def _informed(
-    model: NoiseModel, runs: Sequence[RunCurves], components: ErrorComponents | None
-) -> NoiseModel:
+def _informed(model: NoiseModel, runs: Sequence[RunCurves], components: ErrorComponents | None) -> NoiseModel:
     if components is None:
         return model
     values = {f: getattr(model, f) for f in NoiseModel.__dataclass_fields__}

@@ -53,9 +53,7 @@ def _read_table(path: Path, sheet: str | None, load_case: str) -> Table:
     if suffix in WORKBOOK_SUFFIXES:
         return read_sheet_table(path, sheet, load_case)
     if suffix == ".xls":
-        raise InputError(
-            f"{path}: is in the old Excel format .xls; expected .xlsx or .csv, save it as such."
-        )
+        raise InputError(f"{path}: is in the old Excel format .xls; expected .xlsx or .csv, save it as such.")
     if sheet is not None:
         raise InputError(
             f'{path}: a sheet ("#{sheet}") is named of a file that is no .xlsx; '

@@ -183,9 +183,7 @@ def _check_windows(windows: Windows) -> None:
 def _check_window_points(curves: CurveSet, windows: Windows) -> None:
     for name, case in curves.cases.items():
         limit = windows.get(name)
-        inside = (
-            case.input.size if limit is None else int(np.sum(np.abs(case.input) <= limit * (1 + 1e-9)))
-        )
+        inside = case.input.size if limit is None else int(np.sum(np.abs(case.input) <= limit * (1 + 1e-9)))
         if inside < MIN_WINDOW_POINTS:
             step = float(np.diff(case.input).max())
             raise InputError(

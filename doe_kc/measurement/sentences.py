@@ -13,9 +13,7 @@ from pydantic import BaseModel, ValidationError
 from doe_kc.errors import InputError, nearest
 
 
-def refuse_unknown(
-    path: Path, data: Mapping[str, Any], model: type[BaseModel], prefix: str = ""
-) -> None:
+def refuse_unknown(path: Path, data: Mapping[str, Any], model: type[BaseModel], prefix: str = "") -> None:
     """InputError for a key that `model` does not know, with the nearest known one.
 
     Where a model allows further keys, only those are refused that look like a known key misspelt.

@@ -39,9 +39,7 @@ def read_bytes(path: Path) -> bytes:
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: cannot be read ({error}); expected a readable record file.") from None
     if not data.strip():
-        raise InputError(
-            f"{path}: the file is empty; expected a heading row and samples, export it again."
-        )
+        raise InputError(f"{path}: the file is empty; expected a heading row and samples, export it again.")
     return data
 
 
@@ -85,9 +83,7 @@ def _decode(path: Path, data: bytes) -> str:
     if "\x00" in text:
         raise InputError(f"{path}: contains binary data; expected CSV text, export the record again.")
     if not text.strip():
-        raise InputError(
-            f"{path}: the file is empty; expected a heading row and samples, export it again."
-        )
+        raise InputError(f"{path}: the file is empty; expected a heading row and samples, export it again.")
     return text
 
 

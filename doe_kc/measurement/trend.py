@@ -38,9 +38,7 @@ class Trend:
         return np.asarray(chebyshev.chebval(position, self.coefficients), dtype=np.float64)
 
 
-def fit_trends(
-    inputs: FloatArray, values: FloatArray, *, max_degree: int = MAX_DEGREE
-) -> tuple[Trend, ...]:
+def fit_trends(inputs: FloatArray, values: FloatArray, *, max_degree: int = MAX_DEGREE) -> tuple[Trend, ...]:
     """A trend for each row of `values` (k, n) over `inputs` (n,), both branches and all runs together.
 
     The degree is the smallest whose blocked 10-fold cross-validation error is within one standard error
@@ -80,9 +78,7 @@ def _fold_errors(basis: FloatArray, values: FloatArray, folds: FloatArray) -> Fl
     return out
 
 
-def _trend(
-    basis: FloatArray, row: FloatArray, errors: FloatArray, *, centre: float, scale: float
-) -> Trend:
+def _trend(basis: FloatArray, row: FloatArray, errors: FloatArray, *, centre: float, scale: float) -> Trend:
     degree = _one_standard_error(errors)
     solution = np.linalg.lstsq(basis[:, : degree + 1], row, rcond=None)[0]
     coefficients = np.asarray(solution, dtype=np.float64)

@@ -28,9 +28,7 @@ def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> Table:
     return _table(f"{path}#{title}", rows)
 
 
-def _read(
-    path: Path, data: bytes, sheet: str | None, load_case: str
-) -> tuple[list[tuple[Any, ...]], str]:
+def _read(path: Path, data: bytes, sheet: str | None, load_case: str) -> tuple[list[tuple[Any, ...]], str]:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # openpyxl warns of extensions that hold no values

@@ -45,7 +45,7 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
         ax.set_xlabel(f"{case.input_label} [{case.unit}]")
     _table(panels[7], comparison, load_case)
     _legend(panels[8])
-    fig.get_layout_engine().set(w_pad=0.12, h_pad=0.08)  # type: ignore[union-attr]  # set by style.figure
+    fig.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     fig.suptitle(f"{case.label}: {comparison.model.source} against {comparison.measured.source}", fontsize=11)
     return fig
 
@@ -62,9 +62,7 @@ def write_comparison_figures(comparison: Comparison, folder: Path) -> list[Path]
 
 
 def _short(response: str) -> str:
-    return {"spin": "caster (knuckle)", "tyre_load": "tyre load"}.get(
-        response, response.replace("_", " ")
-    )
+    return {"spin": "caster (knuckle)", "tyre_load": "tyre load"}.get(response, response.replace("_", " "))
 
 
 def _draw(ax: Axes, model: CaseCurves, measured: CaseCurves, response: str) -> None:
@@ -82,9 +80,7 @@ def _draw(ax: Axes, model: CaseCurves, measured: CaseCurves, response: str) -> N
 def _legend(ax: Axes) -> None:
     ax.axis("off")
     for side, colour in enumerate(SIDE_COLOURS):
-        ax.plot(
-            [], [], ".", color=colour, label=f"measured, {SIDE_NAMES[side]} wheel (mean of branches)"
-        )
+        ax.plot([], [], ".", color=colour, label=f"measured, {SIDE_NAMES[side]} wheel (mean of branches)")
         ax.fill_between([], [], [], color=colour, alpha=0.2, lw=0, label="   between its branches")
         ax.plot([], [], color=colour, label=f"model, {SIDE_NAMES[side]} wheel")
     ax.legend(loc="upper left", fontsize=8)
@@ -102,8 +98,6 @@ def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:
     lines += ["", f"{'RMS of curve':<26}{'':>10}"]
     for curve in comparison.curves:
         if curve.load_case == load_case and curve.side == "L":
-            lines.append(
-                f"{_short(curve.response):<26}{curve.rms:>10.3g} {RESPONSE_UNITS[curve.response]}"
-            )
+            lines.append(f"{_short(curve.response):<26}{curve.rms:>10.3g} {RESPONSE_UNITS[curve.response]}")
     lines.append("* outside the constraint interval")
     ax.text(0, 1, "\n".join(lines), family="monospace", fontsize=6.5, va="top", transform=ax.transAxes)

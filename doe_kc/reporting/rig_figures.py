@@ -59,7 +59,10 @@ def write_rig_figures(measurement: Measurement, folder: Path) -> list[Path]:
     Raises RunError when the folder cannot be written.
     """
     return draw_series(
-        [(folder / f"rig_{case}", partial(rig_figure, measurement, case)) for case in measurement.curves.cases]
+        [
+            (folder / f"rig_{case}", partial(rig_figure, measurement, case))
+            for case in measurement.curves.cases
+        ]
     )
 
 

@@ -28,9 +28,7 @@ def curves_frame(solution: Solution) -> pd.DataFrame:
     return pd.concat(rows, ignore_index=True)
 
 
-def _branch_frame(
-    solution: Solution, case: CaseSolution, branch: BranchSolution, side: str
-) -> pd.DataFrame:
+def _branch_frame(solution: Solution, case: CaseSolution, branch: BranchSolution, side: str) -> pd.DataFrame:
     assert solution.static is not None
     columns: dict[str, Any] = {
         "load_case": case.load_case.id,
@@ -66,8 +64,8 @@ def characteristics_document(solution: Solution, seconds: float) -> dict[str, An
     """`{"characteristics": {name: {"value", "unit", "load_case"}}, "seconds"}`."""
     frame = characteristics_frame(solution)
     entries = {
-        row.name: {"value": float(row.value), "unit": row.unit, "load_case": row.load_case}
-        for row in frame.itertuples(index=False)
+        row["name"]: {key: row[key] for key in ("value", "unit", "load_case")}
+        for row in frame.to_dict("records")
     }
     return {"characteristics": entries, "seconds": seconds}
 

@@ -14,9 +14,7 @@ from doe_kc.axle.parameters import Parameter
 from doe_kc.sampling.design import Design
 
 
-def latin_hypercube(
-    parameters: Sequence[Parameter], n: int, *, seed: int, optimize: bool = False
-) -> Design:
+def latin_hypercube(parameters: Sequence[Parameter], n: int, *, seed: int, optimize: bool = False) -> Design:
     """n designs, uniform between the bounds; factors (0.5 ... 2) uniform in their logarithm.
 
     optimize: exchange coordinates for low centred discrepancy (slow beyond some hundred rows).

@@ -24,9 +24,7 @@ def one_at_a_time(parameters: Sequence[Parameter]) -> Design:
             if not (sign < 0 and is_one_sided(parameter)):
                 row[i] += sign * parameter.step
             rows.append(row)
-            labels.append(
-                f"{parameter.path} {sign * parameter.step:+g} {parameter.unit}".removesuffix(" -")
-            )
+            labels.append(f"{parameter.path} {sign * parameter.step:+g} {parameter.unit}".removesuffix(" -"))
     return Design("one_at_a_time", tuple(p.path for p in parameters), np.array(rows), tuple(labels))
 
 

@@ -193,7 +193,6 @@ def twist(name: str, axis: ca.SX) -> tuple[ca.SX, list[Freedom]]:
 def _three(name: str, prefix: str, axes: ca.SX, *, rotates: bool) -> tuple[ca.SX, list[Freedom]]:
     symbols = ca.SX.sym(name, 3)
     freedoms = [
-        Freedom(f"{name}.{prefix}{letter}", symbols[i], axes[:, i], rotates)
-        for i, letter in enumerate("xyz")
+        Freedom(f"{name}.{prefix}{letter}", symbols[i], axes[:, i], rotates) for i, letter in enumerate("xyz")
     ]
     return symbols, freedoms

@@ -32,9 +32,7 @@ def characteristic_gradients(
     exact, curves = sensitivities(axle, solution, paths), curve_set(solution)
     half_track = np.array([_half_track_gradient(axle, path) for path in paths])
     chosen = windows or {}
-    return np.array(
-        [_one(e, solution, curves, exact, half_track, chosen.get(e.load_case)) for e in entries]
-    )
+    return np.array([_one(e, solution, curves, exact, half_track, chosen.get(e.load_case)) for e in entries])
 
 
 def _half_track_gradient(axle: Axle, path: str) -> float:
@@ -51,13 +49,11 @@ def _one(
     window: float | None,
 ) -> FloatArray:
     if entry.kind == "static":
-        return exact.static[solution.column(f"{entry.response}@L")]
+        return np.asarray(exact.static[solution.column(f"{entry.response}@L")])
     if entry.load_case not in solution.cases:
         return np.full(len(exact.paths), np.nan)
     case = curves.cases[entry.load_case]
-    means, _ = mean_and_half_width(
-        solution.cases[entry.load_case], list(exact.branches[entry.load_case])
-    )
+    means, _ = mean_and_half_width(solution.cases[entry.load_case], list(exact.branches[entry.load_case]))
     gradient = np.zeros(len(exact.paths))
     for name, weight in reduction_gradient(entry, case, curves.half_track, window=window).items():
         gradient += weight @ means[:, solution.column(f"{name}@L")]

@@ -84,9 +84,7 @@ class CompiledKernel:
         y, level, r = np.zeros((n, kernel.ny)), np.zeros(n), np.zeros(kernel.nx)
         iterations, counts = np.zeros(n, dtype=np.int32), np.zeros(4, dtype=np.int64)
         tail = kernel.tail_controls
-        inputs = [
-            np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)
-        ]
+        inputs = [np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)]
         s_known, x_known, u_start, z_start, s_in, u_in, c_in = inputs
         code = self.library.march(
             *(ctypes.c_int(v) for v in (kernel.nx, active, kernel.nu, kernel.nz, kernel.ny)),

@@ -49,8 +49,7 @@ def curve_set(solution: Solution) -> CurveSet:
     if solution.static is None:
         raise ValueError("the axle has no static state, so it has no curves")
     static = {
-        name: solution.static.y[[solution.column(f"{name}@{side}") for side in ("L", "R")]]
-        for name in ANGLES
+        name: solution.static.y[[solution.column(f"{name}@{side}") for side in ("L", "R")]] for name in ANGLES
     }
     cases = {ident: case_curves(solution, case) for ident, case in solution.cases.items()}
     return CurveSet(solution.axle_name, cases, static, solution.half_track)

@@ -55,9 +55,7 @@ class Kernel:
         """Index of the control that prescribes each tail unknown."""
         names = {"pad L": "pad_L", "pad R": "pad_R", "preload": "preload"}
         tail = self.equations.unknowns[-self.equations.tail :]
-        return np.array(
-            [self.equations.control_names.index(names[t.name]) for t in tail], dtype=np.int32
-        )
+        return np.array([self.equations.control_names.index(names[t.name]) for t in tail], dtype=np.int32)
 
     def constant_values(self, values: dict[str, float]) -> FloatArray:
         """(nc,) constants from the axle's internal values."""
@@ -101,8 +99,8 @@ class Buffered:
         self.result = np.zeros(max(1, function.nnz_out(0)))
         self._buffer, self._evaluate = function.buffer()
         for i, array in enumerate(self._inputs):
-            self._buffer.set_arg(i, memoryview(array))
-        self._buffer.set_res(0, memoryview(self.result))
+            self._buffer.set_arg(i, memoryview(array))  # type: ignore[call-arg, arg-type]  # CasADi mis-stubs it
+        self._buffer.set_res(0, memoryview(self.result))  # type: ignore[call-arg, arg-type]
         self._size = function.nnz_out(0)
 
     def __call__(self, *arguments: FloatArray) -> FloatArray:

@@ -92,8 +92,7 @@ class _Marcher:
 
     def __post_init__(self) -> None:
         self._res, self._jac, self._out, self._state = (
-            Buffered(self.kernel.functions[n])
-            for n in ("residual", "jacobian", "outputs", "state_update")
+            Buffered(self.kernel.functions[n]) for n in ("residual", "jacobian", "outputs", "state_update")
         )
         m = self.active
         keep = (self.kernel.rows < m) & (self.kernel.cols < m)
@@ -184,7 +183,7 @@ class _Marcher:
             return False
         lu, pivots, info = lapack.dgetrf(matrix, overwrite_a=True)
         self._lu = (lu, pivots) if info == 0 else None
-        return info == 0
+        return bool(info == 0)
 
     def _newton(self, x: FloatArray, u: FloatArray, z: FloatArray) -> tuple[bool, FloatArray, int]:
         m, tol, fresh = self.active, self.settings.tol, False

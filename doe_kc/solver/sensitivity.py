@@ -141,9 +141,7 @@ class _Differentiator:
         no_z, no_du = np.zeros((k.nz, count)), np.zeros((k.nu, count))
         z0 = np.zeros(k.nz)
         dx0, _, _ = self._point(s.x0, s.u0, z0, no_du, no_z)
-        raised = np.array(
-            [internal_gradient(self._axle, p).get("ride_height", 0.0) for p in self._paths]
-        )
+        raised = np.array([internal_gradient(self._axle, p).get("ride_height", 0.0) for p in self._paths])
         du = no_du.copy()
         for control, unknown, shift in (
             ("pad_L", "pad L", raised),
@@ -191,9 +189,7 @@ class _Differentiator:
         for i in range(len(flat)):
             moved = list(flat)
             moved[i] += 1.0
-            shifted = StaticPads(
-                (moved[0], moved[1]), (moved[2], moved[3]), (moved[4], moved[5]), moved[6]
-            )
+            shifted = StaticPads((moved[0], moved[1]), (moved[2], moved[3]), (moved[4], moved[5]), moved[6])
             columns.append(self._controls(case, inputs, shifted) - base)
         return np.stack(columns, axis=-1)
 

@@ -55,9 +55,7 @@ def solve(
     c = k.constant_values(dict(axle.values))
     static = static_state(k, library, c, axle, options)
     if isinstance(static, Path):
-        return _ended(
-            axle, k, None, {}, _failure(k, static, "static equilibrium", "", 0.0, "", 0), throw
-        )
+        return _ended(axle, k, None, {}, _failure(k, static, "static equilibrium", "", 0.0, "", 0), throw)
     solved: dict[str, CaseSolution] = {}
     for ident, case in chosen.items():
         result = _solve_case(k, library, c, static, case, options)
@@ -171,9 +169,7 @@ def _start(
     return Start(s, x, u[0], static.z), origin
 
 
-def _failure(
-    k: Kernel, path: Path, case: str, branch: str, value: float, unit: str, step: int
-) -> Failure:
+def _failure(k: Kernel, path: Path, case: str, branch: str, value: float, unit: str, step: int) -> Failure:
     weighted = np.abs(path.residual / k.scale)
     if path.failed is None or not np.isfinite(weighted).any():
         worst = 0

@@ -79,8 +79,7 @@ def reduced_document(reduced: Reduced) -> dict[str, Any]:
             "sd": height.sd,
             "consistency": height.consistency,
             "contributions": {
-                c.response: {"estimate": c.estimate, "sd": c.sd, "used": c.used}
-                for c in height.contributions
+                c.response: {"estimate": c.estimate, "sd": c.sd, "used": c.used} for c in height.contributions
             },
         },
         "noise": frames.noise.to_dict("records"),

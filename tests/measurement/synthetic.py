@@ -94,9 +94,7 @@ def record_columns(
             y = y + half_width * scale * falling * (1.0 - relative**4)
             y = y + errors.gain * rng.normal() * change
             y = y + scale * (
-                errors.white * rng.normal(size=samples)
-                + errors.offset * rng.normal()
-                + errors.smooth * wave
+                errors.white * rng.normal(size=samples) + errors.offset * rng.normal() + errors.smooth * wave
             )
             out[f"{RIG_NAMES[response]}_{name} [{RESPONSE_UNITS[response]}]"] = y
     return out

@@ -41,9 +41,7 @@ def test_gradients_beside_the_bump_stop_are_unbiased(tmp_path: Path) -> None:
     found, expected = (reduce_all(CurveSet("", {"vertical": c}, None, 790.0)) for c in (case, true_case))
     assert found["vertical.ride_rate"] == pytest.approx(expected["vertical.ride_rate"], rel=0.002)
     assert found["vertical.bump_steer"] == pytest.approx(expected["vertical.bump_steer"], rel=0.01)
-    assert found["vertical.camber_change"] == pytest.approx(
-        expected["vertical.camber_change"], rel=0.002
-    )
+    assert found["vertical.camber_change"] == pytest.approx(expected["vertical.camber_change"], rel=0.002)
 
 
 def test_half_width_is_falling_minus_rising_over_two(tmp_path: Path) -> None:

@@ -35,9 +35,7 @@ def test_every_curve_has_a_gradient_with_error_unit_and_window(car_a: Measuremen
     assert all(g.sd > 0.0 for g in car_a.gradients)
 
 
-GRADIENTS = {
-    i for i, c in CHARACTERISTICS.items() if c.kind == "gradient" and c.response in RIG_RESPONSES
-}
+GRADIENTS = {i for i, c in CHARACTERISTICS.items() if c.kind == "gradient" and c.response in RIG_RESPONSES}
 
 
 def test_standard_errors_cover_the_truth(tmp_path: Path) -> None:

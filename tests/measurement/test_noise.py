@@ -89,9 +89,7 @@ def test_stated_errors_match_the_scatter_of_whole_tests(tmp_path: Path) -> None:
         folder = tmp_path / str(seed)
         folder.mkdir()
         m = reduce_measurement(
-            write_rig(
-                folder, cases=("vertical", "brake"), errors=Errors(1.0, 1.0, 0.002, 0.5), seed=seed
-            )
+            write_rig(folder, cases=("vertical", "brake"), errors=Errors(1.0, 1.0, 0.002, 0.5), seed=seed)
         )
         for case in ("vertical", "brake"):
             for response in ("toe", "camber", "wc_x", "wc_y"):

@@ -62,9 +62,7 @@ def test_extra_columns_and_another_order_do_not_matter(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("titles", "sheet"), [(("any",), None), (("x", "vertical"), None), (("a", "b"), "b")]
 )
-def test_an_excel_sheet_holds_the_same(
-    tmp_path: Path, titles: tuple[str, ...], sheet: str | None
-) -> None:
+def test_an_excel_sheet_holds_the_same(tmp_path: Path, titles: tuple[str, ...], sheet: str | None) -> None:
     record = read_record(workbook(tmp_path, *titles), "vertical", sheet=sheet)
     plain = read_record(written(tmp_path, TEXT), "vertical")
     np.testing.assert_array_equal(record.channels["toe"], plain.channels["toe"])

@@ -103,9 +103,7 @@ def test_a_record_per_excel_sheet_gives_the_same(tmp_path: Path) -> None:
         for line in lines[1:]:
             sheet.append([float(c) for c in line.split(",")])
     book.save(tmp_path / "all.xlsx")
-    text = (
-        path.read_text().replace("brake_0.csv", "all.xlsx#run0").replace("brake_1.csv", "all.xlsx#run1")
-    )
+    text = path.read_text().replace("brake_0.csv", "all.xlsx#run0").replace("brake_1.csv", "all.xlsx#run1")
     path.write_text(text)
     excel = reduce_measurement(tmp_path)
     np.testing.assert_array_equal(

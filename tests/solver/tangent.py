@@ -41,7 +41,9 @@ class Rig:
         columns = {n: np.interp(t, range(len(corners)), corners[:, i]) for i, n in enumerate(names)}
         self.u = self.controls(len(t), {**columns, "friction": float(friction)})
         start = Start(
-            np.zeros(1), self.static.x[None, :], self.controls(1, {"friction": float(friction)})[0],
+            np.zeros(1),
+            self.static.x[None, :],
+            self.controls(1, {"friction": float(friction)})[0],
             self.static.z,
         )
         found = march(self.kernel, None, self.c, start, t, self.u)
@@ -58,7 +60,9 @@ class Rig:
         column = self.kernel.equations.control_names.index(name)
         return np.concatenate([[self.controls(1, {})[0][column]], self.u[:, column]])
 
-    def tangent(self, x: np.ndarray, u: np.ndarray, outputs: Sequence[str], inputs: Sequence[str]) -> np.ndarray:
+    def tangent(
+        self, x: np.ndarray, u: np.ndarray, outputs: Sequence[str], inputs: Sequence[str]
+    ) -> np.ndarray:
         """dy/du by the implicit function theorem at an equilibrium with prescribed pads."""
         eq = self.kernel.equations
         symbols = [eq.x, eq.c, eq.u, eq.z]

@@ -78,7 +78,7 @@ def test_the_balance_notices_a_missing_force(solved) -> None:
     branch = solution.cases["lateral"].branches[0]
     state = evaluate(axle, k, branch.x[-1], branch.u[-1])
     y = dict(zip(solution.output_names, branch.y[-1], strict=True))
-    no_lateral = {n: 0.0 for n in k.equations.control_names}
+    no_lateral = dict.fromkeys(k.equations.control_names, 0.0)
     force, _ = external(no_lateral, y)
     assert np.abs(force + sum(f for f, _ in state.reactions))[1] == pytest.approx(4000.0, rel=1e-6)
 

@@ -106,7 +106,9 @@ def test_a_damaged_library_is_taken_out_of_the_cache(monkeypatch: pytest.MonkeyP
 
 @needs_compiler
 @pytest.mark.parametrize("keep", [0, 100, 0.3, 0.6, 0.9])
-def test_a_truncated_library_is_no_crash(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, keep: float) -> None:
+def test_a_truncated_library_is_no_crash(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, keep: float
+) -> None:
     """Loaded in a process of its own, since a bad mapping kills it."""
     import subprocess
     import sys

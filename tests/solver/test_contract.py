@@ -41,7 +41,10 @@ def test_every_element_module_has_a_test_module_that_uses_it(name: str) -> None:
     assert file.exists(), f"write {file.relative_to(HERE)}: hand formulas for the element alone"
     tree = ast.parse(file.read_text())
     imported = {
-        f"{node.module}.{a.name}" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for a in node.names
+        f"{node.module}.{a.name}"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+        for a in node.names
     }
     assert any(i.startswith(f"doe_kc.solver.elements.{name}") for i in imported)
     assert sum(isinstance(n, ast.FunctionDef) and n.name.startswith("test_") for n in tree.body) >= 2
@@ -72,7 +75,9 @@ def test_every_load_case_is_listed_in_the_order_and_lives_in_its_own_module() ->
         assert case.id == ident == type(case).__module__.rpartition(".")[2]
 
 
-@pytest.mark.parametrize("case", [*LOAD_CASES.values(), TECHNIQUES["counter_phase"]], ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize(
+    "case", [*LOAD_CASES.values(), TECHNIQUES["counter_phase"]], ids=lambda c: type(c).__name__
+)
 def test_a_load_case_says_what_it_sweeps(case) -> None:
     assert type(case).__doc__
     for text in (case.label, case.channel, case.unit, case.input_label):

@@ -36,7 +36,14 @@ def test_the_reason_names_load_case_step_input_and_joint() -> None:
     assert failure.joint
     assert failure.unit in {"N", "N mm", "mm"}
     text = str(failure)
-    for part in ("steer", "pos", f"step {failure.step}", f"{failure.input:g} deg", failure.joint, failure.unit):
+    for part in (
+        "steer",
+        "pos",
+        f"step {failure.step}",
+        f"{failure.input:g} deg",
+        failure.joint,
+        failure.unit,
+    ):
         assert part in text
 
 
@@ -70,8 +77,7 @@ def test_a_static_failure_says_so() -> None:
     [
         {"ROB.x": 152.0, "ROB.y": -350.0, "ROB.z": 279.0},  # on RIB
         {"LWD.x": 40.0, "LWD.y": -575.0, "LWD.z": 860.0},  # on UPB
-        {"LLF.x": 300.0, "LLF.y": -370.0, "LLF.z": 218.0, "LLR.Tx": 1.0}
-        | {"LLF.x": 300.0},  # on LLR
+        {"LLF.x": 300.0, "LLF.y": -370.0, "LLF.z": 218.0, "LLR.Tx": 1.0} | {"LLF.x": 300.0},  # on LLR
         {"WLC.z": -5000.0},
         {"tyre.static_load": 1e9},
         {"LWB.z": 2000.0},

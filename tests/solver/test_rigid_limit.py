@@ -47,9 +47,7 @@ class Corner:
             for n in ("LLF", "LLR", "LWB", "LWD", "UPB", "RIB", "ROB", "WLC")
         }
         toe, camber = (np.radians(axle.values[f"static.{n}@L"]) for n in ("toe", "camber"))
-        self.spin = np.array(
-            [-np.sin(toe) * np.cos(camber), -np.cos(toe) * np.cos(camber), -np.sin(camber)]
-        )
+        self.spin = np.array([-np.sin(toe) * np.cos(camber), -np.cos(toe) * np.cos(camber), -np.sin(camber)])
         self.guess = np.zeros(4)
 
     def pose(self, q: np.ndarray) -> tuple[np.ndarray, Rotation]:
@@ -68,9 +66,7 @@ class Corner:
         off = np.cross(axis, turn.inv().apply(self.p["UPB"] - ball) + self.p["LWB"] - self.p["LWD"])
         rod = self.point(q, "ROB") - self.p["RIB"] - [0.0, rack, 0.0]
         length = np.linalg.norm(rod) - np.linalg.norm(self.p["ROB"] - self.p["RIB"])
-        return np.array(
-            [off[0] / 400, off[1] / 400, length, self.point(q, "WLC")[2] - wheel_z]
-        )
+        return np.array([off[0] / 400, off[1] / 400, length, self.point(q, "WLC")[2] - wheel_z])
 
     def solve(self, wheel_z: float, rack: float) -> dict[str, float]:
         q, wanted = self.guess, (wheel_z, rack)

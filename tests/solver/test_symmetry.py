@@ -37,9 +37,7 @@ def curves(solution: Solution, case: str, side: str) -> np.ndarray:
 
 @pytest.mark.parametrize("case", SYMMETRIC)
 def test_left_equals_right_in_symmetric_load_cases(solution: Solution, case: str) -> None:
-    np.testing.assert_allclose(
-        curves(solution, case, "L"), curves(solution, case, "R"), rtol=0, atol=1e-6
-    )
+    np.testing.assert_allclose(curves(solution, case, "L"), curves(solution, case, "R"), rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("case", ANTISYMMETRIC)
@@ -83,9 +81,7 @@ def test_the_same_point_by_another_path() -> None:
     rig = Rig(nominal())
     there = {"pad_L": 30.0, "pad_R": -20.0, "lateral_L": 1500.0, "brake_R": 1000.0, "rack": 15.0}
     direct = rig.path([there], 10)
-    detour = rig.path(
-        [{"pad_L": -40.0, "lateral_R": -1000.0}, {"rack": -40.0, "roll": 0.03}, there], 7
-    )
+    detour = rig.path([{"pad_L": -40.0, "lateral_R": -1000.0}, {"rack": -40.0, "roll": 0.03}, there], 7)
     np.testing.assert_allclose(direct.y[-1], detour.y[-1], rtol=1e-9, atol=1e-7)
 
 
@@ -170,14 +166,14 @@ def test_an_effect_in_its_limit_is_the_nominal_axle(ident: str, solution: Soluti
         else:
             pairs = [(a.y, b.y) for a, b in zip(branches, expected.branches, strict=True)]
         for a, b in pairs:
-            np.testing.assert_allclose(
-                a[:, columns], b[:, columns], rtol=0, atol=TOLERANCE.get(ident, 1e-4)
-            )
+            np.testing.assert_allclose(a[:, columns], b[:, columns], rtol=0, atol=TOLERANCE.get(ident, 1e-4))
 
 
 def test_free_play_without_a_gap_leaves_the_contact_s_stiffness_alone(solution: Solution) -> None:
     found = solve(
-        apply_effect(nominal(), "tie_rod_free_play", {"gap_mm": 1e-6}, source="test"), ["drive"], compiled=False
+        apply_effect(nominal(), "tie_rod_free_play", {"gap_mm": 1e-6}, source="test"),
+        ["drive"],
+        compiled=False,
     )
     column, tension = found.column("toe@L"), found.column("tie_rod@L")
     ours, rigid = found.cases["drive"].branches[0].y, solution.cases["drive"].branches[0].y

@@ -34,9 +34,7 @@ class SteerArm(Element):
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
             knuckle = b.bodies[f"knuckle.{side}"]
-            b.bodies[f"steer arm.{side}"] = (
-                _beam_end(b, knuckle, side) if b.topology.steer_arm else knuckle
-            )
+            b.bodies[f"steer arm.{side}"] = _beam_end(b, knuckle, side) if b.topology.steer_arm else knuckle
 
 
 def _beam_end(b: Builder, knuckle: Body, side: str) -> Body:

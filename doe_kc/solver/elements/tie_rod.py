@@ -44,9 +44,7 @@ class TieRod(Element):
             plays = b.topology.free_play_left if side == "L" else b.topology.free_play_right
             label = f"tie rod {side}"
             if plays:
-                tension = free_play_force(
-                    length - design, b.constant(b.parameter(f"tie_rod.gap@{side}"))
-                )
+                tension = free_play_force(length - design, b.constant(b.parameter(f"tie_rod.gap@{side}")))
             else:
                 tension = b.rigid(label, f"tie rod {side} (length)", length - design)
             b.points[f"tie rod.{side}"] = tension

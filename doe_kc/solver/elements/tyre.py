@@ -83,12 +83,11 @@ def _pad_equation(b: Builder, side: str, pad: ca.SX, static_load: ca.SX, rate: c
 
 def _close_preload(b: Builder) -> None:
     """Prescribed preload, or the one that puts the mean wheel centre at its design height."""
-    height = b.constant(sum(b.parameter(f"WLC.z@{s}") for s in SIDES) / 2)
-    mean = sum(b.points[f"wheel centre.{s}"][2] for s in SIDES) / 2
+    height = b.constant((b.parameter("WLC.z@L") + b.parameter("WLC.z@R")) / 2)
+    mean = (b.points["wheel centre.L"][2] + b.points["wheel centre.R"][2]) / 2
     by_height = b.control("hold_height")
     rate = b.constant(b.parameter("spring.rate@L"))
     b.close_tail(
         "preload",
-        (1 - by_height) * (b.points["preload"] - b.control("preload"))
-        + by_height * rate * (mean - height),
+        (1 - by_height) * (b.points["preload"] - b.control("preload")) + by_height * rate * (mean - height),
     )

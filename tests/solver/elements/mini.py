@@ -67,9 +67,7 @@ def number(b: Builder, expression: ca.SX, given: Mapping[str, float] | None = No
     return np.asarray(ca.DM(values)).squeeze()
 
 
-def wrench(
-    b: Builder, name: str, given: Mapping[str, float] | None = None
-) -> tuple[np.ndarray, np.ndarray]:
+def wrench(b: Builder, name: str, given: Mapping[str, float] | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Force in N and moment in N mm about the body's origin that a body has received."""
     force, moment = b.wrenches[name]
     return number(b, force, given), number(b, moment, given)

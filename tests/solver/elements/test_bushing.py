@@ -21,7 +21,13 @@ LINEAR = {f"llr.cubic.F{a}@{s}": 0.0 for a in "xyz" for s in "LR"}
 
 
 def connected(
-    inner: Body | None, outer: Body, *, side: str = "L", axes: object = None, at: np.ndarray = AT, **topology: object
+    inner: Body | None,
+    outer: Body,
+    *,
+    side: str = "L",
+    axes: object = None,
+    at: np.ndarray = AT,
+    **topology: object,
 ) -> Builder:
     b = builder(**topology)
     local = ca.SX.eye(3) if axes is None else ca.SX(axes)
@@ -95,7 +101,9 @@ def test_the_force_acts_at_the_displaced_outer_point_in_the_axes_of_the_inner_pa
     inner, outer = moved()
     b = connected(inner, outer)
     r = turned([0.02, -0.3, 0.1])
-    on_outer = np.array([-8.0, -748.0, 205.0]) + [2, 1, -3] + turned([0.25, 0.1, -0.2]) @ (AT - [-8, -748, 205])
+    on_outer = (
+        np.array([-8.0, -748.0, 205.0]) + [2, 1, -3] + turned([0.25, 0.1, -0.2]) @ (AT - [-8, -748, 205])
+    )
     on_inner = np.array([180.0, 0.0, 247.0]) + [1, -2, 0.5] + r @ (AT - [180, 0, 247])
     d = r.T @ (on_outer - on_inner)
     force, moment = wrench(b, "outer")

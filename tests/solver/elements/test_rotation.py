@@ -41,9 +41,7 @@ def test_compose_is_the_product_and_relative_its_inverse() -> None:
     for _ in range(50):
         a, b = (gibbs(v) for v in rng.uniform(-0.8, 0.8, (2, 3)))
         ra, rb = call(rotation.matrix, a), call(rotation.matrix, b)
-        np.testing.assert_allclose(
-            call(rotation.matrix, call(rotation.compose, a, b)), ra @ rb, atol=1e-14
-        )
+        np.testing.assert_allclose(call(rotation.matrix, call(rotation.compose, a, b)), ra @ rb, atol=1e-14)
         np.testing.assert_allclose(
             call(rotation.matrix, call(rotation.relative, a, b)), ra.T @ rb, atol=1e-14
         )

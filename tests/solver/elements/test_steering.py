@@ -32,7 +32,11 @@ def test_the_column_pulls_the_rack_to_the_pinion() -> None:
     travel, pinion = b.joints[-1].freedoms[0].symbol, b.controls["rack"]
     import casadi as ca
 
-    force = ca.substitute(ca.vertcat(b.points["column force"], b.resistances["rack"]), ca.vertcat(travel, pinion), ca.SX([3.0, 5.0]))
+    force = ca.substitute(
+        ca.vertcat(b.points["column force"], b.resistances["rack"]),
+        ca.vertcat(travel, pinion),
+        ca.SX([3.0, 5.0]),
+    )
     on_rack, resistance = number(b, force, {"scb.Tz": 1.5})
     assert on_rack == pytest.approx(1.5 * 2070.0 * 2.0)
     assert resistance == pytest.approx(-on_rack)
@@ -46,4 +50,6 @@ def test_a_rack_mount_carries_rack_and_pinion() -> None:
     # the pinion rides on the housing: its motion winds nothing up
     assert number(b, b.points["column force"], given) == pytest.approx(0.0)
     still = number(b, b.bodies["rack"].origin, given | {"rack housing": 0.0})
-    np.testing.assert_allclose(number(b, b.bodies["rack"].origin, given) - still, 0.4 * turned(PHI)[:, 1], atol=1e-12)
+    np.testing.assert_allclose(
+        number(b, b.bodies["rack"].origin, given) - still, 0.4 * turned(PHI)[:, 1], atol=1e-12
+    )

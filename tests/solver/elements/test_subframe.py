@@ -61,9 +61,18 @@ def test_the_joint_of_a_half_balances_when_everything_has_moved() -> None:
     """What centre and halves feel beyond the mounts cancels."""
     b, bare = assembled(flexible_subframe=True), assembled(flexible_subframe=True)
     rng = np.random.default_rng(5)
-    names = [f"{n}.{a}" for n in ("sub-frame", "sub-frame half L", "sub-frame half R") for a in ("x", "y", "z", "rx", "ry", "rz")]
+    names = [
+        f"{n}.{a}"
+        for n in ("sub-frame", "sub-frame half L", "sub-frame half R")
+        for a in ("x", "y", "z", "rx", "ry", "rz")
+    ]
     pose = {n: float(rng.uniform(-1, 1) * (0.02 if ".r" in n else 1.0)) for n in names}
-    mountless = pose | {f"{m}.{a}@{s}": 0.0 for m in ("sff", "sfr") for a in ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz") for s in "LR"}
+    mountless = pose | {
+        f"{m}.{a}@{s}": 0.0
+        for m in ("sff", "sfr")
+        for a in ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz")
+        for s in "LR"
+    }
     force, moment = np.zeros(3), np.zeros(3)
     for name in ("sub-frame", "sub-frame half L", "sub-frame half R"):
         f, m = wrench(b, name, FLEXIBLE | mountless)

@@ -24,7 +24,9 @@ def force(dl: float, gap: float) -> float:
     return float(ca.DM(ca.Function("f", [], [free_play_force(ca.SX(dl), ca.SX(gap))])()["o0"]))
 
 
-@pytest.mark.parametrize(("dl", "gap"), [(0.0, 0.2), (0.05, 0.2), (-0.08, 0.2), (0.3, 0.2), (-0.5, 0.1), (0.1, 0.2)])
+@pytest.mark.parametrize(
+    ("dl", "gap"), [(0.0, 0.2), (0.05, 0.2), (-0.08, 0.2), (0.3, 0.2), (-0.5, 0.1), (0.1, 0.2)]
+)
 def test_free_play_law(dl: float, gap: float) -> None:
     def ramp(x: float) -> float:
         return (x + np.hypot(x, 2e-3)) / 2

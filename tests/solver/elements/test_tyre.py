@@ -15,7 +15,9 @@ from tests.solver.elements.mini import MIRROR, SIDES, builder, number, stub, wre
 RATE, STATIC, HEIGHT = 220.0, 4300.0, 310.0
 
 
-def assembled(centre: object = (0.0, -790.0, HEIGHT), camber: float = -0.5, toe: float = 0.05, **topology: Any) -> Builder:
+def assembled(
+    centre: object = (0.0, -790.0, HEIGHT), camber: float = -0.5, toe: float = 0.05, **topology: Any
+) -> Builder:
     """Both wheels at mirrored positions; angles in deg."""
     b = builder(**topology)
     b.points["preload"] = b.tail_unknown("preload", "spring preload", 1.0)
@@ -68,7 +70,9 @@ def test_lift_off_and_the_two_sided_actuator() -> None:
     b = assembled()
     assert number(b, b.points["tyre.L"], {"pad L": -25.0}) == 0.0
     pulled = number(b, b.points["tyre.L"], {"pad L": -25.0, "bilateral": 1.0})
-    assert pulled == pytest.approx(RATE * (unloaded_radius() - (HEIGHT + 25) / np.cos(np.radians(0.5))) / np.cos(np.radians(0.5)))
+    assert pulled == pytest.approx(
+        RATE * (unloaded_radius() - (HEIGHT + 25) / np.cos(np.radians(0.5))) / np.cos(np.radians(0.5))
+    )
     assert pulled < 0
 
 
@@ -85,7 +89,12 @@ def test_forces_act_where_the_definition_says() -> None:
 
 def test_a_horizontally_compliant_tyre_moves_its_contact_along_the_force() -> None:
     b = assembled(tyre_horizontal=True)
-    given = {"tyre.lat_rate@L": 180.0, "tyre.long_rate@L": 250.0, "tyre.lat_rate@R": 180.0, "tyre.long_rate@R": 250.0}
+    given = {
+        "tyre.lat_rate@L": 180.0,
+        "tyre.long_rate@L": 250.0,
+        "tyre.lat_rate@R": 180.0,
+        "tyre.long_rate@R": 250.0,
+    }
     still = number(b, b.points["contact.L"], given)
     moved = number(b, b.points["contact.L"], given | {"lateral_L": 900.0, "brake_L": 500.0})
     np.testing.assert_allclose(moved - still, [2.0, 5.0, 0.0], atol=1e-12)

@@ -42,7 +42,9 @@ def test_a_rigid_wheel_is_the_knuckle() -> None:
 
 
 @pytest.mark.parametrize("side", SIDES)
-@pytest.mark.parametrize(("axis", "stiffness"), [(0, 6000.0 * NM_PER_DEG), (1, SPIN_STIFFNESS), (2, 9000.0 * NM_PER_DEG)])
+@pytest.mark.parametrize(
+    ("axis", "stiffness"), [(0, 6000.0 * NM_PER_DEG), (1, SPIN_STIFFNESS), (2, 9000.0 * NM_PER_DEG)]
+)
 def test_hub_springs(side: str, axis: int, stiffness: float) -> None:
     """About the knuckle's X (camber) and Z (toe); 1e8 Nm/rad about Y."""
     b = assembled(hub=True)

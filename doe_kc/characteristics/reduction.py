@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic
 from doe_kc.curves import CaseCurves, CurveSet
@@ -14,10 +15,10 @@ from doe_kc.typing import FloatArray
 LEFT = 0
 
 
-def fit_window(case: CaseCurves, half_width: float | None = None) -> FloatArray:
+def fit_window(case: CaseCurves, half_width: float | None = None) -> NDArray[np.bool_]:
     """(n,) bool mask of the points with |input| inside the window (default: the load case's own)."""
     limit = half_width if half_width is not None else default_window(case)
-    return np.abs(case.input) <= limit * (1.0 + 1e-9)
+    return np.asarray(np.abs(case.input) <= limit * (1.0 + 1e-9))
 
 
 def default_window(case: CaseCurves) -> float:
@@ -35,13 +36,13 @@ def pad_travel(case: CaseCurves, half_track: float) -> FloatArray:
         return case.input
     if case.input_unit == "mm":
         return -case.input
-    return -half_track * np.tan(np.radians(case.input))
+    return np.asarray(-half_track * np.tan(np.radians(case.input)))
 
 
 def abscissa(entry: Characteristic, case: CaseCurves, half_track: float) -> FloatArray:
     """(n,) what the gradient is taken over: mm, N or deg."""
     if entry.abscissa == "wheel_travel":
-        return case.mean["wc_z"][LEFT]
+        return np.asarray(case.mean["wc_z"][LEFT])
     if entry.abscissa == "pad_travel":
         return pad_travel(case, half_track)
     return case.input

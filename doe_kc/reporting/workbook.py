@@ -1,0 +1,68 @@
+"""The influence workbook that a test engineer prints and filters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+
+from openpyxl.workbook import Workbook
+
+from doe_kc.influence.relations import Relations
+from doe_kc.influence.result import Influence
+from doe_kc.influence.selection_result import Selection
+from doe_kc.output import write_whole
+from doe_kc.reporting.workbook_cells import clean
+from doe_kc.reporting.workbook_matrix import absolute_sheet, exact_sheet, influence_sheet
+from doe_kc.reporting.workbook_tables import legend_sheet, relations_sheet, selection_sheet
+
+
+def influence_workbook(
+    influence: Influence,
+    *,
+    relations: Relations,
+    study: str,
+    date: str,
+    selection: Selection | None = None,
+    notes: Mapping[str, str] | None = None,
+) -> Workbook:
+    """Sheets Influence (as Appendix C), Absolute, Exact, Relations, Selection and Legend.
+
+    study: name in titles and page headers. date: as it shall stand in the legend.
+    notes: further lines of the legend, title -> text (axle file, measurement, ...).
+    """
+    book = Workbook()
+    book.remove(book.active)
+    influence_sheet(book, influence, study)
+    absolute_sheet(book, influence, study)
+    exact_sheet(book, influence, study)
+    relations_sheet(book, relations, study)
+    selection_sheet(book, selection, study)
+    legend_sheet(book, influence, study, date, notes or {})
+    book.properties.title = clean(f"Parameter influence: {study}")
+    book.properties.creator = "doe_kc"
+    return book
+
+
+def write_influence_workbook(
+    path: Path,
+    influence: Influence,
+    *,
+    relations: Relations,
+    study: str,
+    date: str,
+    selection: Selection | None = None,
+    notes: Mapping[str, str] | None = None,
+) -> Path:
+    """Write `influence_workbook`; returns its path.
+
+    An old file stays whole until the new one is complete. RunError naming path and remedy when the place
+    is locked, read-only or full.
+    """
+    book = influence_workbook(
+        influence, relations=relations, study=study, date=date, selection=selection, notes=notes
+    )
+    # Into memory first: a full disk then meets plain bytes, not a half-made archive.
+    content = BytesIO()
+    book.save(content)
+    return write_whole(path, lambda beside: beside.write_bytes(content.getvalue()))

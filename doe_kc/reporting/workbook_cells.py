@@ -1,0 +1,149 @@
+"""Cells of the influence workbook: one look, and text that never becomes a formula."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from openpyxl.cell.cell import Cell
+from openpyxl.comments import Comment
+from openpyxl.formatting.rule import ColorScaleRule
+from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
+from openpyxl.utils import get_column_letter
+from openpyxl.worksheet.worksheet import Worksheet
+
+NEGATIVE, NEUTRAL, POSITIVE = "5AA5DC", "FFFFFF", "F2A23C"
+"""Blue, white, orange: told apart with the common kinds of colour blindness, black text readable on each."""
+
+HEADER = PatternFill("solid", fgColor="E4E8EC")
+FLAGGED = PatternFill("solid", fgColor="FBE3F0")
+MUTED = "8A9199"
+THIN, THICK = Side(style="thin", color="C3C9CF"), Side(style="medium", color="3C4650")
+A3, A4 = 8, 9
+"""Paper sizes as the file format numbers them."""
+LONGEST_TEXT = 32_000
+_FORBIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def clean(text: str) -> str:
+    """Text that a workbook can hold: control characters replaced, not longer than a cell takes."""
+    return _FORBIDDEN.sub("\N{REPLACEMENT CHARACTER}", text)[:LONGEST_TEXT]
+
+
+def put(
+    ws: Worksheet,
+    row: int,
+    column: int,
+    value: str | float | int | None,
+    *,
+    bold: bool = False,
+    italic: bool = False,
+    color: str | None = None,
+    fill: PatternFill | None = None,
+    number: str | None = None,
+    horizontal: str | None = None,
+    vertical: str = "center",
+    rotation: int = 0,
+    wrap: bool = False,
+) -> Cell:
+    """Write one cell. Text stays text whatever it begins with; nan and None stay empty."""
+    cell = ws.cell(row, column)
+    if isinstance(value, str):
+        put_text(cell, value)
+    elif value is not None and np.isfinite(value):
+        cell.value = value
+    cell.font = Font(name="Calibri", size=10, bold=bold, italic=italic, color=color)
+    cell.alignment = Alignment(
+        horizontal=horizontal, vertical=vertical, textRotation=rotation, wrap_text=wrap
+    )
+    if fill is not None:
+        cell.fill = fill
+    if number is not None:
+        cell.number_format = number
+    return cell
+
+
+def put_text(cell: Cell, text: str) -> None:
+    """Text as text: the type is forced, and the quote mark keeps it text when a user edits the cell."""
+    cell.value = clean(text)
+    cell.data_type = "s"
+    # Styles are rebuilt afterwards, and quotePrefix lives beside them.
+    cell.quotePrefix = clean(text).startswith(_FORMULA)
+
+
+def remark(cell: Cell, text: str) -> None:
+    """A comment that shows when the pointer rests on the cell."""
+    comment = Comment(clean(text), "doe_kc")
+    comment.width, comment.height = 320, 90
+    cell.comment = comment
+
+
+def title(ws: Worksheet, text: str, below: str) -> None:
+    """Rows 1 and 2: what the sheet is, and how to read it."""
+    put(ws, 1, 1, text).font = Font(name="Calibri", size=14, bold=True)
+    put(ws, 2, 1, below, color=MUTED)
+
+
+def colour_scale(ws: Worksheet, cells: str) -> None:
+    """-100 blue, 0 white, +100 orange, fixed: the same percent has the same colour in every study."""
+    ws.conditional_formatting.add(
+        cells,
+        ColorScaleRule(
+            start_type="num",
+            start_value=-100,
+            start_color=NEGATIVE,
+            mid_type="num",
+            mid_value=0,
+            mid_color=NEUTRAL,
+            end_type="num",
+            end_value=100,
+            end_color=POSITIVE,
+        ),
+    )
+
+
+def widths(ws: Worksheet, values: Sequence[float]) -> None:
+    """Column widths in characters, from the first column on."""
+    for i, width in enumerate(values, start=1):
+        ws.column_dimensions[get_column_letter(i)].width = width
+
+
+def frame(
+    ws: Worksheet,
+    rows: range,
+    columns: range,
+    *,
+    thick_above: Iterable[int] = (),
+    thick_left: Iterable[int] = (),
+) -> None:
+    """Thin lines everywhere, thick ones above the rows and left of the columns named."""
+    above, left = set(thick_above), set(thick_left)
+    for r in rows:
+        for c in columns:
+            ws.cell(r, c).border = Border(
+                left=THICK if c in left else THIN,
+                right=THICK if c + 1 in left else THIN,
+                top=THICK if r in above else THIN,
+                bottom=THICK if r + 1 in above else THIN,
+            )
+
+
+def page(ws: Worksheet, study: str, *, paper: int = A4, repeat: str | None = None) -> None:
+    """Landscape, as wide as the paper, study and sheet on top, page numbers below."""
+    ws.page_setup.orientation = "landscape"
+    ws.page_setup.paperSize = paper
+    ws.page_setup.fitToWidth, ws.page_setup.fitToHeight = 1, 0
+    ws.sheet_properties.pageSetUpPr.fitToPage = True
+    ws.print_options.horizontalCentered = True
+    ws.page_margins.left = ws.page_margins.right = 0.4
+    ws.page_margins.top = ws.page_margins.bottom = 0.6
+    ws.page_margins.header = ws.page_margins.footer = 0.25
+    # "&" starts a code in headers, so a literal one is doubled.
+    ws.oddHeader.left.text = clean(study)[:100].replace("&", "&&")
+    ws.oddHeader.right.text = "&A"
+    ws.oddFooter.left.text = "doe_kc"
+    ws.oddFooter.right.text = "&P / &N"
+    if repeat is not None:
+        ws.print_title_rows = repeat
