@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.axle.model import HARDPOINTS, Axle
+from doe_kc.axle.model import EXTRA_HARDPOINTS, HARDPOINTS, Axle
 from doe_kc.errors import InputError
 from doe_kc.typing import FloatArray
 
 MIN_DISTANCE = 1.0
 """mm; joints closer than this are the same point for every practical purpose."""
+
+FARTHEST = 1e5
+"""mm; no car is 100 m long: such a coordinate is in another unit."""
 
 BARS = (
     ("LWD", "UPB", "the strut axis has no length"),
@@ -33,6 +36,12 @@ def point(axle: Axle, name: str, side: str = "L") -> FloatArray:
 def check_geometry(axle: Axle, source: str) -> None:
     """InputError for a geometry that no car has: coincident points, wrong side, wheel in the ground."""
     for side, word in (("L", "left"), ("R", "right")):
+        for name in (*HARDPOINTS, *EXTRA_HARDPOINTS):
+            if np.abs(point(axle, name, side)).max() > FARTHEST:
+                raise InputError(
+                    f"{source}: hardpoint {name} of the {word} side is more than {FARTHEST / 1000:g} m away; "
+                    "expected coordinates in mm. Check its unit."
+                )
         for first, second, why in BARS:
             gap = float(np.linalg.norm(point(axle, first, side) - point(axle, second, side)))
             if gap < MIN_DISTANCE:

@@ -83,7 +83,10 @@ def _kinds() -> dict[str, _Kind]:
 
 
 KINDS: Mapping[str, _Kind] = _kinds()
-POSITIVE = ("stiffness", "rate", "radius", "nominal_radius", "static_load", "column", "rack_mm_per_rev")
+POSITIVE = frozenset(
+    "stiffness rate radius nominal_radius static_load column rack_mm_per_rev factor lat_rate long_rate "
+    "gap force presliding kx ky kz krx kry krz".split()
+)
 
 
 def design_parameters(axle: Axle) -> list[Parameter]:
@@ -144,13 +147,13 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
     stiffness, factor or radius that is not positive.
     """
     result: dict[str, float] = {}
+    ranks: dict[str, int] = {}
     for path, value in values.items():
         check_value(path, value, source)
         for internal, change in _moves(axle, path, value, source):
-            follower = _is_followed_by(axle, path, internal)
-            if follower and (follower in values or f"{_prefix(path)}{follower}" in values):
-                continue
-            result[internal] = result.get(internal, axle.values[internal]) + change
+            rank = _rank(path, internal)
+            if rank > ranks.get(internal, -1):
+                result[internal], ranks[internal] = axle.values[internal] + change, rank
     return _with_matching_topology(axle.changed(result))
 
 
@@ -167,11 +170,11 @@ def _prefix(path: str) -> str:
     return f"{head}." if head in SIDE_PREFIXES else ""
 
 
-def _is_followed_by(axle: Axle, path: str, internal: str) -> str:
-    """The follower's own path when `internal` moves only because it follows; else empty."""
-    own = path.removeprefix(_prefix(path))
-    moved = internal.split("@")[0]
-    return moved if moved != own else ""
+def _rank(path: str, internal: str) -> int:
+    """Which path decides a value that several move: one set itself before one that follows, and of either
+    kind one that names its side before one that moves both."""
+    own = path.removeprefix(_prefix(path)) == internal.split("@")[0]
+    return 2 * own + bool(_prefix(path))
 
 
 def internal_gradient(axle: Axle, path: str, *, source: str = "parameter") -> dict[str, float]:
@@ -219,7 +222,7 @@ def _must_be_positive(name: str) -> bool:
     head, _, rest = name.partition(".")
     if head in BUSHINGS:
         return rest in BUSHING_AXES or rest.startswith("stiffness.")
-    if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
+    if head in HARDPOINTS or head in EXTRA_HARDPOINTS or _not_below_zero(name):
         return False
     return name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"} or rest in POSITIVE
 
@@ -232,7 +235,8 @@ def _split(axle: Axle, path: str, source: str) -> tuple[str, str | None]:
     head, _, rest = path.partition(".")
     side = SIDE_PREFIXES.get(head)
     name = rest if side else path
-    if f"{name}@L" in axle.values or (name in axle.values and side is None):
+    internal = "@" in name or ".table." in name
+    if not internal and (f"{name}@L" in axle.values or (name in axle.values and side is None)):
         return name, side
     known = settable_paths(axle)
     if name in known:

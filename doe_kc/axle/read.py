@@ -43,8 +43,6 @@ def axle_from_document(document: Mapping[str, Any], *, source: str) -> Axle:
     )
     if file.right:
         axle = with_values(axle, {f"right.{path}": v for path, v in file.right.items()}, source=source)
-    if file.steer_arm.flexible:
-        axle = apply_effect(axle, "steer_arm_compliance", {}, source=source)
     for ident, options in file.effects.items():
         axle = apply_effect(axle, ident, options, source=source)
     check_geometry(axle, source)
@@ -60,6 +58,7 @@ def _topology(file: AxleFile) -> Topology:
     ]
     return Topology(
         strut_bending=file.strut.flexibility > 0,
+        steer_arm=file.steer_arm.flexible,
         bump_points=len(file.bump_stop.curve),
         rebound_points=len(file.rebound_stop.curve),
         tables=tuple(tables),

@@ -61,11 +61,15 @@ class Effect(ABC):
 
 def checked_number(value: Any, name: str, *, positive: bool = False) -> float:
     """The value as a float; InputError unless it is a finite (positive) number."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    try:
+        number = math.nan if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
         raise InputError(f"{name}, expected a finite number.")
-    if positive and value <= 0:
+    if positive and number <= 0:
         raise InputError(f"{name}, expected a number > 0.")
-    return float(value)
+    return number
 
 
 EFFECTS: dict[str, Effect] = {}

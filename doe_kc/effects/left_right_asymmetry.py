@@ -1,4 +1,4 @@
-"""Factor on the translational stiffnesses of one side's bushing: scale = { LLR_R = 1.25 }, or LLR_R = 1.25."""
+"""Factor on the translational stiffnesses of one side's bushing: scale = { LLR_R = 1.25 }."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ class TieRodFreePlay(Effect):
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
         options = super().read(given, source)
         joints = options["joints"]
-        joints = [joints] if isinstance(joints, str) else list(joints)
+        joints = list(joints) if isinstance(joints, list | tuple) else [joints]
         wrong = [j for j in joints if j not in JOINTS]
         if wrong or not joints:
             raise InputError(

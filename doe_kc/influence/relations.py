@@ -72,6 +72,12 @@ class Relations:
     together: tuple[Together, ...]
     threshold: float
 
+    @property
+    def longest(self) -> int:
+        """Largest number of links or members in any list."""
+        lists = [e.links for e in self.by_characteristic] + [e.links for e in self.by_parameter]
+        return max([len(x) for x in lists] + [len(g.characteristics) for g in self.together], default=0)
+
     def to_frame(self) -> pd.DataFrame:
         """One row per characteristic and link: characteristic, unit, rank, parameter, percent."""
         rows = [

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,8 @@ from doe_kc.characteristics import Characteristic
 from doe_kc.typing import FloatArray
 
 NONLINEAR_PERCENT = 5.0
-"""A cell is flagged when one-at-a-time and exact change differ by more than this share of the larger one\nand by more than half a percent of the column's peak: below that it is rounding."""
+"""A cell is flagged when one-at-a-time and exact change differ by more than this share of the larger one
+and by more than half a percent of the column's peak; below that it is rounding."""
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,18 @@ class Influence:
         reference = np.maximum(np.abs(self.percent), np.abs(self.exact_percent))
         with np.errstate(invalid="ignore"):
             return np.asarray((gap > NONLINEAR_PERCENT / 100.0 * reference) & (gap > 0.5))
+
+    def only(self, characteristics: Sequence[Characteristic]) -> Influence:
+        """The same study with these columns, in this order; ValueError for one that it lacks."""
+        index = [self.characteristics.index(c) for c in characteristics]
+        return replace(
+            self,
+            characteristics=tuple(characteristics),
+            baseline=self.baseline[index],
+            plus=self.plus[:, index],
+            minus=self.minus[:, index],
+            exact=self.exact[:, index],
+        )
 
     def frame(self, values: FloatArray) -> pd.DataFrame:
         """`values` with parameter paths as index and characteristic ids as columns."""

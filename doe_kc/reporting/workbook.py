@@ -13,8 +13,9 @@ from doe_kc.influence.result import Influence
 from doe_kc.influence.selection_result import Selection
 from doe_kc.output import write_whole
 from doe_kc.reporting.workbook_cells import clean
+from doe_kc.reporting.workbook_legend import legend_sheet
 from doe_kc.reporting.workbook_matrix import absolute_sheet, exact_sheet, influence_sheet
-from doe_kc.reporting.workbook_tables import legend_sheet, relations_sheet, selection_sheet
+from doe_kc.reporting.workbook_tables import relations_sheet, selection_sheet
 
 
 def influence_workbook(
@@ -25,11 +26,13 @@ def influence_workbook(
     date: str,
     selection: Selection | None = None,
     notes: Mapping[str, str] | None = None,
+    windows: Mapping[str, float] | None = None,
 ) -> Workbook:
     """Sheets Influence (as Appendix C), Absolute, Exact, Relations, Selection and Legend.
 
     study: name in titles and page headers. date: as it shall stand in the legend.
     notes: further lines of the legend, title -> text (axle file, measurement, ...).
+    windows: load case -> half-width of the fit window where it is not the default.
     """
     book = Workbook()
     book.remove(book.active)
@@ -38,7 +41,7 @@ def influence_workbook(
     exact_sheet(book, influence, study)
     relations_sheet(book, relations, study)
     selection_sheet(book, selection, study)
-    legend_sheet(book, influence, study, date, notes or {})
+    legend_sheet(book, influence, study, date, notes=notes or {}, windows=windows or {})
     book.properties.title = clean(f"Parameter influence: {study}")
     book.properties.creator = "doe_kc"
     return book
@@ -53,6 +56,7 @@ def write_influence_workbook(
     date: str,
     selection: Selection | None = None,
     notes: Mapping[str, str] | None = None,
+    windows: Mapping[str, float] | None = None,
 ) -> Path:
     """Write `influence_workbook`; returns its path.
 
@@ -60,7 +64,13 @@ def write_influence_workbook(
     is locked, read-only or full.
     """
     book = influence_workbook(
-        influence, relations=relations, study=study, date=date, selection=selection, notes=notes
+        influence,
+        relations=relations,
+        study=study,
+        date=date,
+        selection=selection,
+        notes=notes,
+        windows=windows,
     )
     # Into memory first: a full disk then meets plain bytes, not a half-made archive.
     content = BytesIO()

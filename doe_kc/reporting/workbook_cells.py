@@ -14,7 +14,7 @@ from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
 NEGATIVE, NEUTRAL, POSITIVE = "5AA5DC", "FFFFFF", "F2A23C"
-"""Blue, white, orange: told apart with the common kinds of colour blindness, black text readable on each."""
+"""Blue, white, orange: told apart by the colour-blind, black text readable on each."""
 
 HEADER = PatternFill("solid", fgColor="E4E8EC")
 FLAGGED = PatternFill("solid", fgColor="FBE3F0")
@@ -47,6 +47,7 @@ def put(
     vertical: str = "center",
     rotation: int = 0,
     wrap: bool = False,
+    indent: int = 0,
 ) -> Cell:
     """Write one cell. Text stays text whatever it begins with; nan and None stay empty."""
     cell = ws.cell(row, column)
@@ -56,7 +57,11 @@ def put(
         cell.value = value
     cell.font = Font(name="Calibri", size=10, bold=bold, italic=italic, color=color)
     cell.alignment = Alignment(
-        horizontal=horizontal, vertical=vertical, textRotation=rotation, wrap_text=wrap
+        horizontal=horizontal,
+        vertical=vertical,
+        textRotation=rotation,
+        wrap_text=wrap,
+        indent=indent,
     )
     if fill is not None:
         cell.fill = fill
@@ -69,7 +74,6 @@ def put_text(cell: Cell, text: str) -> None:
     """Text as text: the type is forced, and the quote mark keeps it text when a user edits the cell."""
     cell.value = clean(text)
     cell.data_type = "s"
-    # Styles are rebuilt afterwards, and quotePrefix lives beside them.
     cell.quotePrefix = clean(text).startswith(_FORMULA)
 
 

@@ -27,15 +27,19 @@ from doe_kc.reporting.workbook_cells import (
     title,
     widths,
 )
+from doe_kc.sampling.one_at_a_time import is_one_sided
 from doe_kc.solver.load_cases import LOAD_CASES
 from doe_kc.typing import FloatArray
 
 KINEMATICS = ("static", "vertical", "roll", "steer")
+COMPLIANCES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")
 GROUPS = ("HARDPOINTS", "BUSHINGS", "OTHER")
 SECTION, CASE, NAME, BASELINE, UNIT, FIRST = 4, 5, 6, 7, 8, 9
-"""Rows: section, load case, characteristic, its baseline, its unit (with the filter), first parameter."""
+"""Rows: section, load case, characteristic, nominal value, unit (with the filter), first parameter."""
+REMARK = "Description, remark"
 LABELS = 4
 """Columns before the matrix: group, label, path, step."""
+WIDTH = 8.0
 
 
 @dataclass(frozen=True)
@@ -77,8 +81,7 @@ def case_label(load_case: str) -> str:
 def layout(influence: Influence) -> Layout:
     """Columns by load case in the order of Appendix C, rows by group; both otherwise as they come."""
     cases = [c.load_case for c in influence.characteristics]
-    rest = [i for i in LOAD_CASES if i not in KINEMATICS]
-    order = {name: i for i, name in enumerate((*KINEMATICS, *APPENDIX_CASES, *rest))}
+    order = {name: i for i, name in enumerate(dict.fromkeys((*KINEMATICS, *COMPLIANCES, *LOAD_CASES)))}
     columns = sorted(range(len(cases)), key=lambda j: order.get(cases[j], len(order)))
     groups = [p.group for p in influence.parameters]
     rows = sorted(range(len(groups)), key=lambda i: GROUPS.index(groups[i]))
@@ -88,9 +91,6 @@ def layout(influence: Influence) -> Layout:
         row_breaks=tuple(FIRST + k for k in _breaks([groups[i] for i in rows])),
         column_breaks=tuple(LABELS + 1 + k for k in _breaks([cases[j] for j in columns])),
     )
-
-
-APPENDIX_CASES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")
 
 
 def _breaks(names: list[str]) -> list[int]:
@@ -113,7 +113,17 @@ def influence_sheet(book: Workbook, influence: Influence, study: str) -> None:
         for c, j in enumerate(at.columns, start=LABELS + 1):
             flagged = bool(influence.nonlinear[i, j])
             value = round(float(percent[i, j])) if math.isfinite(percent[i, j]) else None
-            cell = put(ws, r, c, value, number='0"%"', horizontal="center", italic=flagged, bold=flagged)
+            cell = put(
+                ws,
+                r,
+                c,
+                value,
+                number='0"%"',
+                horizontal="center",
+                italic=flagged,
+                bold=flagged,
+                color=None if value else MUTED,
+            )
             if flagged:
                 remark(cell, _difference(influence, i, j))
     colour_scale(ws, at.area)
@@ -123,7 +133,7 @@ def influence_sheet(book: Workbook, influence: Influence, study: str) -> None:
 def absolute_sheet(book: Workbook, influence: Influence, study: str) -> None:
     """Half the difference between the runs with the parameter raised and lowered by its step."""
     ws, at = book.create_sheet("Absolute"), layout(influence)
-    below = "Change of the characteristic, in its unit, for a positive step of the parameter (one at a time)."
+    below = "Change of the characteristic, in its unit, for a positive step (one at a time)."
     title(ws, f"Absolute influence: {study}", below)
     _heads(ws, influence, at, study)
     _labels(ws, influence, at)
@@ -164,12 +174,12 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
         ws.merge_cells(start_row=row, end_row=row, start_column=1, end_column=LABELS)
     extra = 3 if sums else 1
     _tail_heads(ws, at, sums=sums)
-    ws.row_dimensions[NAME].height = 132
+    ws.row_dimensions[NAME].height = 168
     ws.row_dimensions[UNIT].height = 30
     ws.freeze_panes = ws.cell(FIRST, LABELS + 1)
     end = get_column_letter(at.last_column + extra)
     ws.auto_filter.ref = f"A{UNIT}:{end}{at.last_row}"
-    widths(ws, [13, 11, 12, 9, *[9.0] * len(at.columns), *([8.5, 7.0] if sums else []), 34])
+    widths(ws, [12, 20, 20, 9, *[WIDTH] * len(at.columns), *([6.5, 5.0] if sums else []), 46])
     frame(
         ws,
         range(SECTION, at.last_row + 1),
@@ -181,9 +191,9 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
 
 
 def _tail_heads(ws: Worksheet, at: Layout, *, sums: bool) -> None:
-    names = ("Sum of magnitudes", "Rank", "Remark") if sums else ("Remark",)
+    names = ("Sum of magnitudes", "Rank", REMARK) if sums else (REMARK,)
     for k, text in enumerate(names, start=1):
-        rotation = 0 if text == "Remark" else 90
+        rotation = 0 if text == REMARK else 90
         c = at.last_column + k
         put(ws, NAME, c, text, bold=True, rotation=rotation, horizontal="center", vertical="bottom")
         for row in (SECTION, CASE, NAME, BASELINE, UNIT):
@@ -206,7 +216,7 @@ def _labels(ws: Worksheet, influence: Influence, at: Layout) -> None:
         first = r in at.row_breaks
         # The group stands in every row, not in a merged cell, so that rows can be filtered and sorted.
         put(ws, r, 1, parameter.group, bold=first, color=None if first else MUTED)
-        remark(put(ws, r, 2, parameter.path.replace(".", " "), bold=True), parameter.label)
+        put(ws, r, 2, parameter.path.replace(".", " "), bold=True)
         put(ws, r, 3, parameter.path, color=MUTED)
         put(ws, r, 4, step_text(influence, i), horizontal="right")
         last = max(at.last_column + 1, ws.max_column)
@@ -214,22 +224,21 @@ def _labels(ws: Worksheet, influence: Influence, at: Layout) -> None:
 
 
 def step_text(influence: Influence, i: int) -> str:
-    """`±1 mm` or `±10 %`: the step as the user thinks of it."""
+    """`±1 mm`, `±10 %`, or `+0.1` for a parameter at zero that can only be raised."""
     parameter = influence.parameters[i]
     share = 100.0 * parameter.step / abs(parameter.nominal) if parameter.nominal else math.nan
     relative = parameter.unit not in {"mm", "deg"} or parameter.path.endswith(".radius")
     if relative and math.isfinite(share):
         return f"±{share:.3g} %"
-    return f"±{parameter.step:.3g} {parameter.unit}".removesuffix(" -")
+    sign = "+" if is_one_sided(parameter) else "±"
+    return f"{sign}{parameter.step:.3g} {parameter.unit}".removesuffix(" -")
 
 
 def _remark(influence: Influence, i: int) -> str:
     parameter = influence.parameters[i]
     if parameter.path in influence.failures:
-        return influence.failures[parameter.path]
-    if not parameter.active:
-        return "rigid in this axle: its equations do not contain it"
-    return ""
+        return f"{parameter.label}; {influence.failures[parameter.path]}"
+    return parameter.label + ("" if parameter.active else "; rigid in this axle")
 
 
 def _difference(influence: Influence, i: int, j: int) -> str:

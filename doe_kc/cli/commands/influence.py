@@ -1,0 +1,66 @@
+"""`doe-kc influence`: the normalized parameter-influence matrix."""
+
+from __future__ import annotations
+
+import typer
+
+from doe_kc.cli._app import app
+from doe_kc.cli.options import (
+    JsonOption,
+    MeasurementOption,
+    OutOption,
+    StudyArgument,
+    WorkersOption,
+)
+from doe_kc.cli.progress import progress_bar
+from doe_kc.influence.relations import relations
+from doe_kc.influence.result import Influence
+from doe_kc.measurement import reduce_measurement
+from doe_kc.output import write_json
+from doe_kc.study import read_study
+from doe_kc.workflow.influence import (
+    influence_document,
+    influence_runs,
+    study_influence,
+    write_influence,
+)
+
+
+@app.command()
+def influence(
+    study: StudyArgument,
+    measurement: MeasurementOption = None,
+    out: OutOption = None,
+    json: JsonOption = None,
+    workers: WorkersOption = None,
+) -> None:
+    """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""
+    found = read_study(study, measurement=measurement, out=out)
+    measured = None
+    if found.measurement is not None:
+        measured = reduce_measurement(
+            found.measurement, windows=found.windows, half_track=found.axle.half_track
+        )
+    with progress_bar("one at a time", influence_runs(found)) as advance:
+        result = study_influence(found, measured, workers=workers, progress=advance)
+    if json is not None:
+        write_json(json, influence_document(result.matrix))
+    written = write_influence(found, result, found.out / "influence")
+    for line in influence_lines(result.matrix):
+        typer.echo(line)
+    typer.echo(f"{len(written)} files in {found.out / 'influence'}", err=True)
+
+
+def influence_lines(matrix: Influence) -> list[str]:
+    """Strongest parameters of every characteristic, and what went wrong."""
+    lines = [f"{'characteristic':32}strongest parameters, percent of the strongest"]
+    for entry in relations(matrix).by_characteristic:
+        strongest = ", ".join(f"{k.parameter} {k.percent:+.0f}" for k in entry.links[:4])
+        lines.append(f"{entry.characteristic.id:32}{strongest}")
+    lines += [f"{path}: {reason}" for path, reason in matrix.failures.items()]
+    lines.append(
+        f"{len(matrix.parameters)} parameters x {len(matrix.characteristics)} characteristics in "
+        f"{matrix.seconds:.1f} s; {int(matrix.nonlinear.sum())} entries differ from the exact sensitivity "
+        "by more than 5 %"
+    )
+    return lines

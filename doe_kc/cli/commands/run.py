@@ -1,0 +1,82 @@
+"""`doe-kc run`: the whole chain."""
+
+from __future__ import annotations
+
+import time
+
+import typer
+
+from doe_kc.cli._app import app
+from doe_kc.cli.commands.influence import influence_lines
+from doe_kc.cli.commands.reduce import ride_height_line
+from doe_kc.cli.options import (
+    JsonOption,
+    MeasurementOption,
+    OutOption,
+    StudyArgument,
+    WorkersOption,
+)
+from doe_kc.cli.progress import progress_bar
+from doe_kc.output import write_json
+from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
+from doe_kc.study import read_study
+from doe_kc.workflow.compare import (
+    compare_model,
+    comparison_document,
+    comparison_lines,
+    write_comparison,
+)
+from doe_kc.workflow.influence import (
+    influence_document,
+    influence_runs,
+    study_influence,
+    write_influence,
+)
+from doe_kc.workflow.measure import reduce_records, reduced_document, write_reduced
+
+
+@app.command()
+def run(
+    study: StudyArgument,
+    measurement: MeasurementOption = None,
+    out: OutOption = None,
+    json: JsonOption = None,
+    workers: WorkersOption = None,
+) -> None:
+    """The whole chain: simulate, reduce the records, compare, influence matrix; everything under out."""
+    started = time.perf_counter()
+    found = read_study(study, measurement=measurement, out=out)
+    solution = solve(found.axle)
+    seconds = time.perf_counter() - started
+    model = curve_set(solution)
+    written = write_simulation(solution, found.out / "simulate")
+    typer.echo(f"{found.axle.name}: {solution.equilibria} equilibria in {seconds:.2f} s", err=True)
+
+    reduced = reduce_records(found, solution)
+    typer.echo("drawing the rig records and the comparison", err=True)
+    written += write_reduced(reduced, found.out / "reduce")
+    comparison = compare_model(found, model, reduced.measurement)
+    written += write_comparison(comparison, found.out / "compare")
+
+    with progress_bar("one at a time", influence_runs(found)) as advance:
+        influence = study_influence(found, reduced.measurement, workers=workers, progress=advance)
+    written += write_influence(found, influence, found.out / "influence")
+
+    if json is not None:
+        write_json(
+            json,
+            {
+                "simulate": characteristics_document(solution, seconds),
+                "reduce": reduced_document(reduced),
+                "compare": comparison_document(comparison),
+                "influence": influence_document(influence.matrix),
+                "seconds": time.perf_counter() - started,
+            },
+        )
+    for line in [*comparison_lines(comparison), "", *influence_lines(influence.matrix)]:
+        typer.echo(line)
+    if reduced.ride_height is not None:
+        typer.echo(ride_height_line(reduced.ride_height))
+    typer.echo(f"{len(written)} files under {found.out} in {time.perf_counter() - started:.0f} s")

@@ -1,0 +1,97 @@
+"""Influence: the study's parameter-influence matrix as workbook, pictures, tables and JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from doe_kc import __version__
+from doe_kc.characteristics import CHARACTERISTICS, appendix_c
+from doe_kc.influence.relations import relations
+from doe_kc.influence.result import Influence
+from doe_kc.influence.selection import select_variables
+from doe_kc.influence.selection_result import Selection
+from doe_kc.influence.study import influence_study
+from doe_kc.measurement import Measurement
+from doe_kc.output import write_csv
+from doe_kc.reporting.influence_figures import write_influence_figures
+from doe_kc.reporting.workbook import write_influence_workbook
+from doe_kc.study import Study
+
+
+@dataclass(frozen=True)
+class StudyInfluence:
+    """matrix: the 21 columns of Appendix C; everything: all characteristics. selection: None without targets."""
+
+    matrix: Influence
+    everything: Influence
+    selection: Selection | None
+
+
+def study_influence(
+    study: Study,
+    measurement: Measurement | None,
+    *,
+    workers: int | None = None,
+    progress: Callable[[int], None] = lambda _: None,
+) -> StudyInfluence:
+    """One-at-a-time and exact influence of the study's parameters, and the variables to use.
+
+    measurement: its characteristics are the targets of the selection.
+    """
+    everything = influence_study(
+        study.axle,
+        study.parameters,
+        list(CHARACTERISTICS.values()),
+        workers=workers,
+        windows=study.windows,
+        progress=progress,
+    )
+    selection = None
+    if measurement is not None:
+        targets = {name: e.value for name, e in measurement.characteristics.items()}
+        selection = select_variables(everything, targets)
+    return StudyInfluence(everything.only(appendix_c()), everything, selection)
+
+
+def influence_runs(study: Study) -> int:
+    """Number of true-solver runs of the study, for progress."""
+    return 1 + 2 * len(study.parameters)
+
+
+def write_influence(study: Study, found: StudyInfluence, folder: Path) -> list[Path]:
+    """influence.xlsx, heat map and top-ten bars (PNG, SVG), and the three matrices as CSV."""
+    matrix = found.matrix
+    book = write_influence_workbook(
+        folder / "influence.xlsx",
+        matrix,
+        relations=relations(matrix),
+        study=study.name,
+        date=date.today().isoformat(),
+        selection=found.selection,
+        notes={
+            "Axle": f"{study.axle.name} ({study.axle_path.name})",
+            "Effects": ", ".join(study.axle.effects) or "none",
+            "doe_kc": __version__,
+        },
+        windows=study.windows,
+    )
+    tables = {"percent": matrix.percent, "absolute": matrix.absolute, "exact": matrix.exact}
+    csv = [
+        write_csv(folder / f"influence_{name}.csv", matrix.frame(values).reset_index(names="parameter"))
+        for name, values in tables.items()
+    ]
+    return [book, *write_influence_figures(matrix, folder, study=study.name), *csv]
+
+
+def influence_document(influence: Influence) -> dict[str, Any]:
+    """`{"percent": {characteristic: {parameter: number}}, "absolute": ..., "exact": ..., "seconds"}`."""
+    tables = {"percent": influence.percent, "absolute": influence.absolute, "exact": influence.exact}
+    document: dict[str, Any] = {
+        name: influence.frame(values).to_dict() for name, values in tables.items()
+    }
+    steps = {p.path: p.step for p in influence.parameters}
+    return document | {"steps": steps, "failures": influence.failures, "seconds": influence.seconds}
