@@ -6,20 +6,17 @@ an error when the agreement is worse than two independent solvers reach on this 
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from appendix_c_causes import causes, matrix
 from appendix_c_text import markdown
 from matplotlib.figure import Figure
 
 from doe_kc.axle import read_axle
-from doe_kc.axle.parameters import design_parameters
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
-from doe_kc.influence.result import percent_of_column
-from doe_kc.influence.study import influence_study
 from doe_kc.reporting.influence_figures import draw_matrix
 from doe_kc.reporting.style import figure, save
 from doe_kc.typing import FloatArray
@@ -52,18 +49,14 @@ def agreement() -> Agreement:
     """Runs the study on the rows of Appendix C and compares it."""
     published = pd.read_csv(PUBLISHED, index_col="parameter", dtype=dict.fromkeys(_ids(), float))
     axle = read_axle(AXLE)
-    known = {p.path: p for p in design_parameters(axle)}
-    rows = [known[name.replace(" ", ".")] for name in published.index]
-    columns = [*appendix_c(), CHARACTERISTICS["vertical.caster_compensation"]]
-    study = influence_study(axle, rows, columns)
-    percent = percent_of_column(study.absolute)
-    own = pd.DataFrame(percent[:, :-1], index=published.index, columns=_ids())
-    caster = published["vertical.caster_change"].to_numpy()
+    knuckle = CHARACTERISTICS["vertical.caster_compensation"]
+    both = matrix(axle, published.index, [*appendix_c(), knuckle])
+    own, caster = both[_ids()], published["vertical.caster_change"].to_numpy()
     return Agreement(
-        published,
-        own,
-        pd.DataFrame([_column(c, own[c], published[c]) for c in _ids()]).set_index("characteristic"),
-        pearson(np.abs(percent[:, -1]), np.abs(caster)),
+        published=published,
+        own=own,
+        table=pd.DataFrame([_column(c, own[c], published[c]) for c in _ids()]).set_index("characteristic"),
+        knuckle_caster=pearson(np.abs(both[knuckle.id].to_numpy()), np.abs(caster)),
     )
 
 
@@ -136,7 +129,8 @@ def side_by_side(found: Agreement) -> Figure:
 def main() -> None:
     """Compare, write, assert, print the table."""
     found = agreement()
-    text = markdown(found.table, found.knuckle_caster)
+    experiments = causes(read_axle(AXLE), found.own, found.published, appendix_c())
+    text = markdown(found.table, experiments, found.knuckle_caster)
     (HERE / "appendix_c.md").write_text(text, encoding="utf-8")
     found.table.to_csv(HERE / "appendix_c.csv", float_format="%.4f")
     save(side_by_side(found), HERE / "appendix_c")
@@ -145,4 +139,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

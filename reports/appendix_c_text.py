@@ -31,34 +31,41 @@ throughout. Strongest entries leave the slip rows out.
 
 ## What the differences are due to
 
+| change of the example | mean of 21 | roll camber | lateral camber | drive steer | brake steer |
+|---|---|---|---|---|---|
+{causes}
+
 - **Another axle.** The published car's hardpoints and bushings are not given; the example is an invented,
-  plausible McPherson axle. Kinematics depend on the topology first, so they agree almost fully; which bushing
-  dominates a compliance depends on the ratios of stiffnesses, which differ. In the published matrix `llr Fx`
-  leads drive and brake steer, here `llf Fx` does: the example's front bushing is soft enough in comparison
-  for the arm to turn about the rear one.
-- **Coarse numbers.** Several published columns take few values: roll camber change only multiples of 20 %,
-  lateral camber change of 33 %, with 30 mm offset of 25 %, steering ratio of 5 %, lateral toe change of 9 %.
-  Their characteristics were read from outputs of few digits, so that the largest change is 3 to 20 last digits;
-  everything below half a digit is 0. That costs roll camber change most among the kinematic columns, and
-  produces the published 33 % of parameters that do next to nothing.
+  plausible McPherson axle. Kinematics follow from the topology and agree almost fully. Compliances follow
+  from ratios of stiffnesses and from small lever arms, and do not: the published drive and brake steer are
+  led by `llr Fx`, here by `llf Fx`. Moving the example's inner tie-rod joint 30 mm back, or softening the
+  rear arm bush, brings these two columns from about 0.45 to 0.65 and more (table): it is the car, not the
+  solver.
 - **Copying slip.** `upb Tz`, `sff Tz` and `sfr Tz` repeat the row `Fy` of the same bushing. A torsion
   stiffness about a nearly vertical axis does next to nothing; without these rows the mean rises.
-- **Signs.** The published toe and caster angles change sign with the load case's own convention, which gives
-  whole columns the opposite sign (column "sign"). Beyond that some published signs oppose each other inside a
-  column (in caster change `LLF z` and `LLR z` are opposite to the example while `UPB x` and `LWB x` are not;
-  in roll camber change against vertical camber change the strut points keep their relation and others do
-  not), so no choice of one sign makes them agree, and the signed mean stays near 0.69.
-- **Caster.** The published caster change is the kingpin's: with it the column correlates at {kingpin:.3f}, with
-  the angle that the knuckle carries, which is what a rig sees, only at {knuckle:.3f}, because that angle also
-  answers to `LWD x`, on which the published column has 0 %. Brake wind-up is the knuckle's angle.
-- **What does not matter.** The half-width of the fit window (5 to 80 mm), and travel of wheel or pad as
-  abscissa, change no column by more than 0.005.
+- **Top mount.** `upb Fy` (and its copy) has 60 % of the published roll camber change, 17 % here. That is what
+  keeps roll camber change below the other kinematic columns: without these two rows it rises as the table
+  shows.
+- **Coarse numbers.** Several published columns take few values: roll camber change only multiples of 20 %,
+  lateral camber change of 33 %, with 30 mm offset of 25 %, steering ratio of 5 %, lateral toe change of 9 %.
+  The outputs had few digits, so that one last digit is up to a third of the largest change: 20 % for
+  parameters that do nothing, such as `LLR x` in roll camber change. Rounding the example likewise changes
+  its columns little (table): what costs is the rounding noise in the published ones.
+- **Signs.** Whole columns have the opposite sign (−), from the convention of their load case. Beyond that
+  some published signs oppose each other inside a column: in caster change `LLF z` and `LLR z` are opposite to
+  the example while `UPB x` and `LWB x` are not; in lateral displacement and camber the bushings are, while
+  `LWB x` and `WLC x` are not; in lateral toe it is the reverse. No choice of one sign makes these agree,
+  hence the signed mean.
+- **Caster.** The published caster change is the kingpin's: with it the column correlates at {kingpin:.3f},
+  with the angle that the knuckle carries, which is what a rig sees, only at {knuckle:.3f}, because that
+  angle also answers to `LWD x`, on which the published column has 0 %.
+- **What does not matter.** Wider fit windows (table).
 """
 
 STRONG = 20.0
 
 
-def markdown(table: pd.DataFrame, knuckle_caster: float) -> str:
+def markdown(table: pd.DataFrame, causes: pd.DataFrame, knuckle_caster: float) -> str:
     """The report: means, the table by column, and the reasons for the differences."""
     head = HEAD.format(
         absolute=table["absolute"].mean(),
@@ -70,7 +77,19 @@ def markdown(table: pd.DataFrame, knuckle_caster: float) -> str:
     )
     rows = "\n".join(_row(str(name), entry) for name, entry in table.iterrows())
     kingpin = table.loc["vertical.caster_change", "absolute"]
-    return head + rows + "\n" + TAIL.format(kingpin=kingpin, knuckle=knuckle_caster)
+    lines = "\n".join(_cause(str(name), entry) for name, entry in causes.iterrows())
+    return head + rows + "\n" + TAIL.format(kingpin=kingpin, knuckle=knuckle_caster, causes=lines)
+
+
+def _cause(name: str, entry: pd.Series) -> str:
+    columns = (
+        "mean",
+        "roll.camber_change",
+        "lateral.camber_change",
+        "drive.drive_steer",
+        "brake.brake_steer",
+    )
+    return f"| {name} | " + " | ".join(f"{entry[c]:.3f}" for c in columns) + " |"
 
 
 def _row(name: str, entry: pd.Series) -> str:

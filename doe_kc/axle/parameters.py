@@ -83,10 +83,23 @@ def _kinds() -> dict[str, _Kind]:
 
 
 KINDS: Mapping[str, _Kind] = _kinds()
-POSITIVE = frozenset(
-    "stiffness rate radius nominal_radius static_load column rack_mm_per_rev factor lat_rate long_rate "
-    "gap force presliding kx ky kz krx kry krz".split()
-)
+POSITIVE = {
+    *(
+        "stiffness",
+        "rate",
+        "lat_rate",
+        "long_rate",
+        "factor",
+        "column",
+        "kx",
+        "ky",
+        "kz",
+        "krx",
+        "kry",
+        "krz",
+    ),
+    *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "gap", "force", "presliding"),
+}
 
 
 def design_parameters(axle: Axle) -> list[Parameter]:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -16,9 +18,12 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import library_for, solve
+from doe_kc.solver.topology import Topology
 from doe_kc.typing import FloatArray
 
 CHUNK = 8
+COMPILE_FROM = 50
+"""Designs of one topology from which compiling it, some seconds, pays."""
 Values = dict[str, float]
 Windows = Mapping[str, float] | None
 
@@ -31,11 +36,12 @@ class Evaluation:
     reason: str
 
 
-def evaluate(axle: Axle, values: Values, windows: Windows = None) -> Evaluation:
-    """One design: failure is a value."""
+def evaluate(
+    axle: Axle, values: Values, windows: Windows = None, compiled: frozenset[Topology] = frozenset()
+) -> Evaluation:
+    """One design: failure is a value. compiled: topologies to run compiled where that is possible."""
     changed = with_values(axle, values)
-    same = changed.topology == axle.topology
-    solution = solve(changed, throw=False, compiled=None if same else False)
+    solution = solve(changed, throw=False, compiled=None if changed.topology in compiled else False)
     if solution.failure is not None:
         return Evaluation(np.full(len(CHARACTERISTICS), np.nan), str(solution.failure))
     return Evaluation(np.array(list(reduce_all(curve_set(solution), windows).values())), "")
@@ -54,14 +60,23 @@ def evaluate_all(
     workers: processes, default one per core; 1 stays in this process. windows: as in `reduce_all`.
     """
     count = workers if workers is not None else available_cores()
+    compiled = worth_compiling(axle, designs)
     if count <= 1 or len(designs) < 2 * CHUNK:
         results = []
         for values in designs:
-            results.append(evaluate(axle, values, windows))
+            results.append(evaluate(axle, values, windows, compiled))
             progress(1)
         return results
-    library_for(axle.topology, None)
-    return list(_in_processes(axle, designs, count, windows, progress))
+    for topology in compiled:
+        library_for(topology, None)
+    task = partial(_chunk, axle, windows, compiled)
+    return list(_in_processes(task, designs, count, progress))
+
+
+def worth_compiling(axle: Axle, designs: Sequence[Values]) -> frozenset[Topology]:
+    """The axle's own topology, and those that enough designs switch to (a strut made flexible)."""
+    count = Counter(with_values(axle, values).topology for values in designs)
+    return frozenset({axle.topology} | {t for t, n in count.items() if n >= COMPILE_FROM})
 
 
 def available_cores() -> int:
@@ -72,17 +87,16 @@ def available_cores() -> int:
 
 
 def _in_processes(
-    axle: Axle,
+    task: Callable[[list[Values]], list[Evaluation]],
     designs: Sequence[Values],
     workers: int,
-    windows: Windows,
     progress: Callable[[int], None],
 ) -> Iterator[Evaluation]:
     chunks = [list(designs[i : i + CHUNK]) for i in range(0, len(designs), CHUNK)]
     with ProcessPoolExecutor(
         workers, mp_context=start_context(), initializer=_leave_interrupts_to_parent
     ) as pool:
-        futures = [pool.submit(_chunk, axle, chunk, windows) for chunk in chunks]
+        futures = [pool.submit(task, chunk) for chunk in chunks]
         try:
             for future in futures:
                 results = future.result()
@@ -103,5 +117,7 @@ def _leave_interrupts_to_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _chunk(axle: Axle, designs: list[Values], windows: Windows) -> list[Evaluation]:
-    return [evaluate(axle, values, windows) for values in designs]
+def _chunk(
+    axle: Axle, windows: Windows, compiled: frozenset[Topology], designs: list[Values]
+) -> list[Evaluation]:
+    return [evaluate(axle, values, windows, compiled) for values in designs]

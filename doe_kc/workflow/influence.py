@@ -90,8 +90,6 @@ def write_influence(study: Study, found: StudyInfluence, folder: Path) -> list[P
 def influence_document(influence: Influence) -> dict[str, Any]:
     """`{"percent": {characteristic: {parameter: number}}, "absolute": ..., "exact": ..., "seconds"}`."""
     tables = {"percent": influence.percent, "absolute": influence.absolute, "exact": influence.exact}
-    document: dict[str, Any] = {
-        name: influence.frame(values).to_dict() for name, values in tables.items()
-    }
+    document: dict[str, Any] = {name: influence.frame(values).to_dict() for name, values in tables.items()}
     steps = {p.path: p.step for p in influence.parameters}
     return document | {"steps": steps, "failures": influence.failures, "seconds": influence.seconds}

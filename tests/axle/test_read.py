@@ -1,4 +1,4 @@
-"""The example file is the reference axle; every bad file ends in one sentence that names file, key, remedy."""
+"""The example file is the reference axle; a bad file ends in a sentence that names file, key and remedy."""
 
 from __future__ import annotations
 

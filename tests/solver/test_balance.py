@@ -36,7 +36,7 @@ def external(control: dict[str, float], y: dict[str, float]) -> tuple[np.ndarray
     for side in ("L", "R"):
         contact = np.array([y[f"cp_{a}@{side}"] for a in "xyz"])
         centre = np.array([y[f"wc_{a}@{side}"] for a in "xyz"])
-        behind = contact + [control["lateral_offset"], 0.0, 0.0]
+        behind = contact + np.array([control["lateral_offset"], 0.0, 0.0])
         for f, at in (
             (y[f"tyre_load@{side}"] * normal, contact),
             (np.array([control[f"brake_{side}"], 0.0, 0.0]), contact),

@@ -1,7 +1,8 @@
 """Kinematics of the rigid limit against a separate constraint solution of one McPherson corner.
 
-Constraints: the lower arm turns about LLF-LLR, the strut axis (fixed in the knuckle) passes through UPB, the
-tie rod keeps its length, the rack stands where it stands. Finite stiffness leaves an error that falls with it.
+Constraints: the lower arm turns about LLF-LLR, the strut axis (fixed in the knuckle) passes through UPB,
+the tie rod keeps its length, the rack stands where it stands. Finite stiffness leaves an error that falls
+as it grows.
 """
 
 from __future__ import annotations

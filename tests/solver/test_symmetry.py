@@ -1,4 +1,4 @@
-"""Mirror symmetry, independence of the path without friction, loops with friction, effects in their limits."""
+"""Mirror symmetry, independence of the path, loops with friction, effects in their limits."""
 
 from __future__ import annotations
 

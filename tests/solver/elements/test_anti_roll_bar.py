@@ -21,7 +21,7 @@ def test_the_pair_of_forces() -> None:
     (left, moment), (right, _) = forces(12.0, -8.0)
     np.testing.assert_allclose(left, [0, 0, -22.0 * 20.0])
     np.testing.assert_allclose(right, [0, 0, 22.0 * 20.0])
-    at = hardpoint("ARB") + [1.0, 0.0, 12.0]
+    at = hardpoint("ARB") + np.array([1.0, 0.0, 12.0])
     np.testing.assert_allclose(moment, np.cross(at - [1.0, 0.0, 12.0], left))
 
 

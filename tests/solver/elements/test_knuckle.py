@@ -30,7 +30,7 @@ def test_the_knuckle_hangs_on_the_ball_joint_which_carries_no_moment() -> None:
     b = assembled()
     joint = next(j for j in b.joints if j.label == "knuckle L")
     assert not joint.carries_moment
-    np.testing.assert_allclose(number(b, joint.child.origin), hardpoint("LWB") + [0, 1, 20])
+    np.testing.assert_allclose(number(b, joint.child.origin), hardpoint("LWB") + np.array([0, 1, 20]))
     assert b.bodies["tube.L"] is b.bodies["knuckle.L"]
 
 

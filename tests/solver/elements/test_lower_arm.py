@@ -36,8 +36,8 @@ def test_a_shift_meets_local_x_as_minus_y_and_local_y_as_x() -> None:
     for name, k in LOCAL.items():
         f = -k[[1, 0, 2]] * [0.1, 0.2, -0.05]
         expected += f
-        point = hardpoint(name.upper()) + [0.1, 0.2, -0.05]
-        turning += np.cross(point - (hardpoint("LWB") + [0.1, 0.2, -0.05]), f)
+        point = hardpoint(name.upper()) + np.array([0.1, 0.2, -0.05])
+        turning += np.cross(point - (hardpoint("LWB") + np.array([0.1, 0.2, -0.05])), f)
     np.testing.assert_allclose(force, expected)
     np.testing.assert_allclose(moment, turning)
 
@@ -51,14 +51,14 @@ def test_axes_ride_on_the_sub_frame_and_the_pair_balances() -> None:
     expected = np.zeros(3)
     for name, k in LOCAL.items():
         point = hardpoint(name.upper())
-        apart = point + [0.3, 0, 0] - (FRAME + r @ (point - FRAME))
+        apart = point + np.array([0.3, 0, 0]) - (FRAME + r @ (point - FRAME))
         expected += -r @ (k[[1, 0, 2]] * (r.T @ apart))
     np.testing.assert_allclose(on_arm[0], expected)
     # the right arm is at its design place: sum over the three bodies
     force, moment = on_frame
     for name, origin in (
         ("frame", FRAME),
-        ("lower arm L", hardpoint("LWB") + [0.3, 0, 0]),
+        ("lower arm L", hardpoint("LWB") + np.array([0.3, 0, 0])),
         ("lower arm R", hardpoint("LWB", "R")),
     ):
         f, m = wrench(b, name, given)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -30,8 +31,6 @@ def test_the_rack_slides_along_the_sub_frame_s_y() -> None:
 def test_the_column_pulls_the_rack_to_the_pinion() -> None:
     b = assembled()
     travel, pinion = b.joints[-1].freedoms[0].symbol, b.controls["rack"]
-    import casadi as ca
-
     force = ca.substitute(
         ca.vertcat(b.points["column force"], b.resistances["rack"]),
         ca.vertcat(travel, pinion),

@@ -69,6 +69,6 @@ def test_free_play_of_one_side_leaves_the_other_rigid() -> None:
     b = assembled([0.0, -0.3, 0.0], free_play_left=True)
     assert [u.name for u, _, _ in b.multipliers] == ["tie rod R"]
     design = hardpoint("ROB") - hardpoint("RIB")
-    dl = np.linalg.norm(design + [0, -0.3, 0]) - np.linalg.norm(design)
+    dl = np.linalg.norm(design + np.array([0, -0.3, 0])) - np.linalg.norm(design)
     tension = number(b, b.points["tie rod.L"], {"tie_rod.gap@L": 0.2})
     assert tension == pytest.approx(force(dl, 0.2))

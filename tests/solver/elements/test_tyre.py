@@ -83,7 +83,7 @@ def test_forces_act_where_the_definition_says() -> None:
     contact = number(b, b.points["contact.L"])
     np.testing.assert_allclose(force, [300.0 - 500.0, 700.0, STATIC], rtol=1e-9)
     arm = contact - [0.0, -790.0, HEIGHT]
-    expected = np.cross(arm, [300.0, 0.0, STATIC]) + np.cross(arm + [30.0, 0, 0], [0, 700.0, 0])
+    expected = np.cross(arm, [300.0, 0.0, STATIC]) + np.cross(arm + np.array([30.0, 0, 0]), [0, 700.0, 0])
     np.testing.assert_allclose(moment, expected, rtol=1e-9, atol=1e-6)
 
 

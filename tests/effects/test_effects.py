@@ -1,0 +1,198 @@
+"""Every effect: its defaults, what it refuses, and the same axle from a file as from the call."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from doe_kc.axle import parameter_value, read_axle
+from doe_kc.effects import EFFECTS, Option, apply_effect
+from doe_kc.errors import InputError
+from doe_kc.solver.topology import Topology
+from tests.reference import EXAMPLE, nominal
+
+TEXT = (EXAMPLE / "axle.toml").read_text()
+
+DEFAULTS: dict[str, dict[str, float]] = {
+    "bushing_preload": {"llr.preload.Fx": 0.0, "llr.preload.Fy": 600.0, "llr.preload.Fz": 0.0},
+    "bushing_progression": {"llr.cubic.Fx": 0.05, "upb.cubic.Fz": 0.02, "sff.cubic.Fx": 0.0},
+    "hub_compliance": {"hub.camber": 6000.0, "hub.toe": 9000.0},
+    "left_right_asymmetry": {"right.llr.Fx": 1.25, "right.llr.Fz": 1.25, "right.llr.Tx": 1.0, "llr.Fx": 1.0},
+    "rack_mount_compliance": {"rack_mount.rate": 6000.0},
+    "ride_height_offset": {"ride_height": 7.0},
+    "steer_arm_compliance": {"steer_arm.radius": 14.0},
+    "steering_friction": {"steering_friction.force": 250.0, "steering_friction.presliding": 0.05},
+    "strut_bending": {"strut.flexibility": 1.0, "strut.bending": 8000.0, "strut.torsion": 30000.0},
+    "strut_friction": {"strut_friction.force": 120.0, "right.strut_friction.presliding": 0.3},
+    "subframe_flexibility": {"subframe.kx": 80000.0, "subframe.kz": 40000.0, "subframe.krx": 3000.0},
+    "tie_rod_free_play": {"tie_rod.gap": 0.2},
+    "tyre_horizontal_compliance": {"tyre.lat_rate": 180.0, "tyre.long_rate": 250.0},
+}
+TOPOLOGIES: dict[str, dict[str, Any]] = {
+    "hub_compliance": {"hub": True},
+    "rack_mount_compliance": {"rack_mount": True},
+    "steer_arm_compliance": {"steer_arm": True},
+    "steering_friction": {"steering_friction": "dahl"},
+    "strut_bending": {"strut_bending": True},
+    "strut_friction": {"strut_friction": "dahl"},
+    "subframe_flexibility": {"flexible_subframe": True},
+    "tie_rod_free_play": {"free_play_left": True, "free_play_right": True},
+    "tyre_horizontal_compliance": {"tyre_horizontal": True},
+}
+OPTIONS: dict[str, dict[str, Any]] = {
+    "bushing_preload": {"SFF": [10.0, 20.0, -30.0], "upb": [1, 2, 3]},
+    "bushing_progression": {"LLF": [0.1, 0.0, 0.2]},
+    "hub_compliance": {"camber_Nm_deg": 4000},
+    "left_right_asymmetry": {"scale": {"SFF_L": 0.8, "LLF_R": 1.1}},
+    "rack_mount_compliance": {"k_N_mm": 5000.0},
+    "ride_height_offset": {"offset_mm": -4.0},
+    "steer_arm_compliance": {"radius_mm": 11.0},
+    "steering_friction": {"force_N": 99.0, "law": "iwan"},
+    "strut_bending": {"k_Nm_deg": 7000.0, "torsion_Nm_deg": 20000.0},
+    "strut_friction": {"presliding_mm": 0.2, "law": "dahl"},
+    "subframe_flexibility": {"mode": "flexible", "scale": 2.0},
+    "tie_rod_free_play": {"joints": ["ROB_R"], "gap_mm": 0.1},
+    "tyre_horizontal_compliance": {"k_lat_N_mm": 200.0},
+}
+NUMBERS = [(i, k) for i, e in EFFECTS.items() for k, o in e.options.items() if isinstance(o.default, float)]
+
+
+def applied(ident: str, options: dict[str, Any] | None = None):
+    return apply_effect(nominal(), ident, options or {}, source="axle.toml")
+
+
+def toml(value: Any) -> str:
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{k} = {toml(v)}" for k, v in value.items()) + " }"
+    return json.dumps(value)
+
+
+def test_every_effect_is_tested_here() -> None:
+    assert set(DEFAULTS) == set(OPTIONS) == set(EFFECTS)
+
+
+@pytest.mark.parametrize("ident", EFFECTS)
+def test_defaults_are_those_of_the_reference(ident: str) -> None:
+    axle = applied(ident)
+    for path, value in DEFAULTS[ident].items():
+        assert parameter_value(axle, path) == value, path
+    assert axle.topology == Topology(**TOPOLOGIES.get(ident, {}))
+    assert axle.effects == {ident: {}}
+    assert nominal().effects == {}
+    assert nominal().topology == Topology()
+
+
+@pytest.mark.parametrize("ident", EFFECTS)
+def test_an_effect_changes_nothing_but_its_own_values(ident: str) -> None:
+    before, after = nominal().values, applied(ident).values
+    changed = {k.split("@")[0] for k, v in after.items() if before.get(k) != v}
+    own = {p.removeprefix("right.") for p in DEFAULTS[ident]}
+    families = {p.rpartition(".")[0] for p in own} | own
+    assert all(c in own or c.rpartition(".")[0] in families for c in changed), changed
+
+
+@pytest.mark.parametrize("ident", EFFECTS)
+def test_from_a_file_it_is_the_same_axle(ident: str, tmp_path: Path) -> None:
+    path = tmp_path / "axle.toml"
+    lines = "\n".join(f"{k} = {toml(v)}" for k, v in OPTIONS[ident].items())
+    path.write_text(f"{TEXT}\n[effects.{ident}]\n{lines}\n")
+    assert read_axle(path) == applied(ident, OPTIONS[ident])
+
+
+@pytest.mark.parametrize("ident", EFFECTS)
+def test_an_unknown_key_is_named_with_the_file(ident: str) -> None:
+    with pytest.raises(InputError) as caught:
+        applied(ident, {"nonsense": 1.0})
+    for part in ("axle.toml", "nonsense"):
+        assert part in str(caught.value)
+
+
+@pytest.mark.parametrize(("ident", "key"), NUMBERS)
+@pytest.mark.parametrize(
+    "value", ["1", None, True, [], {}, math.nan, math.inf, -math.inf, 10**400], ids=lambda v: str(v)[:9]
+)
+def test_a_number_must_be_a_finite_number(ident: str, key: str, value: object) -> None:
+    with pytest.raises(InputError) as caught:
+        applied(ident, {key: value})
+    for part in ("axle.toml", ident, key, "finite number"):
+        assert part in str(caught.value)
+
+
+@pytest.mark.parametrize(("ident", "key"), NUMBERS)
+@pytest.mark.parametrize("value", [0, -1.0])
+def test_zero_and_negative_values(ident: str, key: str, value: float) -> None:
+    if EFFECTS[ident].options[key].positive:
+        with pytest.raises(InputError, match=f"{ident}: {key} = .*> 0"):
+            applied(ident, {key: value})
+    else:
+        assert applied(ident, {key: value}).values["ride_height"] == value
+
+
+def test_the_near_key_is_suggested() -> None:
+    with pytest.raises(InputError, match='Did you mean "toe_Nm_deg"'):
+        applied("hub_compliance", {"toe_Nm_dge": 1.0})
+    with pytest.raises(InputError, match=r'unknown effect .* Did you mean "strut_bending"'):
+        applied("strut_bendng")
+    with pytest.raises(InputError, match='Did you mean "LLR_R"'):
+        applied("left_right_asymmetry", {"LRR_R": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("ident", "options"),
+    [
+        ("steering_friction", {"law": "coulomb"}),
+        ("strut_friction", {"law": ["dahl"]}),
+        ("subframe_flexibility", {"mode": "soft"}),
+        ("tie_rod_free_play", {"joints": ["ROB"]}),
+        ("tie_rod_free_play", {"joints": []}),
+        ("tie_rod_free_play", {"joints": 3}),
+        ("tie_rod_free_play", {"joints": None}),
+        ("tie_rod_free_play", {"joints": [["ROB_L"]]}),
+        ("bushing_preload", {"LLR": [1.0, 2.0]}),
+        ("bushing_preload", {"LLR": 1.0}),
+        ("bushing_preload", {"LLR": ["a", 0.0, 0.0]}),
+        ("bushing_preload", {"LLX": [0.0, 0.0, 0.0]}),
+        ("bushing_progression", {"LLR": [-0.1, 0.0, 0.0]}),
+        ("bushing_progression", {"LLR": [math.nan, 0.0, 0.0]}),
+        ("left_right_asymmetry", {"scale": 1.25}),
+        ("left_right_asymmetry", {"scale": {"LLR": 1.25}}),
+        ("left_right_asymmetry", {"LLR_R": 0.0}),
+        ("left_right_asymmetry", {"LLR_R": "1.25"}),
+    ],
+    ids=str,
+)
+def test_other_wrong_values(ident: str, options: dict[str, Any]) -> None:
+    with pytest.raises(InputError, match=r"axle\.toml"):
+        applied(ident, options)
+
+
+def test_free_play_of_one_joint_as_text() -> None:
+    topology = applied("tie_rod_free_play", {"joints": "ROB_L"}).topology
+    assert (topology.free_play_left, topology.free_play_right) == (True, False)
+
+
+def test_a_rigid_sub_frame_takes_the_effect_back() -> None:
+    flexible = applied("subframe_flexibility")
+    rigid = apply_effect(flexible, "subframe_flexibility", {"mode": "rigid"}, source="t")
+    assert rigid.topology == Topology()
+
+
+def test_the_command_line_s_dotted_key_is_the_nested_one() -> None:
+    a = applied("left_right_asymmetry", {"scale.LLR_R": 1.1}).values
+    assert a == applied("left_right_asymmetry", {"LLR_R": 1.1}).values
+    assert a == applied("left_right_asymmetry", {"scale": {"LLR_R": 1.1}}).values
+
+
+def test_effects_add_up_in_any_order() -> None:
+    one = apply_effect(applied("hub_compliance"), "steering_friction", {}, source="t")
+    other = apply_effect(applied("steering_friction"), "hub_compliance", {}, source="t")
+    assert one == other
+    assert set(one.effects) == {"hub_compliance", "steering_friction"}
+
+
+def test_options_are_positive_unless_they_say_otherwise() -> None:
+    assert Option(1.0).positive

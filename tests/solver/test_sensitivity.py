@@ -1,0 +1,170 @@
+"""Exact sensitivities against central differences, friction-free and along frictional loops."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
+from doe_kc.axle.parameters import settable_paths
+from doe_kc.characteristics import CHARACTERISTICS, reduce_all
+from doe_kc.effects import apply_effect
+from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
+from doe_kc.solver.kernel import kernel
+from doe_kc.solver.march import Settings
+from doe_kc.solver.result import Solution
+from doe_kc.solver.sensitivity import Sensitivities, sensitivities
+from doe_kc.solver.suite import solve
+from tests.reference import nominal
+
+TIGHT = Settings(tol=1e-8)
+"""Central differences of equilibria at the usual 1e-7 N would be noise at 1e-5 relative."""
+SHORT = {"vertical": 8, "roll": 6, "lateral": 5, "lateral_offset": 5, "brake": 5, "drive": 5, "steer": 8}
+ROUND_OFF = {"N": 5e-7, "mm": 1e-9, "deg": 1e-9}
+"""Scatter of an output between equilibria converged to TIGHT; over the step it bounds what differences see."""
+
+
+def short(axle: Axle) -> Axle:
+    """Fewer steps: each is as good a check as the next."""
+    cases = {i: replace(axle.load_cases[i], steps=n) for i, n in SHORT.items()}
+    return replace(axle, load_cases=cases)
+
+
+def tight(axle: Axle) -> Solution:
+    return solve(axle, compiled=False, settings=TIGHT)
+
+
+def step_of(axle: Axle, path: str) -> float:
+    """Wide enough to drown rounding; Richardson's extrapolation takes care of the rest."""
+    if path == "tie_rod.gap":
+        return 1e-4
+    value = abs(parameter_value(axle, path))
+    if path.endswith((".x", ".y", ".z", ".clearance")) or path == "ride_height":
+        return 0.03
+    return 4e-3 if value == 0.0 or path.startswith("static.") else 4e-3 * value
+
+
+def output_units(names: tuple[str, ...]) -> list[str]:
+    units = OUTPUT_UNITS | AXLE_OUTPUT_UNITS
+    return [units[name.split("@")[0]] for name in names]
+
+
+def differences(axle: Axle, path: str, h: float) -> dict[tuple[str, int], np.ndarray]:
+    value = parameter_value(axle, path)
+    up, down = (tight(with_values(axle, {path: value + sign * h})) for sign in (1, -1))
+    return {
+        (case, i): (up.cases[case].branches[i].y - branch.y) / (2 * h)
+        for case, solved in down.cases.items()
+        for i, branch in enumerate(solved.branches)
+    }
+
+
+def worst(axle: Axle, exact: Sensitivities, path: str) -> tuple[float, str]:
+    """Largest relative difference over all equilibria and outputs, beyond what rounding explains."""
+    h, column = step_of(axle, path), exact.paths.index(path)
+    near, far = differences(axle, path, h), differences(axle, path, 2 * h)
+    names = kernel(axle.topology).equations.output_names
+    floor = np.array([ROUND_OFF[unit] for unit in output_units(names)]) / h
+    found = (0.0, "")
+    for case, branches in exact.branches.items():
+        for i, derivative in enumerate(branches):
+            mine = derivative[:, :, column]
+            gap = np.abs((4 * near[case, i] - far[case, i]) / 3 - mine).max(axis=0)
+            ratio = np.maximum(gap - floor, 0.0) / np.maximum(np.abs(mine).max(axis=0), 1e-9)
+            found = max(found, (float(ratio.max()), f"{case} {i} {names[int(ratio.argmax())]}"))
+    return found
+
+
+FREE_PATHS = (
+    "LLF.z", "LLR.y", "LWB.x", "LWD.y", "LWS.z", "UPB.x", "UPBBI.y", "RIB.z", "ROB.x", "SFF.y", "SFR.z",
+    "WLC.x", "WLC.z", "llf.Fx", "llr.Fx", "llr.cubic.Fx", "llr.preload.Fy", "sff.Fy", "upb.Fy", "upb.Tx",
+    "scb.Tz", "bump_stop.clearance", "rebound_stop.clearance", "bump_stop.factor", "spring.rate",
+    "arb.radius", "tyre.rate", "tyre.static_load", "static.toe", "static.camber", "ride_height",
+    "damper.gas_force", "right.LLR.y", "right.llr.Fx", "left.WLC.z",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def free() -> tuple[Axle, Sensitivities]:
+    axle = with_values(short(nominal()), {"damper.gas_force": 50.0})
+    return axle, sensitivities(axle, tight(axle), FREE_PATHS)
+
+
+@pytest.mark.parametrize("path", FREE_PATHS)
+def test_friction_free(free: tuple[Axle, Sensitivities], path: str) -> None:
+    axle, exact = free
+    ratio, where = worst(axle, exact, path)
+    assert ratio < 1e-5, where
+
+
+LOOPS = {
+    "dahl": [("steering_friction", {}), ("strut_friction", {})],
+    "iwan": [("steering_friction", {"law": "iwan"}), ("strut_friction", {"law": "iwan"})],
+    "compliant": [
+        ("hub_compliance", {}),
+        ("strut_bending", {}),
+        ("rack_mount_compliance", {}),
+        ("steer_arm_compliance", {}),
+        ("subframe_flexibility", {}),
+        ("tyre_horizontal_compliance", {}),
+    ],
+    "free play": [("tie_rod_free_play", {"gap_mm": 0.2})],
+}
+LOOP_PATHS = {
+    "dahl": ("steering_friction.force", "steering_friction.presliding", "strut_friction.force", "ROB.x",
+             "UPB.y", "scb.Tz", "llr.Fx", "spring.rate", "ride_height"),
+    "iwan": ("steering_friction.force", "ROB.x", "scb.Tz"),
+    "compliant": ("hub.camber", "hub.toe", "strut.flexibility", "strut.torsion", "rack_mount.rate",
+                  "steer_arm.radius", "SAH.z", "subframe.ky", "subframe.krz", "tyre.lat_rate", "CLAMP.z"),
+    "free play": ("tie_rod.gap", "ROB.x", "llr.Fx"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "path"), [(name, path) for name, paths in LOOP_PATHS.items() for path in paths]
+)
+def test_along_the_path_and_with_every_compliance(name: str, path: str) -> None:
+    axle, exact = _with_effects(name)
+    ratio, where = worst(axle, exact, path)
+    assert ratio < 1e-5, where
+
+
+@lru_cache
+def _with_effects(name: str) -> tuple[Axle, Sensitivities]:
+    axle = short(nominal())
+    for ident, options in LOOPS[name]:
+        axle = apply_effect(axle, ident, options, source="test")
+    return axle, sensitivities(axle, tight(axle), LOOP_PATHS[name])
+
+
+def test_characteristics_of_every_design_parameter() -> None:
+    """Characteristic gradients against one-at-a-time values with a thousandth of the default step."""
+    axle = nominal()
+    parameters = [
+        p for p in design_parameters(axle) if p.path not in {"strut.flexibility", "steer_arm.radius"}
+    ]
+    chosen = parameters[::6]
+    exact = characteristic_gradients(axle, tight(axle), [p.path for p in chosen])
+    for j, parameter in enumerate(chosen):
+        h = 0.02 * parameter.step
+        up, down = (
+            np.array(list(reduce_all(curve_set(tight(with_values(axle, {parameter.path: v})))).values()))
+            for v in (parameter.nominal + h, parameter.nominal - h)
+        )
+        scale = np.abs(exact).max(axis=1) * np.abs(exact[:, j]).max() / np.abs(exact).max()
+        gap = np.abs((up - down) / (2 * h) - exact[:, j])
+        assert (gap <= 1e-4 * np.abs(exact[:, j]) + 1e-6 * scale + 1e-7 / h * 0.01).all(), parameter.path
+
+
+def test_more_than_a_hundred_parameters_at_once() -> None:
+    axle = short(nominal())
+    paths = settable_paths(axle)
+    assert len(paths) >= 100
+    exact = sensitivities(axle, tight(axle), paths)
+    assert all(np.isfinite(d).all() for branches in exact.branches.values() for d in branches)
+    assert len(CHARACTERISTICS) == characteristic_gradients(axle, tight(nominal()), paths[:3]).shape[0]
