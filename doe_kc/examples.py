@@ -19,6 +19,12 @@ def example_folder() -> Path:
     raise RunError("the example study is not part of this installation; reinstall doe-kc.")
 
 
+def _reason(error: OSError) -> str:
+    """The first cause, when shutil has collected one a file."""
+    causes = error.args[0] if isinstance(error, shutil.Error) else None
+    return str(causes[0][2] if causes else error.strerror or error)
+
+
 def copy_example(target: Path) -> list[Path]:
     """Copy the example to a new or empty folder; returns the files written."""
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
@@ -31,5 +37,8 @@ def copy_example(target: Path) -> list[Path]:
             ignore=shutil.ignore_patterns("out", "__pycache__"),
         )
     except OSError as error:
-        raise RunError(f"{target}: the example cannot be written ({error.strerror or error}).") from None
+        raise RunError(
+            f"{target}: the example cannot be written ({_reason(error)}); free disk space or name a writable "
+            "folder."
+        ) from None
     return sorted(p for p in target.rglob("*") if p.is_file())

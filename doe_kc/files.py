@@ -86,4 +86,5 @@ def _siblings(model: type[BaseModel], keys: list[str]) -> list[str]:
         field = current.model_fields.get(key) if current is not None else None
         annotation = field.annotation if field is not None else None
         current = annotation if isinstance(annotation, type) and issubclass(annotation, BaseModel) else None
-    return list(current.model_fields) if current is not None else []
+    fields = current.model_fields if current is not None else {}
+    return [field.alias or name for name, field in fields.items()]

@@ -18,22 +18,29 @@ def make_folder(path: Path) -> Path:
     """The folder, made if need be; RunError when that is not possible."""
     try:
         path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
+    except (OSError, ValueError) as error:  # ValueError: a zero byte in the name
         raise _unwritable(path, "folder cannot be made", error) from None
     return path
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> Path:
-    """Let `write` fill a file beside `path`, then put it in place: never a half-written result."""
+    """Let `write` fill a file beside `path`, then put it in place: never a half-written result.
+
+    Links are followed; a pipe or device such as /dev/stdout is written to, not replaced.
+    """
     make_folder(path.parent)
-    beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    special = path.exists() and not path.is_file() and not path.is_dir()
+    place = Path(os.path.realpath(path))
+    beside = path if special else place.with_name(f".{place.name}.{os.getpid()}.tmp")
     try:
         write(beside)
-        beside.replace(path)
+        if not special:
+            beside.replace(place)
     except OSError as error:
         raise _unwritable(path, "cannot be written", error) from None
     finally:
-        beside.unlink(missing_ok=True)
+        if not special:
+            beside.unlink(missing_ok=True)
     return path
 
 
@@ -58,8 +65,9 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def _unwritable(path: Path, what: str, error: OSError) -> RunError:
+def _unwritable(path: Path, what: str, error: Exception) -> RunError:
+    reason = getattr(error, "strerror", None) or error
     return RunError(
-        f"{path}: {what} ({error.strerror or error}); free disk space, close the file in other programs, "
+        f"{path}: {what} ({reason}); free disk space, close the file in other programs, "
         "or choose a writable folder with --out."
     )

@@ -7,6 +7,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import Field
 
 from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
@@ -16,6 +17,7 @@ from doe_kc.files import read_toml, validate
 from doe_kc.solver.load_cases import LOAD_CASES
 
 SCHEMA = "doe_kc.study/1"
+FEWEST_POINTS = 3
 
 
 class InfluenceOptions(Strict):
@@ -61,10 +63,12 @@ class Study:
         return self.measurement
 
 
-def read_study(path: Path, *, measurement: Path | None = None, out: Path | None = None) -> Study:
+def read_study(
+    path: Path, *, measurement: Path | None = None, out: Path | None = None, seed: int | None = None
+) -> Study:
     """Study from its file, or from the folder that holds `study.toml`.
 
-    measurement, out: in place of the study's own. InputError naming file and key for anything wrong.
+    measurement, out, seed: in place of the study's own. InputError naming file and key for anything wrong.
     """
     source = path / "study.toml" if path.is_dir() else path
     file = validate(StudyFile, read_toml(source), str(source))
@@ -76,6 +80,7 @@ def read_study(path: Path, *, measurement: Path | None = None, out: Path | None 
             )
     folder = source.parent
     axle = read_axle(folder / file.axle)
+    _check_windows(file.windows, axle, str(source))
     own = folder / file.measurement if file.measurement is not None else None
     return Study(
         name=file.name or folder.resolve().name,
@@ -84,14 +89,27 @@ def read_study(path: Path, *, measurement: Path | None = None, out: Path | None 
         axle_path=folder / file.axle,
         measurement=measurement or own,
         out=out or folder / file.out,
-        seed=file.seed,
+        seed=file.seed if seed is None else seed,
         windows=dict(file.windows),
         parameters=select(axle, file.influence.parameters, str(source)),
     )
 
 
+def _check_windows(windows: dict[str, float], axle: Axle, source: str) -> None:
+    """A line through fewer than three solved points is no fit."""
+    for case, width in windows.items():
+        points = np.sort(np.abs(axle.load_cases[case].inputs()))
+        if np.count_nonzero(points <= width) < FEWEST_POINTS:
+            raise InputError(
+                f"{source}: [windows] {case} = {width:g} {axle.load_cases[case].unit} holds fewer than "
+                f"{FEWEST_POINTS} solved points; widen it to {points[FEWEST_POINTS - 1]:g} or more."
+            )
+
+
 def select(axle: Axle, globs: list[str], source: str) -> tuple[Parameter, ...]:
     """Design parameters whose path matches a glob; InputError for a glob that matches none."""
+    if not globs:
+        raise InputError(f'{source}: parameters: the list is empty; name globs, or ["*"] for all.')
     everything = design_parameters(axle)
     for glob in globs:
         if not any(fnmatchcase(p.path, glob) for p in everything):

@@ -84,20 +84,8 @@ def _kinds() -> dict[str, _Kind]:
 
 KINDS: Mapping[str, _Kind] = _kinds()
 POSITIVE = {
-    *(
-        "stiffness",
-        "rate",
-        "lat_rate",
-        "long_rate",
-        "factor",
-        "column",
-        "kx",
-        "ky",
-        "kz",
-        "krx",
-        "kry",
-        "krz",
-    ),
+    *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
+    *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "gap", "force", "presliding"),
 }
 

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import logging
+import os
 import signal
 import sys
+from collections.abc import Callable
 from types import FrameType
 from typing import NoReturn
 
 import typer
 
 from doe_kc.errors import DoeKcError, RunError
+
+INTERRUPTED = "interrupted; results written so far are kept, the same command starts again."
 
 app = typer.Typer(
     name="doe-kc",
@@ -24,11 +28,12 @@ app = typer.Typer(
 
 def main() -> NoReturn:
     """Run a command; exit code 0, 2 for bad input, 1 for a failed run, without a traceback."""
+    _on_interrupt(_leave)
     from doe_kc.cli import commands
 
     commands.register_all()
     logging.basicConfig(format="doe-kc: %(message)s", level=logging.WARNING, stream=sys.stderr)
-    signal.signal(signal.SIGINT, _interrupted)
+    _on_interrupt(_interrupted)
     try:
         app()
     except DoeKcError as error:
@@ -37,14 +42,25 @@ def main() -> NoReturn:
         sys.stderr.close()
         sys.exit(1)
     except OSError as error:
-        _end(f"{error.filename or 'a file'}: {error.strerror or error}.", 1)
+        _end(f"{error.filename or 'standard output'}: {error.strerror or error}.", 1)
     except MemoryError:
         _end("out of memory; use fewer --workers.", 1)
     sys.exit(0)
 
 
+def _on_interrupt(handler: Callable[[int, FrameType | None], None]) -> None:
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, handler)
+
+
+def _leave(_signal: int, _frame: FrameType | None) -> None:
+    """While modules are imported, where an exception could be swallowed or garbled by an extension."""
+    os.write(2, f"doe-kc: {INTERRUPTED}\n".encode())
+    os._exit(RunError.exit_code)
+
+
 def _interrupted(_signal: int, _frame: FrameType | None) -> None:
-    raise RunError("interrupted; results written so far are kept, the same command starts again.")
+    raise RunError(INTERRUPTED)
 
 
 def _end(message: str, code: int) -> NoReturn:

@@ -74,7 +74,9 @@ def _split(text: str) -> Iterator[str]:
 def _value(text: str) -> Any:
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except (tomllib.TOMLDecodeError, RecursionError):
+    except RecursionError:
+        return text
+    except ValueError:  # TOMLDecodeError; plain for a number of 5000 digits
         if text.startswith("[") and text.endswith("]"):
             return [_value(part.strip()) for part in _split(text[1:-1])]
         return text

@@ -40,6 +40,7 @@ REMARK = "Description, remark"
 LABELS = 4
 """Columns before the matrix: group, label, path, step."""
 WIDTH = 8.0
+"""Characters of a percent column; values with their decimals need more."""
 
 
 @dataclass(frozen=True)
@@ -179,7 +180,18 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
     ws.freeze_panes = ws.cell(FIRST, LABELS + 1)
     end = get_column_letter(at.last_column + extra)
     ws.auto_filter.ref = f"A{UNIT}:{end}{at.last_row}"
-    widths(ws, [12, 20, 20, 9, *[WIDTH] * len(at.columns), *([6.5, 5.0] if sums else []), 46])
+    widths(
+        ws,
+        [
+            12,
+            20,
+            20,
+            9,
+            *[WIDTH if sums else 1.3 * WIDTH] * len(at.columns),
+            *([6.5, 5.0] if sums else []),
+            46,
+        ],
+    )
     frame(
         ws,
         range(SECTION, at.last_row + 1),

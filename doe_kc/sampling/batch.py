@@ -8,6 +8,7 @@ import signal
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import partial
 
@@ -16,6 +17,7 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
+from doe_kc.errors import RunError
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import library_for, solve
 from doe_kc.solver.topology import Topology
@@ -102,6 +104,10 @@ def _in_processes(
                 results = future.result()
                 progress(len(results))
                 yield from results
+        except BrokenProcessPool:
+            raise RunError(
+                "a worker process was ended from outside, often for lack of memory; use fewer --workers."
+            ) from None
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
@@ -115,6 +121,7 @@ def start_context() -> multiprocessing.context.BaseContext:
 
 def _leave_interrupts_to_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _chunk(

@@ -17,8 +17,9 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class Kernel:
-    """residual (nx,), jacobian (nnz,), outputs (ny,), state_update (nz,) of (x, c, u, z); constants (nc,) of p.
+    """residual (nx,), jacobian (nnz,), outputs (ny,), state_update (nz,) of (x, c, u, z).
 
+    constants: (nc,) of the parameters p.
     rows, cols: of the Jacobian's nonzeros. scale: (nx,) residual that weighs as much as 1 N.
     """
 

@@ -186,40 +186,46 @@ class _Marcher:
         return bool(info == 0)
 
     def _newton(self, x: FloatArray, u: FloatArray, z: FloatArray) -> tuple[bool, FloatArray, int]:
-        m, tol, fresh = self.active, self.settings.tol, False
+        """(converged, x, iterations); a factorization is renewed when it contracts too little."""
+        tol, fresh, iterations = self.settings.tol, False, 0
         r = self._residual(x, u, z)
         now = best = self._norm(r)
-        iterations = 0
-        for iterations in range(self.settings.max_iterations):
+        while iterations < self.settings.max_iterations:
             if now <= tol or not np.isfinite(now) or now > 1e6 * best + 1e9:
                 break
             if self._lu is None:
                 if not self._factor(x, u, z):
                     break
                 fresh = True
-            assert self._lu is not None
-            d, _ = lapack.dgetrs(*self._lu, r[:m] / self._scale)
-            self.counts[3] += 1
-            damp, trial, trial_r, following = 1.0, x, r, now
-            for _ in range(7):
-                trial = x.copy()
-                trial[:m] -= damp * d
-                trial_r = self._residual(trial, u, z)
-                following = self._norm(trial_r)
-                if following <= 10.0 * now or not fresh:
-                    break
-                damp *= 0.5
+            iterations += 1
+            trial, trial_r, following = self._trial(x, r, now, u, z, fresh=fresh)
             if following > self.settings.refresh * now:
                 self._lu = None
                 if not fresh and not following <= 0.5 * now:
-                    continue
+                    continue  # a stale factorization misled: try a new one
             fresh = False
             x, r, now = trial, trial_r, following
             best = min(best, now)
-        else:
-            iterations = self.settings.max_iterations
         self._r = r
         return now <= tol, x, iterations
+
+    def _trial(
+        self, x: FloatArray, r: FloatArray, now: float, u: FloatArray, z: FloatArray, *, fresh: bool
+    ) -> tuple[FloatArray, FloatArray, float]:
+        """The Newton step, halved while a fresh Jacobian sends the residual far up: (x, residual, norm)."""
+        assert self._lu is not None
+        m, damp = self.active, 1.0
+        d, _ = lapack.dgetrs(*self._lu, r[:m] / self._scale)
+        self.counts[3] += 1
+        for _ in range(7):
+            trial = x.copy()
+            trial[:m] -= damp * d
+            trial_r = self._residual(trial, u, z)
+            following = self._norm(trial_r)
+            if following <= 10.0 * now or not fresh:
+                break
+            damp *= 0.5
+        return trial, trial_r, following
 
 
 def _predict(hs: list[float], hx: list[FloatArray], at: float) -> FloatArray:

@@ -24,7 +24,7 @@ from doe_kc.study import Study
 
 @dataclass(frozen=True)
 class StudyInfluence:
-    """matrix: the 21 columns of Appendix C; everything: all characteristics. selection: None without targets."""
+    """matrix: the 21 columns of Appendix C; everything: all characteristics; selection: None without targets."""
 
     matrix: Influence
     everything: Influence

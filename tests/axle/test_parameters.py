@@ -181,20 +181,8 @@ def test_values_must_be_finite(path: str, value: float) -> None:
 
 
 POSITIVE = {
-    *(
-        "stiffness",
-        "rate",
-        "lat_rate",
-        "long_rate",
-        "factor",
-        "column",
-        "kx",
-        "ky",
-        "kz",
-        "krx",
-        "kry",
-        "krz",
-    ),
+    *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
+    *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("Fx", "Fy", "Fz", "Tx", "Ty", "Tz", "radius"),
 }
 STIFFNESSES = [

@@ -201,7 +201,7 @@ def test_libreoffice_calculates_nothing(tmp_path: Path) -> None:
     write(tmp_path / "evil.xlsx", study([[4.0], [3.0], [2.0], [1.0]], parameters=rows))
     done = subprocess.run(
         ["libreoffice", f"-env:UserInstallation=file://{tmp_path}/profile", "--headless", "--convert-to",
-         "csv", "--outdir", str(tmp_path), str(tmp_path / "evil.xlsx")],
+         "csv:Text - txt - csv (StarCalc):44,34,76", "--outdir", str(tmp_path), str(tmp_path / "evil.xlsx")],
         capture_output=True, timeout=60, check=False,
     )  # fmt: skip
     if not (tmp_path / "evil.csv").exists():

@@ -9,6 +9,7 @@ from doe_kc.cli.options import (
     JsonOption,
     MeasurementOption,
     OutOption,
+    SeedOption,
     StudyArgument,
     WorkersOption,
 )
@@ -32,10 +33,11 @@ def influence(
     measurement: MeasurementOption = None,
     out: OutOption = None,
     json: JsonOption = None,
+    seed: SeedOption = None,
     workers: WorkersOption = None,
 ) -> None:
     """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""
-    found = read_study(study, measurement=measurement, out=out)
+    found = read_study(study, measurement=measurement, out=out, seed=seed)
     measured = None
     if found.measurement is not None:
         measured = reduce_measurement(

@@ -13,6 +13,7 @@ from doe_kc.cli.options import (
     JsonOption,
     MeasurementOption,
     OutOption,
+    SeedOption,
     StudyArgument,
     WorkersOption,
 )
@@ -43,11 +44,13 @@ def run(
     measurement: MeasurementOption = None,
     out: OutOption = None,
     json: JsonOption = None,
+    seed: SeedOption = None,
     workers: WorkersOption = None,
 ) -> None:
     """The whole chain: simulate, reduce the records, compare, influence matrix; everything under out."""
     started = time.perf_counter()
-    found = read_study(study, measurement=measurement, out=out)
+    found = read_study(study, measurement=measurement, out=out, seed=seed)
+    found.measured()
     solution = solve(found.axle)
     seconds = time.perf_counter() - started
     model = curve_set(solution)

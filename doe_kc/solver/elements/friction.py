@@ -33,7 +33,7 @@ def dahl_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX) 
 
 
 def add_friction(b: Builder, freedom: str, law: FrictionLaw, x: ca.SX, prefix: str, side: str) -> ca.SX:
-    """Friction against the free motion x (mm); level and pre-sliding from `prefix.force` and `prefix.presliding`.
+    """Friction against the free motion x (mm), with `prefix.force` and `prefix.presliding`.
 
     Off (and its state reset) where the control `friction` is 0. Returns the force against +x, N.
     """

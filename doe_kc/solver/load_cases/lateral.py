@@ -17,7 +17,7 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class Lateral(LoadCase):
-    """Force in N at the contact point of each wheel, in phase: + = to the right on both wheels; pads hold their height."""
+    """Force in N at each contact point, + = to the right on both wheels; pads hold their height."""
 
     id: ClassVar[str] = "lateral"
     label: ClassVar[str] = "Lateral force"

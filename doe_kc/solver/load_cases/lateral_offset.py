@@ -1,4 +1,4 @@
-"""Lateral force, 30 mm offset at the ground, in phase, 30 mm rearwards of the contact point: + = to the right."""
+"""Lateral force in phase, 30 mm behind the contact point."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class LateralOffset(LoadCase):
-    """Force in N at the contact point of each wheel, in phase, 30 mm rearwards of the contact point: + = to the right; pads hold their height."""
+    """Force in N at the ground, 30 mm behind each contact point, + = to the right; pads hold their height."""
 
     offset: float = 30.0
     """Distance of the force behind the contact point, mm."""

@@ -1,4 +1,4 @@
-"""Lateral force, opposite at the ground, in opposition: + = to the right on the left wheel, inwards on both."""
+"""Lateral force in opposition at the ground."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class LateralOpposite(LoadCase):
-    """Force in N at the contact point of each wheel, in opposition: + = to the right on the left wheel, inwards on both; pads hold their height."""
+    """Force in N at each contact point, + = inwards on both (to the right on the left wheel); pads held."""
 
     id: ClassVar[str] = "lateral_opposite"
     label: ClassVar[str] = "Lateral force, opposite"
