@@ -151,6 +151,8 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
     ranks: dict[str, int] = {}
     for path, value in values.items():
         check_value(path, value, source)
+        if value == parameter_value(axle, path, source=source) and not _overrides(axle, path):
+            continue
         for internal, change in _moves(axle, path, value, source):
             rank = _rank(path, internal)
             if rank > ranks.get(internal, -1):
@@ -164,6 +166,11 @@ def _with_matching_topology(axle: Axle) -> Axle:
     if bends == axle.topology.strut_bending:
         return axle
     return replace(axle, topology=replace(axle.topology, strut_bending=bends))
+
+
+def _overrides(axle: Axle, path: str) -> bool:
+    """Whether setting the path to the value it has still keeps it from moving with another."""
+    return bool(_prefix(path)) or path.split(".")[0] in axle.follow
 
 
 def _prefix(path: str) -> str:

@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
-StudyArgument = Annotated[Path, typer.Argument(help="Study file, or the folder that holds study.toml.")]
+StudyArgument = Annotated[
+    Path, typer.Argument(metavar="STUDY", help="Study file, or the folder that holds study.toml.")
+]
 MeasurementOption = Annotated[
     Path | None, typer.Option(help="Folder of test.toml and its records, in place of the study's.")
 ]

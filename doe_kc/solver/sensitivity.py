@@ -42,20 +42,19 @@ class Sensitivities:
 @lru_cache(maxsize=16)
 def _blocks(topology: Topology) -> Mapping[str, ca.Function]:
     """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on."""
-    eq = kernel(topology).equations
+    k = kernel(topology)
+    eq = k.equations
     symbols = [eq.x, eq.c, eq.u, eq.z]
-    parts = {"R": eq.residual, "Y": eq.outputs, "Z": eq.next_state}
-    by = {"x": eq.x, "c": eq.c, "u": eq.u, "z": eq.z}
+    parts = {"R": eq.residual, "Y": eq.outputs} | ({"Z": eq.next_state} if k.nz else {})
+    by = {"x": eq.x, "c": eq.c, "u": eq.u} | ({"z": eq.z} if k.nz else {})
     out = {
-        f"{part}_{name}": ca.Function(
-            f"{part}_{name}_block", symbols, [ca.jacobian(expression, symbol)], {"cse": True}
-        )
+        f"{part}_{name}": ca.Function(f"{part}_{name}_block", symbols, [ca.jacobian(expression, symbol)])
         for part, expression in parts.items()
         for name, symbol in by.items()
+        if (part, name) != ("R", "x")
     }
-    out["constants"] = ca.Function(
-        "constants_block", [eq.p], [ca.jacobian(eq.constants, eq.p)], {"cse": True}
-    )
+    out["R_x"] = k.functions["jacobian"]
+    out["constants"] = ca.Function("constants_block", [eq.p], [ca.jacobian(eq.constants, eq.p)])
     return out
 
 
@@ -65,12 +64,25 @@ class _Matrix:
     def __init__(self, function: ca.Function) -> None:
         pattern = function.sparsity_out(0)
         self._evaluate = Buffered(function)
-        self._colind, self._row = np.array(pattern.colind()), np.array(pattern.row())
+        row, col = pattern.get_triplet()
+        self._row, self._col = np.array(row, dtype=int), np.array(col, dtype=int)
         self._shape = pattern.shape
 
-    def __call__(self, *arguments: FloatArray) -> sparse.csc_array:
-        values = self._evaluate(*arguments).copy()
-        return sparse.csc_array((values, self._row, self._colind), shape=self._shape)
+    def __call__(self, *arguments: FloatArray) -> FloatArray:
+        """The dense block at one point."""
+        out = np.zeros(self._shape, order="F")
+        out[self._row, self._col] = self._evaluate(*arguments)
+        return out
+
+    def times(self, points: Sequence[tuple[FloatArray, ...]], right: FloatArray) -> FloatArray:
+        """(n, rows, columns) products of the blocks at many points with one dense matrix."""
+        n, rows = len(points), self._shape[0]
+        values = np.array([self._evaluate(*at).copy() for at in points]).reshape(n, -1)
+        row = (self._row + rows * np.arange(n)[:, None]).ravel()
+        stacked = sparse.csr_array(
+            (values.ravel(), (row, np.tile(self._col, n))), shape=(n * rows, self._shape[1])
+        )
+        return np.asarray(stacked @ right).reshape(n, rows, right.shape[1])
 
 
 def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
@@ -93,6 +105,7 @@ class _Differentiator:
         self._dp = self._parameter_directions()
         p = np.array([axle.values[n] for n in self._kernel.equations.parameter_names])
         self._dc = _Matrix(functions["constants"])(p) @ self._dp
+        self._parts = ("R", "Y", "Z") if self._kernel.nz else ("R", "Y")
         self._outputs = self._kernel.equations.output_names
 
     def _parameter_directions(self) -> FloatArray:
@@ -113,27 +126,41 @@ class _Differentiator:
         }
         return Sensitivities(self._paths, dy, branches)
 
+    def _points(
+        self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
+    ) -> tuple[list[FloatArray], list[FloatArray], FloatArray]:
+        """(dx, dy) of consecutive equilibria and dz after the last.
+
+        x, u: (n, ...); z: (n, nz) friction states before each; du: (n, nu, np); dz: before the first.
+        """
+        points = [(x[i], self._c, u[i], z[i]) for i in range(len(x))]
+        explicit = {p: self._block[f"{p}_c"].times(points, self._dc) for p in self._parts}
+        all_dx, all_dy = [], []
+        for i, at in enumerate(points):
+            known = {p: explicit[p][i] + self._block[f"{p}_u"](*at) @ du[i] for p in self._parts}
+            if self._kernel.nz:
+                for p in self._parts:
+                    known[p] += self._block[f"{p}_z"](*at) @ dz
+            dx = self._solved(self._block["R_x"](*at), known["R"])
+            all_dx.append(dx)
+            all_dy.append(known["Y"] + self._block["Y_x"](*at) @ dx)
+            if self._kernel.nz:
+                dz = known["Z"] + self._block["Z_x"](*at) @ dx
+        return all_dx, all_dy, dz
+
+    def _solved(self, matrix: FloatArray, right: FloatArray) -> FloatArray:
+        scale = self._kernel.scale[:, None]
+        _, _, solved, info = lapack.dgesv(matrix / scale, -right / scale, overwrite_a=True, overwrite_b=True)
+        if info:
+            raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists")
+        return np.asarray(solved)
+
     def _point(
         self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
     ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """(dx, dy, dz_next) at one equilibrium; z, dz: friction state before it."""
-        at = (x, self._c, u, z)
-        block = self._block
-        right = block["R_c"](*at) @ self._dc + block["R_u"](*at) @ du
-        if self._kernel.nz:
-            right += block["R_z"](*at) @ dz
-        scale = self._kernel.scale[:, None]
-        matrix = block["R_x"](*at).toarray(order="F") / scale
-        _, _, solved, info = lapack.dgesv(matrix, -right / scale, overwrite_a=True, overwrite_b=True)
-        if info:
-            raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists")
-
-        def total(name: str) -> FloatArray:
-            change = block[f"{name}_x"](*at) @ solved + block[f"{name}_c"](*at) @ self._dc
-            change += block[f"{name}_u"](*at) @ du
-            return np.asarray(change + block[f"{name}_z"](*at) @ dz if self._kernel.nz else change)
-
-        return solved, total("Y"), total("Z") if self._kernel.nz else dz
+        """(dx, dy, dz) of one equilibrium."""
+        dx, dy, dz = self._points(x[None], u[None], z[None], du[None], dz)
+        return dx[0], dy[0], dz
 
     def _static_state(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
         """Derivatives of the static state and of its datum (pads, wheel-centre heights, preload)."""
@@ -172,12 +199,9 @@ class _Differentiator:
             if not (loop and out):
                 dz, dy_start = dz0, dy0
             du = self._control_gradient(case, branch.input) @ datum
-            rows = [dy_start]
-            for step in range(1, len(branch.input)):
-                _, dy, dz = self._point(branch.x[step], branch.u[step], branch.z[step - 1], du[step], dz)
-                rows.append(dy)
-            dy_start = rows[-1]
-            out.append(np.array(rows))
+            _, dy, dz = self._points(branch.x[1:], branch.u[1:], branch.z[:-1], du[1:], dz)
+            out.append(np.array([dy_start, *dy]))
+            dy_start = dy[-1]
         return tuple(out)
 
     def _control_gradient(self, case: LoadCase, inputs: FloatArray) -> FloatArray:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
 from typing import Any
 
-from doe_kc import __version__
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
+from doe_kc.comparison.interval import constraint_interval
 from doe_kc.influence.relations import relations
 from doe_kc.influence.result import Influence
 from doe_kc.influence.selection import select_variables
@@ -21,10 +22,13 @@ from doe_kc.reporting.influence_figures import write_influence_figures
 from doe_kc.reporting.workbook import write_influence_workbook
 from doe_kc.study import Study
 
+FORECAST_SHARE = 0.2
+"""Of the constraint interval's half width: the error granted to a linear forecast of a target."""
+
 
 @dataclass(frozen=True)
 class StudyInfluence:
-    """matrix: the 21 columns of Appendix C; everything: all characteristics; selection: None without targets."""
+    """matrix: the 21 columns of Appendix C; everything: all of them; selection: None without targets."""
 
     matrix: Influence
     everything: Influence
@@ -53,8 +57,17 @@ def study_influence(
     selection = None
     if measurement is not None:
         targets = {name: e.value for name, e in measurement.characteristics.items()}
-        selection = select_variables(everything, targets)
+        selection = select_variables(everything, targets, sd=_target_sd(measurement))
     return StudyInfluence(everything.only(appendix_c()), everything, selection)
+
+
+def _target_sd(measurement: Measurement) -> dict[str, float]:
+    """Standard error of a target, and beside it what a linear forecast may miss: 3 % of the target."""
+    out = {}
+    for name, estimate in measurement.characteristics.items():
+        low, high = constraint_interval(estimate.value)
+        out[name] = math.hypot(estimate.sd, (high - low) / 2.0 * FORECAST_SHARE)
+    return {name: sd for name, sd in out.items() if math.isfinite(sd)}
 
 
 def influence_runs(study: Study) -> int:
@@ -74,8 +87,8 @@ def write_influence(study: Study, found: StudyInfluence, folder: Path) -> list[P
         selection=found.selection,
         notes={
             "Axle": f"{study.axle.name} ({study.axle_path.name})",
+            "Selection": "sd of a difference: standard error of the target and 3 % of it, combined",
             "Effects": ", ".join(study.axle.effects) or "none",
-            "doe_kc": __version__,
         },
         windows=study.windows,
     )

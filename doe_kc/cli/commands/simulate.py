@@ -23,7 +23,7 @@ from doe_kc.solver.suite import solve
 
 @app.command()
 def simulate(
-    axle: Annotated[Path, typer.Argument(help="Axle file (TOML).")],
+    axle: Annotated[Path, typer.Argument(metavar="AXLE", help="Axle file (TOML).")],
     settings: Annotated[
         list[str] | None,
         typer.Option("--set", metavar="PATH=VALUE", help="PATH=VALUE, PATH+=DELTA or PATH*=FACTOR."),

@@ -65,3 +65,10 @@ def test_axes_ride_on_the_sub_frame_and_the_pair_balances() -> None:
         force, moment = force + f, moment + about_origin(origin, f, m)
     np.testing.assert_allclose(force, 0, atol=1e-7)
     np.testing.assert_allclose(moment, 0, atol=1e-4)
+
+
+def test_a_preload_pushes_along_the_local_axes() -> None:
+    """Local x = -Y, local y = +X; f0 loads the inner part, the arm feels the opposite."""
+    given = {"llr.preload.Fx@L": 100.0, "llr.preload.Fy@L": 600.0}
+    force, _ = wrench(assembled(), "lower arm L", given)
+    np.testing.assert_allclose(force, [-600.0, 100.0, 0.0], atol=1e-9)

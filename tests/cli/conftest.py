@@ -1,0 +1,25 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from doe_kc.workflow import compare, influence, measure
+
+
+@pytest.fixture(autouse=True)
+def interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing is compiled, here or in a process started from here."""
+    monkeypatch.setenv("DOE_KC_COMPILE", "0")
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures take seconds; their own tests draw them."""
+
+    def nothing(*_args: object, **_options: object) -> list[Path]:
+        return []
+
+    monkeypatch.setattr(measure, "write_rig_figures", nothing)
+    monkeypatch.setattr(compare, "write_comparison_figures", nothing)
+    monkeypatch.setattr(influence, "write_influence_figures", nothing)
