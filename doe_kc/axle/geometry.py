@@ -63,3 +63,7 @@ def check_geometry(axle: Axle, source: str) -> None:
             raise InputError(
                 f"{source}: UPB of the {word} side lies below LWD; the strut must point upwards."
             )
+        if point(axle, "UPBBI", side)[2] <= point(axle, "UPB", side)[2]:
+            raise InputError(
+                f"{source}: UPBBI of the {word} side lies below UPB; the top-mount axis must point upwards."
+            )

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from doe_kc.axle import Axle, parameter_value, with_values
+from doe_kc.axle.geometry import check_geometry
 from doe_kc.effects import apply_effect
 from doe_kc.errors import InputError
 
@@ -27,7 +28,9 @@ def apply_settings(axle: Axle, settings: Iterable[str]) -> Axle:
         now = values.get(path)
         now = parameter_value(axle, path, source="--set") if now is None else now
         values[path] = _changed(now, operator, _number(number, text))
-    return with_values(axle, values, source="--set") if values else axle
+    changed = with_values(axle, values, source="--set") if values else axle
+    check_geometry(changed, "--set")
+    return changed
 
 
 def _changed(now: float, operator: str, operand: float) -> float:

@@ -116,19 +116,10 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
     functions = list(kernel(topology).functions.values())
     sources = {f.name(): generate(f) for f in functions} | {"driver": DRIVER.read_text()}
     return CompiledKernel(
-        load(build(sources)),
+        ctypes.CDLL(str(build(sources))),
         max(f.sz_iw() for f in functions),
         max(f.sz_w() for f in functions),
     )
-
-
-def load(path: Path) -> ctypes.CDLL:
-    """The library; a damaged one is taken out of the cache, so that the next call builds it anew."""
-    try:
-        return ctypes.CDLL(str(path))
-    except OSError as error:
-        path.unlink(missing_ok=True)
-        raise CompileError(f"the cached kernel {path.name} was damaged and is removed") from error
 
 
 def build(sources: dict[str, str]) -> Path:
@@ -139,16 +130,34 @@ def build(sources: dict[str, str]) -> Path:
     identity = "\0".join([platform.machine(), compiler, repr(sorted(FLAGS.items())), *sources.values()])
     name = hashlib.sha256(identity.encode()).hexdigest()[:24]
     folder = cache_folder()
-    target = folder / f"{name}{'.dll' if os.name == 'nt' else '.so'}"
-    if target.exists():
-        return target
     try:
+        if found := cached(folder, name):
+            return found
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            _compile(compiler, Path(scratch), sources).replace(target)
+            library = _compile(compiler, Path(scratch), sources)
+            target = folder / f"{name}-{fingerprint(library)}.so"
+            library.replace(target)
     except OSError as error:
-        raise CompileError(f"the cache folder {folder} cannot be written ({error.strerror})") from error
+        raise CompileError(f"the cache folder {folder} cannot be used ({error.strerror})") from error
     return target
+
+
+def cached(folder: Path, name: str) -> Path | None:
+    """The library `name` in the cache; a damaged one, whose content is not what its name says, is removed.
+
+    Loading a truncated library would kill the process.
+    """
+    for path in folder.glob(f"{name}-*.so"):
+        if path.stem == f"{name}-{fingerprint(path)}":
+            return path
+        path.unlink(missing_ok=True)
+    return None
+
+
+def fingerprint(path: Path) -> str:
+    """Start of the SHA-256 of a file's content."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
 def generate(function: ca.Function) -> str:
@@ -165,16 +174,30 @@ def _compile(compiler: str, scratch: Path, sources: dict[str, str]) -> Path:
         file = scratch / f"{part}.c"
         file.write_text(text)
         command = [compiler, FLAGS.get(part, DEFAULT_FLAGS), "-fPIC", "-c", str(file)]
-        command += ["-o", str(file.with_suffix(".o"))]
-        running.append(subprocess.Popen(command, stderr=subprocess.PIPE, text=True))
-    for process in running:
-        _, message = process.communicate(timeout=COMPILE_TIMEOUT)
-        if process.returncode:
-            raise CompileError(f"{compiler} failed: {message.strip()[:200]}")
+        running.append(_start([*command, "-o", str(file.with_suffix(".o"))]))
+    messages = [_finish(process) for process in running]
     library = scratch / "library"
-    objects = [str(scratch / f"{part}.o") for part in sources]
-    link = [compiler, "-shared", "-o", str(library), *objects, "-lm"]
-    done = subprocess.run(link, capture_output=True, text=True, check=False, timeout=COMPILE_TIMEOUT)
-    if done.returncode:
-        raise CompileError(f"{compiler} failed to link: {done.stderr.strip()[:200]}")
+    if not any(messages):
+        objects = [str(scratch / f"{part}.o") for part in sources]
+        messages.append(_finish(_start([compiler, "-shared", "-o", str(library), *objects, "-lm"])))
+    if failures := [m for m in messages if m]:
+        raise CompileError(f"{compiler} failed: {failures[0][:200]}")
     return library
+
+
+def _start(command: list[str]) -> subprocess.Popen[str]:
+    try:
+        return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    except OSError as error:
+        raise CompileError(f"{command[0]} cannot be run ({error.strerror})") from error
+
+
+def _finish(process: subprocess.Popen[str]) -> str:
+    """What went wrong, empty when nothing did."""
+    try:
+        _, message = process.communicate(timeout=COMPILE_TIMEOUT)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return f"it took more than {COMPILE_TIMEOUT:g} s"
+    return message.strip() or f"exit code {process.returncode}" if process.returncode else ""

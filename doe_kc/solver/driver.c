@@ -13,6 +13,8 @@ int outputs(const double **, double **, integer *, double *, int);
 int state_update(const double **, double **, integer *, double *, int);
 
 #define HISTORY 4
+#define STALL_LEVEL 1e-4        /* N: rounding of very stiff parts keeps the residual from falling below */
+#define STALL_STEP 1e-10        /* mm, Gibbs units: a step that no longer moves anything */
 
 typedef struct {
     int n, active, nu, nz, ny;          /* unknowns, solved ones, controls, states, outputs */
@@ -99,6 +101,14 @@ static void solve(const problem *p, const double *r, double *d) {
     }
 }
 
+/* Whether a fresh Newton step neither moves the axle nor improves a residual that is small already. */
+static int stalled(const problem *p, double now, double next) {
+    double largest = 0.0;
+    for (int i = 0; i < p->active; i++)
+        if (p->scale[i] >= 1.0 && fabs(p->d[i]) > largest) largest = fabs(p->d[i]);
+    return next > 0.5 * now && now <= STALL_LEVEL && largest <= STALL_STEP;
+}
+
 /* 0 = converged; x holds the result, p->r its residual, *level its norm. */
 static int newton(problem *p, double *x, const double *u, const double *z, int *iterations, double *level) {
     int n = p->n, m = p->active, fresh = 0, halvings;
@@ -121,6 +131,7 @@ static int newton(problem *p, double *x, const double *u, const double *z, int *
             next = norm(p, p->trial_r);
             if (next <= 10.0 * now || halvings == 6 || (!fresh && p->have_lu)) break;
         }
+        if (fresh && stalled(p, now, next)) { *level = now; return 0; }
         if (next > p->refresh * now) {
             p->have_lu = 0;
             if (!fresh && !(next <= 0.5 * now)) continue;   /* a stale factorization misled: try a new one */

@@ -16,6 +16,10 @@ from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.typing import FloatArray
 
 HISTORY = 4
+STALL_LEVEL = 1e-4
+"""N; rounding of very stiff parts keeps the residual from falling below the tolerance."""
+STALL_STEP = 1e-10
+"""mm and Gibbs units: a step that no longer moves anything."""
 
 
 @dataclass(frozen=True)
@@ -198,7 +202,10 @@ class _Marcher:
                     break
                 fresh = True
             iterations += 1
-            trial, trial_r, following = self._trial(x, r, now, u, z, fresh=fresh)
+            step, trial, trial_r, following = self._trial(x, r, now, u, z, fresh=fresh)
+            if fresh and self._stalled(step, now, following):
+                self._r = r
+                return True, x, iterations
             if following > self.settings.refresh * now:
                 self._lu = None
                 if not fresh and not following <= 0.5 * now:
@@ -209,10 +216,15 @@ class _Marcher:
         self._r = r
         return now <= tol, x, iterations
 
+    def _stalled(self, step: FloatArray, now: float, following: float) -> bool:
+        """Whether a fresh step neither moves the axle nor improves a residual that is small already."""
+        moved = float(np.abs(step[self._scale >= 1.0]).max())
+        return following > 0.5 * now and now <= STALL_LEVEL and moved <= STALL_STEP
+
     def _trial(
         self, x: FloatArray, r: FloatArray, now: float, u: FloatArray, z: FloatArray, *, fresh: bool
-    ) -> tuple[FloatArray, FloatArray, float]:
-        """The Newton step, halved while a fresh Jacobian sends the residual far up: (x, residual, norm)."""
+    ) -> tuple[FloatArray, FloatArray, FloatArray, float]:
+        """(step, x, residual, norm); the step is halved while a fresh Jacobian sends the residual far up."""
         assert self._lu is not None
         m, damp = self.active, 1.0
         d, _ = lapack.dgetrs(*self._lu, r[:m] / self._scale)
@@ -225,7 +237,7 @@ class _Marcher:
             if following <= 10.0 * now or not fresh:
                 break
             damp *= 0.5
-        return trial, trial_r, following
+        return d, trial, trial_r, following
 
 
 def _predict(hs: list[float], hx: list[FloatArray], at: float) -> FloatArray:

@@ -61,5 +61,5 @@ def spring_moment(p: ca.SX, torque: ca.SX, kappa: ca.SX, slope: ca.SX) -> ca.SX:
 
 
 def minimal_rotation_from_z(direction: ca.SX) -> ca.SX:
-    """Rotation matrix of the shortest turn that takes the z axis to the unit vector `direction`."""
+    """Matrix of the shortest turn that takes the z axis to the unit vector `direction`, not -z."""
     return matrix(ca.vertcat(-direction[1], direction[0], 0) / (1 + direction[2]))

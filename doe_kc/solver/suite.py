@@ -9,6 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from doe_kc.axle.model import Axle
+from doe_kc.errors import InputError, nearest
 from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE
 from doe_kc.solver.compiled import (
     COMPILE_VARIABLE,
@@ -48,7 +49,7 @@ def solve(
     compiled: None takes compiled kernels when a C compiler is there. throw=False returns a failure as
     `Solution.failure`; throw=True raises NotConverged.
     """
-    chosen = {i: axle.load_cases[i] for i in (cases if cases is not None else _ordered(axle.load_cases))}
+    chosen = _chosen(axle, cases)
     k = kernel(axle.topology)
     library = library_for(axle.topology, compiled)
     options = settings or Settings()
@@ -63,6 +64,16 @@ def solve(
             return _ended(axle, k, static, solved, result, throw)
         solved[ident] = result
     return _ended(axle, k, static, solved, None, throw)
+
+
+def _chosen(axle: Axle, cases: Sequence[str] | None) -> dict[str, LoadCase]:
+    for name in cases or ():
+        if name not in axle.load_cases:
+            raise InputError(
+                f"{name!r} is not a load case of this axle; known are {', '.join(axle.load_cases)}."
+                f"{nearest(name, axle.load_cases)}"
+            )
+    return {i: axle.load_cases[i] for i in (cases if cases is not None else _ordered(axle.load_cases))}
 
 
 def _ordered(cases: Mapping[str, LoadCase]) -> list[str]:

@@ -11,6 +11,7 @@ from typing import Any
 
 import pandas as pd
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from doe_kc import output
 from doe_kc.errors import RunError
@@ -42,7 +43,7 @@ class FullDisk:
             path = owner if isinstance(owner, Path) else args[0]
             if self.part not in str(path):
                 return original(owner, *args, **options)
-            with open(path, "w") as half:
+            with Path(path).open("w") as half:
                 half.write("half of i")
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
@@ -89,14 +90,10 @@ def test_full_disk_during_influence(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_full_disk_while_drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from matplotlib.figure import Figure
-
-    def full(_self: Figure, target: Any, *_args: Any, **_options: Any) -> None:
-        if isinstance(target, str | Path):
-            Path(target).touch()
+    def full(*_args: Any, **_options: Any) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(Figure, "savefig", full)
+    monkeypatch.setattr(FigureCanvasAgg, "print_png", full)
     study = write_study(tmp_path, records={"lateral": ("lateral.csv",)})
     outcome = fails(1, "No space left on device", "reduce", study)
     assert "rig_lateral.png" in outcome.err and not leftovers(tmp_path)

@@ -18,15 +18,15 @@ SLOW = """
 import sys, time
 from pathlib import Path
 from doe_kc.sampling import batch
-from doe_kc.sampling.batch import Evaluation, evaluate
+from doe_kc.sampling.batch import evaluate
 
-def slow(axle, values, windows=None):
-    Path(sys.argv[1], "running").touch()
+def slow(*arguments):
+    folder.joinpath("running").touch()
     {what}
-    return evaluate(axle, values, windows)
+    return evaluate(*arguments)
 
 batch.evaluate = slow
-sys.argv[1:] = sys.argv[2:]
+folder = Path(sys.argv.pop(1))
 from doe_kc.cli import main
 main()
 """
@@ -47,9 +47,7 @@ def run(*arguments: object, **options: object) -> Outcome:
     return Outcome(done.returncode, done.stdout or "", done.stderr)
 
 
-def test_version_of_a_good_and_two_bad_commands(tmp_path: Path) -> None:
-    good = run("simulate", AXLE, "--case", "brake", "--out", tmp_path)
-    assert good.code == 0 and "brake.wind_up" in good.out and "Traceback" not in good.err
+def test_two_bad_commands(tmp_path: Path) -> None:
     assert_one_message(run("simulate", AXLE, "--set", "LLF.q=1"), 2, "unknown parameter")
     (tmp_path / "file").touch()
     below = tmp_path / "file" / "out"
@@ -58,7 +56,7 @@ def test_version_of_a_good_and_two_bad_commands(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no /dev/full")
 def test_results_to_a_full_device() -> None:
-    with open("/dev/full", "w") as full:
+    with Path("/dev/full").open("w") as full:
         done = subprocess.run(
             [*COMMAND, "check", str(AXLE.parent)], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
@@ -70,7 +68,7 @@ def test_figures_to_standard_output() -> None:
     outcome = run("simulate", AXLE, "--case", "brake", "--json", "/dev/stdout")
     assert outcome.code == 0, outcome.err
     assert '"characteristics"' in outcome.out and "brake.wind_up" in outcome.out
-    assert not Path("/dev/stdout").is_file() and not list(Path("/dev").glob(".stdout*"))
+    assert Path("/dev/stdout").is_symlink() and not list(Path("/dev").glob(".stdout*"))
 
 
 def start(folder: Path, what: str, *arguments: object) -> subprocess.Popen[str]:

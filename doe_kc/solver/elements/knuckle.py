@@ -10,6 +10,9 @@ from doe_kc.solver import rotation
 from doe_kc.solver.builder import Body, Builder, body, rotations
 from doe_kc.solver.elements._base import NM_PER_DEG, SIDES, Element, Stage, element, hardpoint
 
+NEARLY_RIGID = 1e-4
+"""Flexibility in place of 0, for the rigid side of an axle whose other strut bends."""
+
 
 @element
 class Knuckle(Element):
@@ -46,7 +49,8 @@ def _bending_tube(b: Builder, knuckle: Body, side: str) -> Body:
     name = f"tube {side}"
     turn, turns = rotations(name, knuckle.axes)
     tube = body(name, clamp, knuckle.point(clamp), rotation.compose(knuckle.gibbs, turn))
-    softness = b.parameter(f"strut.flexibility@{side}") / NM_PER_DEG
+    flexibility = b.parameter(f"strut.flexibility@{side}")
+    softness = ca.if_else(flexibility > 0, flexibility, flexibility + NEARLY_RIGID) / NM_PER_DEG
     bending = b.constant(b.parameter(f"strut.bending@{side}") / softness)
     torsion = b.constant(b.parameter(f"strut.torsion@{side}") / softness)
     kappa, slope = rotation.angle_ratio(ca.dot(turn, turn))

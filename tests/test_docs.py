@@ -1,0 +1,119 @@
+"""The documents and the program say the same."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+import typer
+
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.cli import commands
+from doe_kc.cli._app import app
+from doe_kc.effects import EFFECTS
+from doe_kc.study import read_study
+from tests.reference import EXAMPLE, nominal
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").glob("*.md"))]
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
+COMMAND = re.compile(r"\bdoe-kc ([a-z]+)((?: +(?:--[a-z]+|[^\s`|&]+))*)")
+
+
+def table_rows(page: str) -> dict[str, str]:
+    """First column, a word in backquotes, to the whole row."""
+    text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    return {m[1]: m[0] for m in re.finditer(r"^\| `([^`]+)` \|.*$", text, re.MULTILINE)}
+
+
+def test_every_characteristic_is_on_its_page() -> None:
+    rows = table_rows("characteristics.md")
+    assert set(rows) == set(CHARACTERISTICS)
+    for ident, entry in CHARACTERISTICS.items():
+        cells = [c.strip() for c in rows[ident].strip("|").split("|")]
+        assert cells[1:3] == [entry.label, entry.response], ident
+        assert cells[4] == entry.unit, ident
+
+
+def test_every_effect_is_on_its_page_with_its_keys() -> None:
+    rows = table_rows("effects.md")
+    assert set(rows) == set(EFFECTS)
+    for ident, effect in EFFECTS.items():
+        for key, option in effect.options.items():
+            assert f"`{key} = " in rows[ident], (ident, key)
+            if isinstance(option.default, float):
+                assert f"`{key} = {option.default}`" in rows[ident], (ident, key)
+
+
+def test_the_keys_on_the_page_are_taken() -> None:
+    import tomllib
+
+    for ident, row in table_rows("effects.md").items():
+        options = tomllib.loads("\n".join(re.findall(r"`([\w]+ = [^`]+)`", row)))
+        assert options or "=" not in row.split("|")[3], ident
+        EFFECTS[ident].apply(nominal(), options, "page")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    missing = []
+    for link in LINK.findall(text):
+        target, _, anchor = link.partition("#")
+        if re.match(r"[a-z]+:", target):
+            continue
+        file = (page.parent / target) if target else page
+        if not file.exists():
+            missing.append(link)
+        elif anchor and file.suffix == ".md":
+            heads = re.findall(r"^#+ (.+)$", file.read_text(encoding="utf-8"), re.MULTILINE)
+            slugs = {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in heads}
+            assert anchor in slugs, link
+    assert not missing
+
+
+def known_commands() -> dict[str, set[str]]:
+    """Command -> its options."""
+    commands.register_all()
+    group = typer.main.get_command(app)
+    found = group.commands  # type: ignore[attr-defined]
+    return {name: {o for p in c.params for o in p.opts} | {"--help"} for name, c in found.items()}
+
+
+def test_the_commands_named_exist_with_their_options() -> None:
+    known = known_commands()
+    assert set(known) == {"init", "check", "simulate", "reduce", "influence", "run"}
+    named = set()
+    for page in PAGES:
+        for command, rest in COMMAND.findall(page.read_text(encoding="utf-8")):
+            assert command in known, f"{page.name}: doe-kc {command}"
+            named.add(command)
+            for option in re.findall(r"(?<!\S)--[a-z-]+", rest):
+                assert option in known[command], f"{page.name}: doe-kc {command} {option}"
+    assert "simulate" in named
+
+
+def test_the_readme_names_every_command() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for command in known_commands():
+        assert f"doe-kc {command}" in text or f"`{command}" in text, command
+
+
+def test_the_readmes_shortest_study_is_one(tmp_path: Path) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    studies = [b for b in re.findall(r"```toml\n(.*?)```", text, re.DOTALL) if "axle =" in b]
+    assert studies
+    for study in studies:
+        (tmp_path / "axle.toml").write_bytes((EXAMPLE / "axle.toml").read_bytes())
+        (tmp_path / "study.toml").write_text(study, encoding="utf-8")
+        assert read_study(tmp_path).measured() == tmp_path / "rig"
+
+
+def test_the_readmes_python_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setenv("DOE_KC_COMPILE", "0")
+    monkeypatch.chdir(ROOT)
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
+        exec(compile(block, "README.md", "exec"), {})
+        assert capsys.readouterr().out.strip()
