@@ -25,8 +25,10 @@ from doe_kc.sampling.batch import evaluate_all
 from doe_kc.sampling.latin_hypercube import latin_hypercube
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.kernel import Buffered, kernel
+from doe_kc.solver.march import Path, Settings
 from doe_kc.solver.sensitivity import sensitivities
-from doe_kc.solver.suite import solve
+from doe_kc.solver.static import static_state
+from doe_kc.solver.suite import library_for, solve
 
 FIRST_CALL = """
 import time
@@ -67,6 +69,24 @@ def first_call_seconds() -> float:
             check=True,
         )
     return float(done.stdout)
+
+
+def time_by_part() -> list[str]:
+    """Where a compiled design's time goes, ms."""
+    axle, settings = example_axle(), Settings()
+    k, library = kernel(axle.topology), library_for(axle.topology, True)
+    values = dict(axle.values)
+    c = k.constant_values(values)
+    static = static_state(k, library, c, axle, settings)
+    out = [f"constants {median_ms(lambda: k.constant_values(values), 31):.2f}"]
+    out.append(f"static {median_ms(lambda: static_state(k, library, c, axle, settings), 31):.2f}")
+    for case in axle.load_cases:
+        alone = median_ms(lambda case=case: solve(axle, [case]), 31)
+        out.append(f"{case} {alone:.2f}")
+    assert not isinstance(static, Path)
+    return [
+        "- compiled, ms by part (a load case alone includes constants and static state): " + ", ".join(out)
+    ]
 
 
 def scipy_seconds() -> float:
@@ -130,6 +150,7 @@ def main() -> None:
             f"{counts[1] / n:.2f} Jacobians and factorizations",
             f"- interpreted evaluations: residual {function_us('residual'):.1f} us, "
             f"Jacobian {function_us('jacobian'):.1f} us, outputs {function_us('outputs'):.1f} us",
+            *time_by_part(),
             f"- reduction of curves to {len(reduce_all(curve_set(solution)))} characteristics: "
             f"{reduce_ms:.1f} ms",
             f"- first call on a new machine, import, assembly and compiling included: "

@@ -255,14 +255,14 @@ def test_effect_values_may_be_words_lists_and_tables() -> None:
     axle = apply_effects(
         nominal(),
         [
-            "strut_friction:law=prandtl_iwan,force_N=100",
+            "strut_friction:law=iwan,force_N=100",
             "bushing_preload:LLR=[0, 600, 0],LLF=[1,2,3]",
             "tie_rod_free_play:joints=[ROB_L],gap_mm=0.1",
             "left_right_asymmetry:LLR_R=1.25",
             "ride_height_offset",
         ],
     )
-    assert axle.effects["strut_friction"] == {"law": "prandtl_iwan", "force_N": 100}
+    assert axle.effects["strut_friction"] == {"law": "iwan", "force_N": 100}
     assert axle.effects["bushing_preload"] == {"LLR": [0, 600, 0], "LLF": [1, 2, 3]}
     assert axle.effects["tie_rod_free_play"]["joints"] == ["ROB_L"]
     assert axle.effects["ride_height_offset"] == {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import logging
 from pathlib import Path
 
@@ -90,38 +91,20 @@ def test_a_library_is_built_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     assert first.stat().st_mtime_ns == stamp
     assert compiled.build({"one": "int one(void) { return 2; }\n"}) != first
     assert [p.suffix for p in tmp_path.iterdir()] == [first.suffix] * 2
-    assert compiled.load(first).one() == 1
-
-
-@needs_compiler
-def test_a_damaged_library_is_taken_out_of_the_cache(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
-    path = compiled.build(TINY)
-    path.write_bytes(b"not a library")
-    with pytest.raises(CompileError, match="damaged"):
-        compiled.load(path)
-    assert not path.exists()
-    assert compiled.load(compiled.build(TINY)).one() == 1
+    assert ctypes.CDLL(str(first)).one() == 1
 
 
 @needs_compiler
 @pytest.mark.parametrize("keep", [0, 100, 0.3, 0.6, 0.9])
-def test_a_truncated_library_is_no_crash(
+def test_a_truncated_library_is_replaced(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, keep: float
 ) -> None:
-    """Loaded in a process of its own, since a bad mapping kills it."""
-    import subprocess
-    import sys
-
+    """Loading it would kill the process, so its content is checked first."""
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     path = compiled.build(TINY)
     whole = path.read_bytes()
-    path.unlink()
     path.write_bytes(whole[: int(keep if keep >= 1 else keep * len(whole))])
-    script = (
-        "import sys; from pathlib import Path; from doe_kc.solver import compiled\n"
-        "try: compiled.load(Path(sys.argv[1]))\n"
-        "except compiled.CompileError: pass\n"
-    )
-    done = subprocess.run([sys.executable, "-c", script, str(path)], capture_output=True, text=True)
-    assert done.returncode == 0, f"exit {done.returncode}: {done.stderr[-300:]}"
+    again = compiled.build(TINY)
+    assert again.read_bytes()[:4] == whole[:4]
+    assert ctypes.CDLL(str(again)).one() == 1
+    assert list(tmp_path.iterdir()) == [again]
