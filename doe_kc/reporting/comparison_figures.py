@@ -50,14 +50,17 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
     return fig
 
 
-def write_comparison_figures(comparison: Comparison, folder: Path) -> list[Path]:
+def write_comparison_figures(
+    comparison: Comparison, folder: Path, *, workers: int | None = None
+) -> list[Path]:
     """PNG of every load case that both have; returns the paths. Raises RunError as `style.save`."""
     return draw_series(
         [
             (folder / f"compare_{case}", partial(comparison_figure, comparison, case))
             for case, measured in comparison.measured.cases.items()
             if case in comparison.model.cases and same_input(comparison.model.cases[case], measured)
-        ]
+        ],
+        workers,
     )
 
 
@@ -89,15 +92,15 @@ def _legend(ax: Axes) -> None:
 def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:
     """Characteristics of the load case, and the RMS of its curves on the left wheel."""
     ax.axis("off")
-    lines = [f"{'Left wheel':<26}{'model':>10}{'target':>10}"]
+    lines = [f"{'Left wheel':<34}{'model':>10}{'target':>10}"]
     for row in comparison.characteristics:
         if row.entry.load_case == load_case and row.entry.kind == "gradient":
-            name = f"{row.entry.label[:17]} {row.entry.unit}"
+            name = f"{row.entry.label} [{row.entry.unit}]"
             mark = "" if row.inside else " *"
-            lines.append(f"{name:<26}{row.value:>10.4g}{row.target:>10.4g}{mark}")
-    lines += ["", f"{'RMS of curve':<26}{'':>10}"]
+            lines.append(f"{name:<34}{row.value:>10.4g}{row.target:>10.4g}{mark}")
+    lines += ["", f"{'RMS of curve':<34}{'':>10}"]
     for curve in comparison.curves:
         if curve.load_case == load_case and curve.side == "L":
-            lines.append(f"{_short(curve.response):<26}{curve.rms:>10.3g} {RESPONSE_UNITS[curve.response]}")
+            lines.append(f"{_short(curve.response):<34}{curve.rms:>10.3g} {RESPONSE_UNITS[curve.response]}")
     lines.append("* outside the constraint interval")
-    ax.text(0, 1, "\n".join(lines), family="monospace", fontsize=6.5, va="top", transform=ax.transAxes)
+    ax.text(0, 1, "\n".join(lines), family="monospace", fontsize=6, va="top", transform=ax.transAxes)

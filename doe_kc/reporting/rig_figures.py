@@ -53,7 +53,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
     return fig
 
 
-def write_rig_figures(measurement: Measurement, folder: Path) -> list[Path]:
+def write_rig_figures(measurement: Measurement, folder: Path, *, workers: int | None = None) -> list[Path]:
     """`rig_<load case>.png` of every measured load case; returns the paths.
 
     Raises RunError when the folder cannot be written.
@@ -62,7 +62,8 @@ def write_rig_figures(measurement: Measurement, folder: Path) -> list[Path]:
         [
             (folder / f"rig_{case}", partial(rig_figure, measurement, case))
             for case in measurement.curves.cases
-        ]
+        ],
+        workers,
     )
 
 

@@ -14,15 +14,15 @@ from doe_kc.sampling.batch import available_cores, start_context
 Job = tuple[Path, Callable[[], Figure]]
 
 
-def draw_series(jobs: Sequence[Job]) -> list[Path]:
+def draw_series(jobs: Sequence[Job], workers: int | None = None) -> list[Path]:
     """PNG of every (path without suffix, picklable maker); returns the paths in order.
 
-    Raises RunError when one cannot be written.
+    workers: processes, default one per core. Raises RunError when one cannot be written.
     """
-    workers = min(available_cores(), len(jobs))
-    if workers <= 1:
+    count = min(workers or available_cores(), len(jobs))
+    if count <= 1:
         return [_draw(job) for job in jobs]
-    with ProcessPoolExecutor(workers, mp_context=start_context()) as pool:
+    with ProcessPoolExecutor(count, mp_context=start_context()) as pool:
         return list(pool.map(_draw, jobs))
 
 

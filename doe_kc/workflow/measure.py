@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from doe_kc.axle import Axle
 from doe_kc.errors import InputError
 from doe_kc.measurement import (
     Manifest,
@@ -24,6 +26,8 @@ from doe_kc.solver.result import Solution
 from doe_kc.study import Study
 from doe_kc.workflow.scatter import vertical_scatter
 
+log = logging.getLogger("doe_kc")
+
 
 @dataclass(frozen=True)
 class Reduced:
@@ -38,6 +42,8 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
     measurement = reduce_measurement(
         study.measured(), windows=study.windows, half_track=study.axle.half_track
     )
+    for sentence in setup_differences(study.axle, measurement.manifest):
+        log.warning(sentence)
     height = None
     if "vertical" in measurement.curves.cases and "vertical" in solution.cases:
         height = infer_ride_height(
@@ -47,6 +53,26 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
             scatter=vertical_scatter(study.axle, solution),
         )
     return Reduced(measurement, height)
+
+
+def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
+    """Where the rig's set-up is not the model's, in sentences."""
+    setup, offset = manifest.setup, getattr(axle.load_cases.get("lateral_offset"), "offset", None)
+    pairs = [
+        ("rack_mm_per_rev", setup.rack_mm_per_rev, axle.rack_mm_per_rev, "[steering] rack_mm_per_rev"),
+        ("lateral_offset_mm", setup.lateral_offset_mm, offset, "[load_cases.lateral_offset] offset"),
+        (
+            "reference_wheel_load_N",
+            setup.reference_wheel_load_N,
+            axle.values["tyre.static_load"],
+            "[tyre] static_load",
+        ),
+    ]
+    return [
+        f"{manifest.name}: the rig's {key} is {rig:g}, the model's {ours:g}; set {where} of the axle file."
+        for key, rig, ours, where in pairs
+        if rig is not None and ours is not None and abs(rig - ours) > 1e-6 * abs(ours)
+    ]
 
 
 def write_reduced(reduced: Reduced, folder: Path) -> list[Path]:
