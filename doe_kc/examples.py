@@ -13,7 +13,7 @@ NAME = "front_axle"
 def example_folder() -> Path:
     """Where the example lies: in the installed package, or in the source tree beside it."""
     package = Path(__file__).parent
-    for folder in (package / "examples" / NAME, package.parent / "examples" / NAME):
+    for folder in (package / "_examples" / NAME, package.parent / "examples" / NAME):
         if (folder / "study.toml").is_file():
             return folder
     raise RunError("the example study is not part of this installation; reinstall doe-kc.")

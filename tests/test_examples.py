@@ -33,7 +33,7 @@ def test_a_copy_is_a_sound_study(tmp_path: Path) -> None:
 
 def test_results_are_not_copied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = tmp_path / "package"
-    source = package / "examples" / "front_axle"
+    source = package / "_examples" / "front_axle"
     (source / "out").mkdir(parents=True)
     (source / "out" / "old.csv").touch()
     (source / "study.toml").touch()

@@ -15,7 +15,7 @@ from doe_kc.axle.schema import AxleFile, Stop, Sweep
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
 from doe_kc.solver.curve import curve_values
-from doe_kc.solver.load_cases import LOAD_CASES, LoadCase
+from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, LoadCase
 from doe_kc.solver.load_cases.roll import TECHNIQUES
 from doe_kc.solver.load_cases.steer import Steer
 from doe_kc.solver.topology import Topology
@@ -129,7 +129,7 @@ def _load_cases(file: AxleFile, source: str) -> dict[str, LoadCase]:
     ratio = file.steering.rack_mm_per_rev
     cases = {
         ident: replace(case, rack_mm_per_rev=ratio) if isinstance(case, Steer) else case
-        for ident, case in LOAD_CASES.items()
+        for ident, case in sorted(LOAD_CASES.items(), key=lambda item: CASE_ORDER.index(item[0]))
     }
     for ident, sweep in file.load_cases.items():
         if ident not in cases:

@@ -28,6 +28,8 @@ class Effect(ABC):
     id: ClassVar[str]
     label: ClassVar[str]
     options: ClassVar[Mapping[str, Option]] = {}
+    table: ClassVar[str] = ""
+    """Other name under which files give the effect."""
 
     def apply(self, axle: Axle, given: Mapping[str, Any], source: str) -> Axle:
         """The axle with this effect; InputError for an unknown key or a value out of range."""
@@ -83,6 +85,7 @@ def effect(cls: type[Effect]) -> type[Effect]:
 
 def apply_effect(axle: Axle, ident: str, options: Mapping[str, Any], *, source: str) -> Axle:
     """The axle with the effect `ident`; InputError when there is none of that name."""
+    ident = next((e.id for e in EFFECTS.values() if ident and e.table == ident), ident)
     if ident not in EFFECTS:
         raise InputError(
             f"{source}: unknown effect {ident!r}; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"

@@ -16,6 +16,7 @@ class BushingProgression(Effect):
 
     id: ClassVar[str] = "bushing_progression"
     label: ClassVar[str] = "Bushing progression"
+    table: ClassVar[str] = "bushing_cubic"
 
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
         default = {"LLR": [0.05, 0.05, 0.05], "UPB": [0.02, 0.02, 0.02]}

@@ -16,6 +16,7 @@ class HubCompliance(Effect):
 
     id: ClassVar[str] = "hub_compliance"
     label: ClassVar[str] = "Hub and wheel-bearing compliance"
+    table: ClassVar[str] = "hub"
     options: ClassVar[Mapping[str, Option]] = {
         "camber_Nm_deg": Option(6000.0, "Nm/deg"),
         "toe_Nm_deg": Option(9000.0, "Nm/deg"),

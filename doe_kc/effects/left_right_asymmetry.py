@@ -18,6 +18,7 @@ class LeftRightAsymmetry(Effect):
 
     id: ClassVar[str] = "left_right_asymmetry"
     label: ClassVar[str] = "Left/right asymmetry"
+    table: ClassVar[str] = "asymmetry"
 
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
         nested = given.get("scale", {})

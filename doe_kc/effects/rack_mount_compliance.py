@@ -16,6 +16,7 @@ class RackMountCompliance(Effect):
 
     id: ClassVar[str] = "rack_mount_compliance"
     label: ClassVar[str] = "Rack-mount compliance"
+    table: ClassVar[str] = "rack_mount"
     options: ClassVar[Mapping[str, Option]] = {
         "k_N_mm": Option(6000.0, "N/mm"),
     }

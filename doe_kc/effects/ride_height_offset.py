@@ -15,6 +15,7 @@ class RideHeightOffset(Effect):
 
     id: ClassVar[str] = "ride_height_offset"
     label: ClassVar[str] = "Ride-height offset"
+    table: ClassVar[str] = "ride_height"
     options: ClassVar[Mapping[str, Option]] = {
         "offset_mm": Option(7.0, "mm", positive=False),
     }

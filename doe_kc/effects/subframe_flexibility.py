@@ -26,6 +26,7 @@ class SubframeFlexibility(Effect):
 
     id: ClassVar[str] = "subframe_flexibility"
     label: ClassVar[str] = "Sub-frame flexibility"
+    table: ClassVar[str] = "subframe"
     options: ClassVar[Mapping[str, Option]] = {
         "mode": Option("flexible", choices=("flexible", "rigid")),
         "scale": Option(1.0, "-"),

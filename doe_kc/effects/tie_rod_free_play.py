@@ -19,6 +19,7 @@ class TieRodFreePlay(Effect):
 
     id: ClassVar[str] = "tie_rod_free_play"
     label: ClassVar[str] = "Tie-rod free play"
+    table: ClassVar[str] = "free_play"
     options: ClassVar[Mapping[str, Option]] = {"joints": Option(JOINTS), "gap_mm": Option(0.2, "mm")}
 
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:

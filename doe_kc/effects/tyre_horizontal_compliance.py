@@ -16,6 +16,7 @@ class TyreHorizontalCompliance(Effect):
 
     id: ClassVar[str] = "tyre_horizontal_compliance"
     label: ClassVar[str] = "Tyre horizontal compliance"
+    table: ClassVar[str] = "tyre_horizontal"
     options: ClassVar[Mapping[str, Option]] = {
         "k_lat_N_mm": Option(180.0, "N/mm"),
         "k_long_N_mm": Option(250.0, "N/mm"),

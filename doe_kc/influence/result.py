@@ -93,5 +93,6 @@ def column_peaks(values: FloatArray) -> FloatArray:
 
 
 def percent_of_column(values: FloatArray) -> FloatArray:
-    """Percent of each column's largest magnitude; zero columns stay zero."""
-    return np.nan_to_num(100.0 * values / column_peaks(values))
+    """Percent of each column's largest magnitude; zero columns stay zero, nan entries nan."""
+    percent = np.nan_to_num(100.0 * values / column_peaks(values))
+    return np.where(np.isnan(values), np.nan, percent)

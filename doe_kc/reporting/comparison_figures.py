@@ -46,7 +46,11 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
     _table(panels[7], comparison, load_case)
     _legend(panels[8])
     fig.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
-    fig.suptitle(f"{case.label}: {comparison.model.source} against {comparison.measured.source}", fontsize=11)
+    fig.suptitle(
+        f"{case.label}: {comparison.model.source} against {comparison.measured.source}",
+        fontsize=11,
+        parse_math=False,
+    )
     return fig
 
 

@@ -49,7 +49,9 @@ def influence_heat_map(influence: Influence, *, study: str) -> Figure:
     ax.set_yticklabels([influence.parameters[i].path for i in at.rows], rotation=0)
     _case_names(ax, influence, at)
     _lines(ax, influence, at)
-    fig.suptitle(f"Parameter influence, percent of each column's largest entry: {study}", fontsize=11)
+    fig.suptitle(
+        f"Parameter influence, percent of each column's largest entry: {study}", fontsize=11, parse_math=False
+    )
     return fig
 
 
@@ -119,7 +121,7 @@ def influence_bars(influence: Influence, *, study: str) -> Figure:
         ax = axes.flat[k]
         ax.tick_params(labelbottom=True)
         label(ax, "percent of the largest", None)
-    fig.suptitle(f"Strongest parameters of each characteristic: {study}", fontsize=11)
+    fig.suptitle(f"Strongest parameters of each characteristic: {study}", fontsize=11, parse_math=False)
     return fig
 
 

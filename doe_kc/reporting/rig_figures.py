@@ -48,7 +48,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
         label(ax, f"{run.record.case.channel} / {case.input_unit}", None)
     for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
         ax.set_title(title, fontsize=9)
-    fig.suptitle(f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11)
+    fig.suptitle(f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11, parse_math=False)
     _legend(fig, len(measurement.runs[load_case]))
     return fig
 

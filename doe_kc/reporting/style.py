@@ -13,7 +13,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from doe_kc.errors import RunError
+from doe_kc.output import write_whole
 
 A4 = (8.27, 11.69)
 """Portrait, inches."""
@@ -86,10 +86,11 @@ def label(ax: Axes, x: str | None, y: str | None) -> None:
 
 def save_png(fig: Figure, path_without_suffix: Path) -> Path:
     """Write PNG alone (150 dpi), for the many sheets of a series; raises as `save`."""
-    png = path_without_suffix.with_name(f"{path_without_suffix.name}.png")
     _lay_out(fig)
-    _write(png, lambda: FigureCanvasAgg(fig).print_png(png, metadata={"Software": "doe_kc"}))  # type: ignore[no-untyped-call]
-    return png
+    canvas = FigureCanvasAgg(fig)
+    # Not Path.with_suffix: it would cut a name such as "run 1.5".
+    target = path_without_suffix.with_name(f"{path_without_suffix.name}.png")
+    return _write(target, lambda p: canvas.print_png(p, metadata={"Software": "doe_kc"}))  # type: ignore[no-untyped-call]
 
 
 def save(fig: Figure, path_without_suffix: Path) -> tuple[Path, Path]:
@@ -97,11 +98,10 @@ def save(fig: Figure, path_without_suffix: Path) -> tuple[Path, Path]:
 
     Raises RunError naming the path when it cannot be written (full disk, read-only folder).
     """
-    # Not Path.with_suffix: it would cut a name such as "run 1.5".
-    svg = path_without_suffix.with_name(f"{path_without_suffix.name}.svg")
     png = save_png(fig, path_without_suffix)
-    _write(svg, lambda: FigureCanvasSVG(fig).print_svg(svg, metadata={"Date": None}))  # type: ignore[no-untyped-call]
-    return png, svg
+    canvas = FigureCanvasSVG(fig)
+    target = path_without_suffix.with_name(f"{path_without_suffix.name}.svg")
+    return png, _write(target, lambda p: canvas.print_svg(p, metadata={"Date": None}))  # type: ignore[no-untyped-call]
 
 
 def _lay_out(fig: Figure) -> None:
@@ -112,14 +112,7 @@ def _lay_out(fig: Figure) -> None:
         fig.set_layout_engine("none")
 
 
-def _write(target: Path, draw: Callable[[], object]) -> None:
-    """Run `draw`, which writes `target`; no dates inside, so that equal results are equal files."""
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        with rc_context(dict(RC)):  # type: ignore[arg-type]
-            draw()
-    except OSError as error:
-        raise RunError(
-            f"{target}: the figure cannot be written ({error.strerror or error}); "
-            "free disk space or choose a writable output folder."
-        ) from None
+def _write(target: Path, draw: Callable[[Path], object]) -> Path:
+    """Let `draw` write `target` as a whole; no dates inside, so that equal results are equal files."""
+    with rc_context(dict(RC)):  # type: ignore[arg-type]
+        return write_whole(target, draw)

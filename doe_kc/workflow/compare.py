@@ -19,12 +19,12 @@ def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Co
     return compare(model, measurement.curves, target_sd=spread, windows=study.windows)
 
 
-def write_comparison(comparison: Comparison, folder: Path) -> list[Path]:
+def write_comparison(comparison: Comparison, folder: Path, *, workers: int | None = None) -> list[Path]:
     """characteristics.csv, curves.csv (RMS) and one figure a load case."""
     return [
         write_csv(folder / "characteristics.csv", comparison.characteristics_frame()),
         write_csv(folder / "curves.csv", comparison.curves_frame()),
-        *write_comparison_figures(comparison, folder),
+        *write_comparison_figures(comparison, folder, workers=workers),
     ]
 
 

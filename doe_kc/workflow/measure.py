@@ -75,7 +75,7 @@ def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
     ]
 
 
-def write_reduced(reduced: Reduced, folder: Path) -> list[Path]:
+def write_reduced(reduced: Reduced, folder: Path, *, workers: int | None = None) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
     frames = measurement_to_frames(reduced.measurement)
     tables = {
@@ -85,7 +85,7 @@ def write_reduced(reduced: Reduced, folder: Path) -> list[Path]:
         "noise.csv": frames.noise,
     }
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
-    return written + list(write_rig_figures(reduced.measurement, folder))
+    return written + write_rig_figures(reduced.measurement, folder, workers=workers)
 
 
 def reduced_document(reduced: Reduced) -> dict[str, Any]:

@@ -35,7 +35,7 @@ LATERAL = {"lateral": ("lateral.csv",)}
         (["--set", "spring.rate=0"], r"spring\.rate = 0, expected a number > 0"),
         (["--set", "llr.Fx=-1"], r"llr\.Fx = -1, expected a number > 0"),
         (["--set", "strut.flexibility=-0.1"], "expected a number >= 0"),
-        (["--effect", "hub"], r"unknown effect 'hub'; known are .*hub_compliance"),
+        (["--effect", "bearing"], r"unknown effect 'bearing'; known are .*hub_compliance"),
         (["--effect", "hub_complience"], r"Did you mean \"hub_compliance\""),
         (["--effect", ""], "unknown effect ''"),
         (["--effect", "hub_compliance:camber=1"], r"no key 'camber'.*Did you mean \"camber_Nm_deg\""),

@@ -95,8 +95,12 @@ def test_full_disk_while_drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(FigureCanvasAgg, "print_png", full)
     study = write_study(tmp_path, records={"lateral": ("lateral.csv",)})
+    old = tmp_path / "out" / "reduce" / "rig_lateral.png"
+    old.parent.mkdir(parents=True)
+    old.write_bytes(b"the picture of last time")
     outcome = fails(1, "No space left on device", "reduce", study)
     assert "rig_lateral.png" in outcome.err and not leftovers(tmp_path)
+    assert old.read_bytes() == b"the picture of last time"
 
 
 @pytest.mark.parametrize("option", ["--out", "--json"])

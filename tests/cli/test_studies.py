@@ -94,7 +94,7 @@ def reduced(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DOE_KC_COMPILE", "0")
         for module in ("measure.write_rig_figures", "compare.write_comparison_figures"):
-            patch.setattr(f"doe_kc.workflow.{module}", lambda *_: [])
+            patch.setattr(f"doe_kc.workflow.{module}", lambda *_, **__: [])
         outcome = succeeds("reduce", study, "--out", folder / "results", "--json", folder / "r.json")
     return folder, outcome.out
 

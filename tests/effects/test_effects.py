@@ -196,3 +196,13 @@ def test_effects_add_up_in_any_order() -> None:
 
 def test_options_are_positive_unless_they_say_otherwise() -> None:
     assert Option(1.0).positive
+
+
+def test_the_table_name_of_a_file_is_the_effect_too() -> None:
+    """`[hub]` in a file of reference data and `hub_compliance` are one effect; tables are unique."""
+    tables = [e.table for e in EFFECTS.values() if e.table]
+    assert len(set(tables)) == len(tables) and not set(tables) & set(EFFECTS)
+    for effect in EFFECTS.values():
+        if effect.table:
+            named = apply_effect(nominal(), effect.table, {}, source="test")
+            assert named == apply_effect(nominal(), effect.id, {}, source="test")

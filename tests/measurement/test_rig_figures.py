@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -9,7 +10,7 @@ from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.errors import RunError
 from doe_kc.measurement import Measurement
 from doe_kc.reporting.rig_figures import rig_figure
-from doe_kc.reporting.style import PALETTE, figure, save
+from doe_kc.reporting.style import PALETTE, figure, save, save_png
 
 
 def test_every_panel_has_its_unit(car_a: Measurement) -> None:
@@ -41,5 +42,10 @@ def test_a_figure_is_saved_twice_the_same(tmp_path: Path) -> None:
 def test_an_unwritable_folder_is_a_run_error(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     fig, _ = figure(1, 1)
-    with pytest.raises(RunError, match=r"file/x\.png: the figure cannot be written"):
+    with pytest.raises(RunError, match=r"file/file: folder cannot be made"):
         save(fig, tmp_path / "file" / "x")
+
+
+def test_a_name_with_dollars_is_no_formula(car_a: Measurement, tmp_path: Path) -> None:
+    named = replace(car_a, manifest=car_a.manifest.model_copy(update={"name": "Car $\\frac$"}))
+    assert save_png(rig_figure(named, "lateral"), tmp_path / "x").stat().st_size > 10_000

@@ -26,7 +26,7 @@ TIGHT = Settings(tol=1e-8)
 """Central differences of equilibria at the usual 1e-7 N would be noise at 1e-5 relative."""
 SHORT = {"vertical": 8, "roll": 6, "lateral": 5, "lateral_offset": 5, "brake": 5, "drive": 5, "steer": 8}
 ROUND_OFF = {"N": 5e-7, "mm": 1e-9, "deg": 1e-9}
-"""Scatter of an output between equilibria converged to TIGHT; over the step it bounds what differences see."""
+"""Scatter of outputs between equilibria converged to TIGHT; over the step it bounds what differences tell."""
 
 
 def short(axle: Axle) -> Axle:

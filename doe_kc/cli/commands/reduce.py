@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument
+from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument, WorkersOption
 from doe_kc.measurement import RideHeight
 from doe_kc.output import write_json
 from doe_kc.solver.curve_set import curve_set
@@ -21,6 +21,7 @@ def reduce(
     measurement: MeasurementOption = None,
     out: OutOption = None,
     json: JsonOption = None,
+    workers: WorkersOption = None,
 ) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
     found = read_study(study, measurement=measurement, out=out)
@@ -29,8 +30,8 @@ def reduce(
     if json is not None:
         write_json(json, reduced_document(reduced))
     comparison = compare_model(found, curve_set(solution), reduced.measurement)
-    written = write_reduced(reduced, found.out / "reduce")
-    written += write_comparison(comparison, found.out / "compare")
+    written = write_reduced(reduced, found.out / "reduce", workers=workers)
+    written += write_comparison(comparison, found.out / "compare", workers=workers)
     for line in comparison_lines(comparison):
         typer.echo(line)
     if reduced.ride_height is not None:

@@ -59,9 +59,9 @@ def run(
 
     reduced = reduce_records(found, solution)
     typer.echo("drawing the rig records and the comparison", err=True)
-    written += write_reduced(reduced, found.out / "reduce")
+    written += write_reduced(reduced, found.out / "reduce", workers=workers)
     comparison = compare_model(found, model, reduced.measurement)
-    written += write_comparison(comparison, found.out / "compare")
+    written += write_comparison(comparison, found.out / "compare", workers=workers)
 
     with progress_bar("one at a time", influence_runs(found)) as advance:
         influence = study_influence(found, reduced.measurement, workers=workers, progress=advance)

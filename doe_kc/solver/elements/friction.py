@@ -12,7 +12,7 @@ from typing import ClassVar
 
 import casadi as ca
 import numpy as np
-from scipy.stats import gamma
+from scipy.special import gammaincinv
 
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element
@@ -23,7 +23,7 @@ IWAN_ELEMENTS = 8
 
 def iwan_yields(count: int = IWAN_ELEMENTS) -> np.ndarray:
     """(count,) yield displacements over x_pre of elements of equal strength, at the mid-quantiles."""
-    return np.asarray(gamma.ppf((np.arange(count) + 0.5) / count, 2.0))
+    return np.asarray(gammaincinv(2.0, (np.arange(count) + 0.5) / count))
 
 
 def dahl_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX) -> ca.SX:
