@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from matplotlib.figure import Figure
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.influence.result import Influence
-from doe_kc.reporting.style import PALETTE, figure, label, save
+from doe_kc.reporting.series import draw_series
+from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.reporting.workbook_cells import NEGATIVE, NEUTRAL, POSITIVE
 from doe_kc.reporting.workbook_matrix import Layout, case_label, layout
 from doe_kc.typing import FloatArray
@@ -148,10 +150,15 @@ def _bars(ax: Axes, influence: Influence, j: int) -> None:
     ax.set_title(f"{case_label(entry.load_case)}\n{entry.label}", fontsize=7.5)
 
 
-def write_influence_figures(influence: Influence, folder: Path, *, study: str) -> tuple[Path, ...]:
+def write_influence_figures(
+    influence: Influence, folder: Path, *, study: str, workers: int | None = None
+) -> list[Path]:
     """`influence_heat_map` and `influence_top_ten`, each as .png and .svg; returns the four paths.
 
     Raises RunError when the folder cannot be written.
     """
-    heat_map = save(influence_heat_map(influence, study=study), folder / "influence_heat_map")
-    return heat_map + save(influence_bars(influence, study=study), folder / "influence_top_ten")
+    jobs = [
+        (folder / "influence_heat_map", partial(influence_heat_map, influence, study=study)),
+        (folder / "influence_top_ten", partial(influence_bars, influence, study=study)),
+    ]
+    return draw_series(jobs, workers, vector=True)

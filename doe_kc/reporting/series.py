@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -14,18 +15,21 @@ from doe_kc.sampling.batch import available_cores, start_context
 Job = tuple[Path, Callable[[], Figure]]
 
 
-def draw_series(jobs: Sequence[Job], workers: int | None = None) -> list[Path]:
-    """PNG of every (path without suffix, picklable maker); returns the paths in order.
+def draw_series(jobs: Sequence[Job], workers: int | None = None, *, vector: bool = False) -> list[Path]:
+    """PNG, and SVG when `vector`, of every (path without suffix, picklable maker); the paths in order.
 
     workers: processes, default one per core. Raises RunError when one cannot be written.
     """
     count = min(workers or available_cores(), len(jobs))
+    draw = partial(_draw, vector)
     if count <= 1:
-        return [_draw(job) for job in jobs]
-    with ProcessPoolExecutor(count, mp_context=start_context()) as pool:
-        return list(pool.map(_draw, jobs))
+        drawn = [draw(job) for job in jobs]
+    else:
+        with ProcessPoolExecutor(count, mp_context=start_context()) as pool:
+            drawn = list(pool.map(draw, jobs))
+    return [path for paths in drawn for path in paths]
 
 
-def _draw(job: Job) -> Path:
+def _draw(vector: bool, job: Job) -> tuple[Path, ...]:
     path, make = job
-    return style.save_png(make(), path)
+    return style.save(make(), path) if vector else (style.save_png(make(), path),)

@@ -75,7 +75,9 @@ def influence_runs(study: Study) -> int:
     return 1 + 2 * len(study.parameters)
 
 
-def write_influence(study: Study, found: StudyInfluence, folder: Path) -> list[Path]:
+def write_influence(
+    study: Study, found: StudyInfluence, folder: Path, *, workers: int | None = None
+) -> list[Path]:
     """influence.xlsx, heat map and top-ten bars (PNG, SVG), and the three matrices as CSV."""
     matrix = found.matrix
     book = write_influence_workbook(
@@ -97,7 +99,7 @@ def write_influence(study: Study, found: StudyInfluence, folder: Path) -> list[P
         write_csv(folder / f"influence_{name}.csv", matrix.frame(values).reset_index(names="parameter"))
         for name, values in tables.items()
     ]
-    return [book, *write_influence_figures(matrix, folder, study=study.name), *csv]
+    return [book, *write_influence_figures(matrix, folder, study=study.name, workers=workers), *csv]
 
 
 def influence_document(influence: Influence) -> dict[str, Any]:

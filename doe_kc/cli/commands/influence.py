@@ -47,7 +47,7 @@ def influence(
         result = study_influence(found, measured, workers=workers, progress=advance)
     if json is not None:
         write_json(json, influence_document(result.matrix))
-    written = write_influence(found, result, found.out / "influence")
+    written = write_influence(found, result, found.out / "influence", workers=workers)
     for line in influence_lines(result.matrix):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {found.out / 'influence'}", err=True)

@@ -65,7 +65,7 @@ def run(
 
     with progress_bar("one at a time", influence_runs(found)) as advance:
         influence = study_influence(found, reduced.measurement, workers=workers, progress=advance)
-    written += write_influence(found, influence, found.out / "influence")
+    written += write_influence(found, influence, found.out / "influence", workers=workers)
 
     if json is not None:
         write_json(
