@@ -134,11 +134,13 @@ def frame(
             )
 
 
-def page(ws: Worksheet, study: str, *, paper: int = A4, repeat: str | None = None) -> None:
-    """Landscape, as wide as the paper, study and sheet on top, page numbers below."""
+def page(
+    ws: Worksheet, study: str, *, paper: int = A4, repeat: str | None = None, single: bool = False
+) -> None:
+    """Landscape, as wide as the paper (or on one page), study and sheet on top, page numbers below."""
     ws.page_setup.orientation = "landscape"
     ws.page_setup.paperSize = paper
-    ws.page_setup.fitToWidth, ws.page_setup.fitToHeight = 1, 0
+    ws.page_setup.fitToWidth, ws.page_setup.fitToHeight = 1, int(single)
     ws.sheet_properties.pageSetUpPr.fitToPage = True
     ws.print_options.horizontalCentered = True
     ws.page_margins.left = ws.page_margins.right = 0.4

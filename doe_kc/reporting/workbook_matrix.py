@@ -199,7 +199,7 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
         thick_above=(SECTION, *at.row_breaks, at.last_row + 1),
         thick_left=(1, *at.column_breaks, at.last_column + 1),
     )
-    page(ws, study, paper=A3, repeat=f"{SECTION}:{UNIT}")
+    page(ws, study, paper=A3, repeat=f"{SECTION}:{UNIT}", single=True)
 
 
 def _tail_heads(ws: Worksheet, at: Layout, *, sums: bool) -> None:

@@ -133,7 +133,7 @@ def selection_sheet(book: Workbook, selection: Selection | None, study: str) -> 
     table(ws, row + 2, OUTCOME_HEADS, outcomes, number="0.0000")
     widths(ws, [7, 32, 34, 13, 32, 13, 18, 16, 11, 11, 15, 15, 11, 11, 44])
     ws.freeze_panes = "C5"
-    page(ws, study, paper=A3)
+    page(ws, study, paper=A3, single=True)
 
 
 def _summary(selection: Selection) -> str:

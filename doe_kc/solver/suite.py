@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
@@ -95,8 +96,6 @@ def _ended(
 
 def library_for(topology: Topology, compiled: bool | None) -> CompiledKernel | None:
     """The compiled kernel, or None to interpret; one notice when there is no compiler."""
-    import os
-
     if compiled is False or (compiled is None and os.environ.get(COMPILE_VARIABLE) == "0"):
         return None
     try:
