@@ -129,7 +129,7 @@ def test_view_and_print_setup(book: Workbook) -> None:
         assert (ws.page_setup.orientation, ws.page_setup.fitToWidth, ws.page_setup.fitToHeight) == (
             "landscape",
             1,
-            0,
+            1,
         )
         assert int(ws.page_setup.paperSize) == 8
         assert ws.sheet_properties.pageSetUpPr.fitToPage
