@@ -26,12 +26,18 @@ app = typer.Typer(
 )
 
 
+@app.callback(help=app.info.help)
+def _group() -> None:
+    # Without a callback Typer makes a lone registered command the whole application.
+    pass
+
+
 def main() -> NoReturn:
     """Run a command; exit code 0, 2 for bad input, 1 for a failed run, without a traceback."""
     _on_interrupt(_leave)
     from doe_kc.cli import commands
 
-    commands.register_all()
+    commands.register(sys.argv[1:])
     logging.basicConfig(format="doe-kc: %(message)s", level=logging.WARNING, stream=sys.stderr)
     _on_interrupt(_interrupted)
     try:

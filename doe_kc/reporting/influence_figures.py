@@ -114,7 +114,10 @@ def influence_bars(influence: Influence, *, study: str) -> Figure:
     """The ten strongest parameters of each characteristic, signed; one small panel each."""
     at = layout(influence)
     rows = -(-len(at.columns) // PANELS)
-    fig, axes = figure(rows, PANELS, size=(8.27, 0.8 + 1.85 * rows))
+    height = 0.8 + 1.85 * rows
+    margins = {"left": 0.1, "right": 0.985, "wspace": 0.45, "hspace": 0.42}
+    margins |= {"bottom": 0.5 / height, "top": 1 - 0.75 / height}
+    fig, axes = figure(rows, PANELS, size=(8.27, height), margins=margins)
     for ax, j in zip(axes.flat, at.columns, strict=False):
         _bars(ax, influence, j)
     for ax in axes.flat[len(at.columns) :]:
@@ -123,7 +126,8 @@ def influence_bars(influence: Influence, *, study: str) -> Figure:
         ax = axes.flat[k]
         ax.tick_params(labelbottom=True)
         label(ax, "percent of the largest", None)
-    fig.suptitle(f"Strongest parameters of each characteristic: {study}", fontsize=11, parse_math=False)
+    title = f"Strongest parameters of each characteristic: {study}"
+    fig.suptitle(title, y=1 - 0.1 / height, va="top", fontsize=11, parse_math=False)
     return fig
 
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-import sys
+import importlib
+import pkgutil
+from collections.abc import Sequence
 
-from doe_kc.registry import import_members
 
+def register(arguments: Sequence[str]) -> None:
+    """Import the command that `arguments` begin with, or all of them when it is none (help, a typo).
 
-def register_all() -> None:
-    """Import every command."""
-    import_members(sys.modules[__name__])
+    The commands bring solver, tables and pictures along; importing all of them takes seconds.
+    """
+    names = sorted(info.name for info in pkgutil.iter_modules(__path__))
+    chosen = [name for name in names if name in arguments[:1]] or names
+    for name in chosen:
+        importlib.import_module(f"{__name__}.{name}")
