@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -114,9 +115,8 @@ def _in_processes(
 
 
 def start_context() -> multiprocessing.context.BaseContext:
-    """Fork where the platform allows it: workers inherit the assembled equations."""
-    method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
-    return multiprocessing.get_context(method)
+    """Fork on Linux, where it is safe: workers inherit the assembled equations; spawn elsewhere."""
+    return multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
 
 
 def _leave_interrupts_to_parent() -> None:
