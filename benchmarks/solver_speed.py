@@ -21,6 +21,7 @@ from scipy.optimize import root
 from doe_kc.axle import design_parameters
 from doe_kc.axle.parameters import settable_paths
 from doe_kc.characteristics import reduce_all
+from doe_kc.effects import apply_effect
 from doe_kc.sampling.batch import evaluate_all
 from doe_kc.sampling.latin_hypercube import latin_hypercube
 from doe_kc.solver.curve_set import curve_set
@@ -125,6 +126,10 @@ def main() -> None:
     paths = settable_paths(axle)
     sensitivities(axle, solution, paths)
     exact = median_ms(lambda: sensitivities(axle, solution, paths), 5)
+    rubbing = apply_effect(axle, "steering_friction", {}, source="benchmark")
+    rubbing = apply_effect(rubbing, "strut_friction", {}, source="benchmark")
+    looped, loop_paths = solve(rubbing), settable_paths(rubbing)
+    along = median_ms(lambda: sensitivities(rubbing, looped, loop_paths), 5)
     parameters = [p for p in design_parameters(axle) if p.active]
     rows = list(latin_hypercube(parameters, 400, seed=3).rows())
     batch = {w: median_ms(lambda w=w: evaluate_all(axle, rows, workers=w), 1) / len(rows) for w in (1, 2)}
@@ -143,6 +148,8 @@ def main() -> None:
             f"| scipy.optimize.root, same exact Jacobian, interpreted | {scipy:.0f} "
             f"| {1e3 * n / scipy:.0f} | {scipy / interpreted:.1f} x slower than interpreted |",
             f"| exact sensitivities of all outputs to {len(paths)} parameters | {exact:.0f} | | 1000 ms |",
+            f"| the same along the loops of an axle with steering and strut friction, {looped.equilibria} "
+            f"equilibria | {along:.0f} | | 1000 ms |",
             f"| batch with characteristics, 1 process | {batch[1]:.1f} | | |",
             f"| batch with characteristics, 2 processes | {batch[2]:.1f} | | {batch[1] / batch[2]:.2f} x |",
             "",

@@ -74,15 +74,15 @@ class _Matrix:
         out[self._row, self._col] = self._evaluate(*arguments)
         return out
 
-    def times(self, points: Sequence[tuple[FloatArray, ...]], right: FloatArray) -> FloatArray:
-        """(n, rows, columns) products of the blocks at many points with one dense matrix."""
+    def times(self, points: Sequence[tuple[FloatArray, ...]], right: sparse.csr_array) -> FloatArray:
+        """(n, rows, columns) products of the blocks at many points with one sparse matrix, dense."""
         n, rows = len(points), self._shape[0]
         values = np.array([self._evaluate(*at).copy() for at in points]).reshape(n, -1)
         row = (self._row + rows * np.arange(n)[:, None]).ravel()
         stacked = sparse.csr_array(
             (values.ravel(), (row, np.tile(self._col, n))), shape=(n * rows, self._shape[1])
         )
-        return np.asarray(stacked @ right).reshape(n, rows, right.shape[1])
+        return np.asarray((stacked @ right).toarray()).reshape(n, rows, right.shape[1])
 
 
 def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
@@ -104,7 +104,7 @@ class _Differentiator:
         self._block = {n: _Matrix(f) for n, f in functions.items() if n != "constants"}
         self._dp = self._parameter_directions()
         p = np.array([axle.values[n] for n in self._kernel.equations.parameter_names])
-        self._dc = _Matrix(functions["constants"])(p) @ self._dp
+        self._dc = sparse.csr_array(_Matrix(functions["constants"])(p) @ self._dp)
         self._parts = ("R", "Y", "Z") if self._kernel.nz else ("R", "Y")
         self._outputs = self._kernel.equations.output_names
 
