@@ -35,6 +35,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
     case = measurement.curves.cases[load_case]
     run = measurement.runs[load_case][0]
     fig, axes = figure(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9))
+    fig.set_layout_engine("constrained", w_pad=0.12)  # room for tick labels that grow when panels shrink
     gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
     for row, response in zip(axes, RIG_RESPONSES, strict=True):
         for side, name in enumerate(SIDES):
