@@ -16,7 +16,6 @@ from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
 from doe_kc.solver.load_cases import LOAD_CASES
 
-SCHEMA = "doe_kc.study/1"
 FEWEST_POINTS = 3
 
 

@@ -52,11 +52,6 @@ class Influence:
         return 100.0 * self.exact / column_peaks(self.absolute)
 
     @property
-    def curvature(self) -> FloatArray:
-        """(plus + minus) / 2 - baseline: what a linear view leaves out."""
-        return (self.plus + self.minus) / 2.0 - self.baseline
-
-    @property
     def nonlinear(self) -> np.ndarray:
         """bool: one-at-a-time and exact change differ by more than 5 %."""
         gap = np.abs(self.percent - self.exact_percent)

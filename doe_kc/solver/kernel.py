@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -112,6 +111,3 @@ class Buffered:
                 array[:size] = value
         self._evaluate()
         return self.result[: self._size]
-
-
-Evaluator = Callable[..., FloatArray]

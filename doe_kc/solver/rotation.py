@@ -46,11 +46,6 @@ def angle_ratio(s: ca.SX) -> tuple[ca.SX, ca.SX]:
     return ca.if_else(small, series, exact), ca.if_else(small, slope, exact_slope)
 
 
-def rotation_vector(p: ca.SX) -> ca.SX:
-    """phi = 2 atan(|p|) / |p| p, in rad."""
-    return angle_ratio(ca.dot(p, p))[0] * p
-
-
 def spring_moment(p: ca.SX, torque: ca.SX, kappa: ca.SX, slope: ca.SX) -> ca.SX:
     """Moment that turns p further, from torques t(phi) conjugate to the rotation vector phi = kappa p.
 

@@ -6,20 +6,14 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.curves import RESPONSE_UNITS
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint, mirror
 
 DEG = 180 / ca.pi
 
 OUTPUT_UNITS = {
-    "toe": "deg",
-    "camber": "deg",
-    "caster": "deg",
-    "spin": "deg",
-    "wc_x": "mm",
-    "wc_y": "mm",
-    "wc_z": "mm",
-    "tyre_load": "N",
+    **RESPONSE_UNITS,
     "camber_ground": "deg",
     "kpi": "deg",
     "cp_x": "mm",
