@@ -178,10 +178,9 @@ class _Differentiator:
             du[k.equations.control_names.index(control)] = dx0[k.index(unknown)] + shift
         dx, dy, dz = self._point(s.x, s.u, z0, du, no_z)
         heights = [dy[self._outputs.index(f"wc_z@{side}")] for side in ("L", "R")]
-        loads = [dy[self._outputs.index(f"tyre_load@{side}")] for side in ("L", "R")]
         pads = [du[k.equations.control_names.index(f"pad_{side}")] for side in ("L", "R")]
         preload = du[k.equations.control_names.index("preload")]
-        return dx, dy, dz, np.array([*pads, *heights, *loads, preload])
+        return dx, dy, dz, np.array([*pads, *heights, preload])
 
     def _case(
         self,
@@ -205,15 +204,15 @@ class _Differentiator:
         return tuple(out)
 
     def _control_gradient(self, case: LoadCase, inputs: FloatArray) -> FloatArray:
-        """(n, nu, 7) derivative of the controls to the datum; they are affine in it."""
+        """(n, nu, 5) derivative of the controls to the datum; they are affine in it."""
         pads = self._static.pads
         base = self._controls(case, inputs, pads)
-        flat = [*pads.pad, *pads.wheel_centre_z, *pads.tyre_load, pads.preload]
+        flat = [*pads.pad, *pads.wheel_centre_z, pads.preload]
         columns = []
         for i in range(len(flat)):
             moved = list(flat)
             moved[i] += 1.0
-            shifted = StaticPads((moved[0], moved[1]), (moved[2], moved[3]), (moved[4], moved[5]), moved[6])
+            shifted = StaticPads((moved[0], moved[1]), (moved[2], moved[3]), moved[4])
             columns.append(self._controls(case, inputs, shifted) - base)
         return np.stack(columns, axis=-1)
 

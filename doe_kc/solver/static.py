@@ -53,7 +53,6 @@ def static_state(
     datum = StaticPads(
         pad=pads,
         wheel_centre_z=(read["wc_z@L"], read["wc_z@R"]),
-        tyre_load=(read["tyre_load@L"], read["tyre_load@R"]),
         preload=preload,
     )
     return StaticState(x0, u0[0], raised.x[0], u[0], raised.z[0], raised.y[0], datum)

@@ -89,7 +89,7 @@ def test_a_load_case_says_what_it_sweeps(case) -> None:
     assert len(inputs) == 2 * case.steps + 1
     assert np.all(np.diff(inputs) > 0)
     # at input 0 nothing has moved from the static state
-    static = StaticPads((1.0, 2.0), (310.0, 311.0), (4300.0, 4300.0), 4000.0)
+    static = StaticPads((1.0, 2.0), (310.0, 311.0), 4000.0)
     still = case.controls(np.zeros(1), static)
     for name, value in still.items():
         held = {"pad_L": 1.0, "pad_R": 2.0, "wc_z_L": 310.0, "wc_z_R": 311.0, "lateral_offset": value}

@@ -24,7 +24,6 @@ class StaticPads:
 
     pad: tuple[float, float]
     wheel_centre_z: tuple[float, float]
-    tyre_load: tuple[float, float]
     preload: float
 
 
