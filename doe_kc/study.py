@@ -14,7 +14,11 @@ from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
 from doe_kc.axle.schema import Positive, Strict
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
+from doe_kc.sampling.options import SamplingOptions
 from doe_kc.solver.load_cases import LOAD_CASES
+from doe_kc.surrogates.options import SurrogateOptions
+from doe_kc.true_solver.options import SolverOptions
+from doe_kc.variables import Space, VariableOptions, build_space
 
 FEWEST_POINTS = 3
 
@@ -36,11 +40,19 @@ class StudyFile(Strict):
     seed: Annotated[int, Field(ge=0)] = 1
     windows: dict[str, Positive] = Field(default={})
     influence: InfluenceOptions = InfluenceOptions()
+    solver: SolverOptions = SolverOptions()
+    variables: VariableOptions = VariableOptions()
+    sampling: SamplingOptions = SamplingOptions()
+    surrogates: SurrogateOptions = SurrogateOptions()
 
 
 @dataclass(frozen=True)
 class Study:
-    """A checked study. windows: load case -> half-width of the fit window in the input's unit."""
+    """A checked study.
+
+    windows: load case -> half-width of the fit window in the input's unit. parameters: of the influence
+    study. space: the variables on the unchanged axle, those of `use = "selection"` not yet narrowed.
+    """
 
     name: str
     source: Path
@@ -51,6 +63,21 @@ class Study:
     seed: int
     windows: dict[str, float]
     parameters: tuple[Parameter, ...]
+    space: Space
+    solver: SolverOptions
+    variables: VariableOptions
+    sampling: SamplingOptions
+    surrogates: SurrogateOptions
+
+    @property
+    def folder(self) -> Path:
+        """The study file's folder, which its paths are relative to."""
+        return self.source.parent
+
+    @property
+    def store(self) -> Path:
+        """The one file of all true-solver evaluations."""
+        return self.out / "evaluations.sqlite"
 
     def measured(self) -> Path:
         """The measurement's folder or `test.toml`; InputError when the study names none."""
@@ -91,6 +118,11 @@ def read_study(
         seed=file.seed if seed is None else seed,
         windows=dict(file.windows),
         parameters=select(axle, file.influence.parameters, str(source)),
+        space=build_space(axle, file.variables, str(source)),
+        solver=file.solver,
+        variables=file.variables,
+        sampling=file.sampling,
+        surrogates=file.surrogates,
     )
 
 

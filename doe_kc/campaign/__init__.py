@@ -1,0 +1,1 @@
+"""Campaigns: true-solver evaluations in parallel, stored, never run twice."""

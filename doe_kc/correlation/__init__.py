@@ -1,0 +1,1 @@
+"""Correlation: targets, rating, methods, and what they found."""

@@ -1,0 +1,81 @@
+"""One design variable: a parameter with bounds, start, resolution and distribution."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from doe_kc.axle.parameters import Parameter
+from doe_kc.typing import FloatArray
+from doe_kc.variables.options import Distribution
+
+GAUSSIAN_RANGE = 6.0
+"""Standard deviations between the bounds of a Gaussian variable."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Variable:
+    """A parameter that is free between `lower` and `upper` (absolute, in the parameter's unit).
+
+    start: value of the first design. levels: number of values between the bounds, None = continuous.
+    logarithmic: equal steps are equal ratios (stiffnesses, rates). Inside the package a variable is its
+    place u in [0, 1] between the bounds.
+    """
+
+    parameter: Parameter
+    lower: float
+    upper: float
+    start: float
+    levels: int | None
+    distribution: Distribution
+    logarithmic: bool
+
+    @property
+    def path(self) -> str:
+        """The parameter's path."""
+        return self.parameter.path
+
+    @property
+    def unit(self) -> str:
+        """The parameter's unit."""
+        return self.parameter.unit
+
+    def value(self, u: float) -> float:
+        """Absolute value at u."""
+        if self.logarithmic:
+            return float(self.lower * (self.upper / self.lower) ** u)
+        return float(self.lower + (self.upper - self.lower) * u)
+
+    def place(self, value: float) -> float:
+        """u of an absolute value; outside [0, 1] when it is beyond the bounds."""
+        if self.logarithmic:
+            return math.log(value / self.lower) / math.log(self.upper / self.lower)
+        return (value - self.lower) / (self.upper - self.lower)
+
+    def slope(self, u: float) -> float:
+        """d value / d u at u, parameter's unit."""
+        if self.logarithmic:
+            return self.value(u) * math.log(self.upper / self.lower)
+        return self.upper - self.lower
+
+    def snapped(self, u: float) -> float:
+        """Nearest level."""
+        if self.levels is None:
+            return u
+        return round(u * (self.levels - 1)) / (self.levels - 1)
+
+    @property
+    def prior_sd(self) -> float:
+        """Standard deviation of u before any measurement: 1/sqrt(12) uniform, 1/6 Gaussian."""
+        return 1.0 / GAUSSIAN_RANGE if self.distribution == "gaussian" else 1.0 / math.sqrt(12.0)
+
+    def drawn(self, probability: FloatArray) -> FloatArray:
+        """u of cumulative probabilities in (0, 1): themselves, or a Gaussian about the start cut at 0, 1."""
+        if self.distribution == "uniform":
+            return probability
+        centre, sd = self.place(self.start), self.prior_sd
+        low, high = ndtr(-centre / sd), ndtr((1.0 - centre) / sd)
+        return np.clip(centre + sd * ndtri(low + (high - low) * probability), 0.0, 1.0)
