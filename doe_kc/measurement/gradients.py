@@ -84,11 +84,11 @@ def case_gradients(case: CaseCurves, noise: CaseNoise, windows: Windows) -> tupl
 
 
 def characteristic_estimates(
-    curves: CurveSet, noise: Mapping[str, CaseNoise], windows: Windows, *, static_sd: float
+    curves: CurveSet, noise: Mapping[str, CaseNoise], windows: Windows, *, static_sd: Mapping[str, float]
 ) -> dict[str, Estimate]:
     """Every registered characteristic with its standard error.
 
-    static_sd: of the alignment's angles, deg.
+    static_sd: static response -> standard deviation of the alignment's angle, deg.
     """
     return {
         ident: _estimate(entry, curves, noise, windows, static_sd) for ident, entry in CHARACTERISTICS.items()
@@ -100,14 +100,14 @@ def _estimate(
     curves: CurveSet,
     noise: Mapping[str, CaseNoise],
     windows: Windows,
-    static_sd: float,
+    static_sd: Mapping[str, float],
 ) -> Estimate:
     window = windows.get(entry.load_case)
     value = reduce_one(entry, curves, window=window)
     if not np.isfinite(value):
         return Estimate(float("nan"), float("nan"))
     if entry.kind == "static":
-        return Estimate(value, static_sd)
+        return Estimate(value, static_sd[entry.response])
     case = curves.cases[entry.load_case]
     weights = reduction_gradient(entry, case, curves.half_track, window=window)
     models = noise[entry.load_case]

@@ -52,11 +52,20 @@ class SideAlignment(_Section):
     caster_deg: Angle | None = None
 
 
+class AlignmentSd(_Section):
+    """Standard deviation of the bench's angles, deg; defaults are those of a good alignment bench."""
+
+    toe_deg: Positive = 0.01
+    camber_deg: Positive = 0.01
+    caster_deg: Positive = 0.02
+
+
 class Alignment(_Section):
     """Both wheels; None where the bench gave nothing."""
 
     left: SideAlignment | None = None
     right: SideAlignment | None = None
+    sd: AlignmentSd = AlignmentSd()
 
 
 class SensorResolution(_Section):

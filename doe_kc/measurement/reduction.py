@@ -84,7 +84,7 @@ def _assembled(
 ) -> Measurement:
     _check_window_points(curves, windows)
     noise = estimate_noise(runs, _resolution(manifest))
-    angle_sd = manifest.sensor_resolution.angle_deg
+    angle_sd = static_sd(manifest.alignment)
     gradients = [case_gradients(curves.cases[case], noise[case], windows) for case in runs]
     return Measurement(
         manifest=manifest,
@@ -107,6 +107,12 @@ def static_angles(alignment: Alignment | None) -> dict[str, FloatArray] | None:
         if any(v is not None for v in values):
             out[response] = np.array([np.nan if v is None else v for v in values])
     return out or None
+
+
+def static_sd(alignment: Alignment | None) -> dict[str, float]:
+    """Response -> standard deviation of its static angle, deg."""
+    sd = (alignment or Alignment()).sd
+    return {response: getattr(sd, key) for response, key in _ALIGNMENT_KEYS.items()}
 
 
 def _ordered(manifest: Manifest) -> list[str]:

@@ -23,16 +23,19 @@ def characteristic_gradients(
     characteristics: Sequence[Characteristic] | None = None,
     *,
     windows: Mapping[str, float] | None = None,
+    exact: Sensitivities | None = None,
 ) -> FloatArray:
     """(characteristics, paths) derivatives, unit of the characteristic per unit of the parameter.
 
     characteristics: all registered ones by default; nan for those whose load case was not solved.
+    exact: sensitivities of `solution` to `paths`, where they are known.
     """
     entries = list(CHARACTERISTICS.values()) if characteristics is None else characteristics
-    exact, curves = sensitivities(axle, solution, paths), curve_set(solution)
+    found = exact if exact is not None else sensitivities(axle, solution, paths)
+    curves = curve_set(solution)
     half_track = np.array([_half_track_gradient(axle, path) for path in paths])
     chosen = windows or {}
-    return np.array([_one(e, solution, curves, exact, half_track, chosen.get(e.load_case)) for e in entries])
+    return np.array([_one(e, solution, curves, found, half_track, chosen.get(e.load_case)) for e in entries])
 
 
 def _half_track_gradient(axle: Axle, path: str) -> float:

@@ -2,16 +2,37 @@
 
 from __future__ import annotations
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from doe_kc.axle.schema import Positive, Strict
+from doe_kc.errors import nearest
+from doe_kc.solver.load_cases import LOAD_CASES
 
 
 class SolverOptions(Strict):
     """command: an outside solver as a list of words; the package's own when empty.
 
-    timeout: seconds granted to one run of it.
+    timeout: seconds granted to one run of it. load_cases: those that the command gives curves of, all of
+    the axle's when empty.
     """
 
     command: list[str] = Field(default=[])
     timeout: Positive = 3600.0
+    load_cases: list[str] = Field(default=[])
+
+    @field_validator("command")
+    @classmethod
+    def _has_words(cls, command: list[str]) -> list[str]:
+        if any(not word or "\0" in word for word in command):
+            raise ValueError("a word of the command is empty")
+        return command
+
+    @field_validator("load_cases")
+    @classmethod
+    def _are_known(cls, cases: list[str]) -> list[str]:
+        for case in cases:
+            if case not in LOAD_CASES:
+                raise ValueError(
+                    f"{case} is not a load case; known are {', '.join(LOAD_CASES)}.{nearest(case, LOAD_CASES)}"
+                )
+        return cases

@@ -30,6 +30,11 @@ class Tie:
             return self.follower_nominal * leader / self.leader_nominal
         return self.follower_nominal + leader - self.leader_nominal
 
+    @property
+    def slope(self) -> float:
+        """d follower / d leader."""
+        return self.follower_nominal / self.leader_nominal if self.ratio else 1.0
+
 
 @dataclass(frozen=True)
 class Space:

@@ -1,0 +1,202 @@
+"""The measured curves as data with their errors: residuals in standard deviations, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cholesky, solve_triangular
+
+from doe_kc.axle.model import Axle
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
+from doe_kc.measurement import Measurement
+from doe_kc.measurement.reduction import static_sd
+from doe_kc.solver.curve_gradient import CurveGradients
+from doe_kc.targets.build import reached
+from doe_kc.targets.target import Targets
+from doe_kc.typing import FloatArray
+
+SOLVER_FLOOR = 1e-3
+"""Share of the white-noise variance added to every point: rounding of files and solver."""
+EXACT_SHARE = 0.05
+"""Of Norm: standard deviation taken for a typed target that states none, a third of its interval."""
+
+
+@dataclass(frozen=True)
+class CurveData:
+    """One measured mean curve of one side.
+
+    input, value: (n,). root: (n, n) lower Cholesky factor of its error covariance.
+    """
+
+    load_case: str
+    response: str
+    side: int
+    input: FloatArray
+    value: FloatArray
+    root: FloatArray
+
+    @property
+    def size(self) -> int:
+        """Number of points."""
+        return int(self.input.size)
+
+    @property
+    def level(self) -> FloatArray:
+        """(n,) standard deviation of each point."""
+        return np.asarray(np.linalg.norm(self.root, axis=1))
+
+    def whitened(self, rows: FloatArray) -> FloatArray:
+        """L^-1 rows for (n,) or (n, p)."""
+        return np.asarray(solve_triangular(self.root, rows, lower=True, check_finite=False))
+
+
+@dataclass(frozen=True)
+class Figure:
+    """One scalar datum: a static angle of one side, or a typed target.
+
+    row: the characteristic's place in the registry, -1 for a static angle.
+    """
+
+    name: str
+    response: str
+    side: int
+    row: int
+    value: float
+    sd: float
+
+
+@dataclass(frozen=True)
+class Likelihood:
+    """All data of a correlation. Residuals are (model - measured) in units of the errors, (M,)."""
+
+    curves: tuple[CurveData, ...]
+    figures: tuple[Figure, ...]
+
+    @property
+    def size(self) -> int:
+        """M, the number of data."""
+        return sum(c.size for c in self.curves) + len(self.figures)
+
+    def residual(self, curves: CurveSet, characteristics: FloatArray) -> FloatArray:
+        """(M,) whitened residual of a model; KeyError for a load case that it lacks."""
+        parts = [c.whitened(_model(c, curves) - c.value) for c in self.curves]
+        scalars = [(_scalar(f, curves, characteristics) - f.value) / f.sd for f in self.figures]
+        return np.concatenate([*parts, np.array(scalars)])
+
+    def jacobian(self, gradients: CurveGradients, characteristics: FloatArray) -> FloatArray:
+        """(M, p) derivative of the residual. characteristics: (all registered, p) their gradients."""
+        parts = [c.whitened(_rows(c, gradients)) for c in self.curves]
+        scalars = [_scalar_row(f, gradients, characteristics) / f.sd for f in self.figures]
+        tail = np.array(scalars).reshape(len(scalars), len(gradients.paths))
+        return np.vstack([*parts, tail])
+
+    def slices(self) -> Iterator[tuple[CurveData, slice]]:
+        """Each curve with its place in the residual."""
+        start = 0
+        for curve in self.curves:
+            yield curve, slice(start, start + curve.size)
+            start += curve.size
+
+
+def build_likelihood(
+    axle: Axle, measurement: Measurement, targets: Targets, *, only_targets: bool = False
+) -> Likelihood:
+    """Data of the records, within the sweeps of the model.
+
+    only_targets: curves that are objectives only. A typed target replaces the curve that its
+    characteristic is read off.
+    """
+    typed = [t for t in targets.characteristics if t.value != measurement.characteristics[t.entry.id].value]
+    replaced = {(t.entry.load_case, t.entry.response) for t in typed}
+    wanted = {(c.load_case, c.response) for c in targets.curves}
+    curves = [
+        c
+        for c in _measured(axle, measurement)
+        if (c.load_case, c.response) not in replaced
+        and (not only_targets or (c.load_case, c.response) in wanted)
+    ]
+    order = list(CHARACTERISTICS)
+    figures = [
+        Figure(t.entry.id, t.entry.response, 0, order.index(t.entry.id), t.value, t.sd or _exact_sd(t.value))
+        for t in typed
+        if t.active
+    ]
+    statics = [f for f in _static(measurement) if ("static", f.response) not in replaced]
+    return Likelihood(tuple(curves), (*statics, *figures))
+
+
+def _exact_sd(value: float) -> float:
+    return EXACT_SHARE * float(np.sqrt(value**2 + 0.005))
+
+
+def _measured(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
+    for case in measurement.curves.cases.values():
+        inside = reached(axle, case)
+        for response in RIG_RESPONSES:
+            keep = inside if response == TYRE_LOAD else inside & (np.abs(case.input) > 1e-9)
+            if not keep.any():
+                continue
+            noise = measurement.noise[case.load_case][response]
+            for side in (0, 1):
+                value = case.mean[response][side]
+                extra = SOLVER_FLOOR * noise.white**2 + corner_error(value, noise.white) ** 2
+                covariance = noise.covariance(side=side) + np.diag(np.broadcast_to(extra, value.shape))
+                root = cholesky(covariance[np.ix_(keep, keep)], lower=True)
+                yield CurveData(
+                    case.load_case, response, side, case.input[keep], np.asarray(value[keep]), root
+                )
+
+
+def corner_error(curve: FloatArray, white: float) -> FloatArray:
+    """(n,) error of a reduced curve next to a corner, as where a stop touches or a wheel lifts off.
+
+    Between points a bend of slope change c over the spacing h is missed by up to c h / 8; c h is the
+    second difference, taken where it exceeds four times that of the noise, and granted to its neighbours.
+    """
+    bend = np.zeros(curve.size)
+    bend[1:-1] = np.abs(np.diff(curve, 2))
+    bend[bend < 4.0 * np.sqrt(6.0) * white] = 0.0
+    wide = np.maximum(bend, np.maximum(np.roll(bend, 1), np.roll(bend, -1)))
+    return np.asarray(wide / 8.0)
+
+
+def _static(measurement: Measurement) -> Iterator[Figure]:
+    sd = static_sd(measurement.manifest.alignment)
+    for response, values in (measurement.curves.static or {}).items():
+        for side, value in enumerate(values):
+            if np.isfinite(value):
+                yield Figure(f"static.{response}", response, side, -1, float(value), sd[response])
+
+
+def _model(data: CurveData, curves: CurveSet) -> FloatArray:
+    case = curves.cases[data.load_case]
+    return np.asarray(np.interp(data.input, case.input, case.mean[data.response][data.side]))
+
+
+def _rows(data: CurveData, gradients: CurveGradients) -> FloatArray:
+    values = gradients.cases[data.load_case][data.response][data.side]
+    return interpolated(data.input, gradients.inputs[data.load_case], values)
+
+
+def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:
+    """(m, p) rows (n, p) on `grid`, linear between its points."""
+    right = np.clip(np.searchsorted(grid, wanted), 1, grid.size - 1)
+    share = (wanted - grid[right - 1]) / (grid[right] - grid[right - 1])
+    return np.asarray(rows[right - 1] + share[:, None] * (rows[right] - rows[right - 1]))
+
+
+def _scalar(figure: Figure, curves: CurveSet, characteristics: FloatArray) -> float:
+    if figure.row >= 0:
+        return float(characteristics[figure.row])
+    if curves.static is None:
+        raise KeyError("the model gives no static angles")
+    return float(curves.static[figure.response][figure.side])
+
+
+def _scalar_row(figure: Figure, gradients: CurveGradients, characteristics: FloatArray) -> FloatArray:
+    if figure.row >= 0:
+        return np.asarray(characteristics[figure.row])
+    return np.asarray(gradients.static[figure.response][figure.side])

@@ -1,0 +1,67 @@
+"""First-order expansion of everything a model answers, about a point of the space of variables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import with_values
+from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients
+from doe_kc.solver.sensitivity import sensitivities
+from doe_kc.solver.suite import solve
+from doe_kc.typing import FloatArray
+from doe_kc.variables import Space
+
+NEARLY_RIGID = 1e-3
+"""Flexibility at which the sensitivity of a rigid strut is taken: its stiffness is infinite at zero."""
+FLEXIBILITY = "strut.flexibility"
+
+
+@dataclass(frozen=True)
+class Linearization:
+    """Derivatives to the d variables' places u. characteristics: (all registered, d)."""
+
+    characteristics: FloatArray
+    curves: CurveGradients
+
+
+def linearize(
+    axle: Axle, space: Space, point: FloatArray, windows: Mapping[str, float] | None = None
+) -> Linearization:
+    """Exact sensitivities of the axle at `point` (d,), ties followed.
+
+    NotConverged when the axle has no equilibrium there.
+    """
+    values = space.values(point)
+    if FLEXIBILITY in values:
+        values[FLEXIBILITY] = max(values[FLEXIBILITY], NEARLY_RIGID)
+    there = with_values(axle, values)
+    solution = solve(there)
+    paths = [*space.paths, *(tie.follower for tie in space.ties)]
+    exact = sensitivities(there, solution, paths)
+    chain = _chain(space, point)
+    found = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
+    return Linearization(
+        found @ chain, _chained(curve_gradients(there, solution, paths, exact), chain, space)
+    )
+
+
+def _chain(space: Space, point: FloatArray) -> FloatArray:
+    """(paths and followers, d) d value / d u."""
+    slopes = np.diag(space.slopes(point))
+    places = {path: i for i, path in enumerate(space.paths)}
+    followers = [tie.slope * slopes[places[tie.leader]] for tie in space.ties]
+    return np.vstack([slopes, *followers])
+
+
+def _chained(gradients: CurveGradients, chain: FloatArray, space: Space) -> CurveGradients:
+    return replace(
+        gradients,
+        paths=space.paths,
+        cases={c: {r: g @ chain for r, g in responses.items()} for c, responses in gradients.cases.items()},
+        static={r: g @ chain for r, g in gradients.static.items()},
+    )

@@ -1,0 +1,71 @@
+"""What a correlation method is: asked for candidates, told what the true solver says of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+from doe_kc.errors import InputError, nearest
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What every method is given beside the problem; `CorrelationOptions` in numbers."""
+
+    seed: int
+    budget: int
+    batch: int = 1
+    first: int | None = None
+    gradients: bool = False
+
+
+class Method(ABC):
+    """One search. The first `tell` holds the baseline (index 0) and designs known from before (< 0)."""
+
+    id: ClassVar[str]
+    label: ClassVar[str]
+    needs_exact: ClassVar[bool] = False
+
+    @abstractmethod
+    def __init__(self, problem: Problem, settings: Settings) -> None: ...
+
+    @property
+    @abstractmethod
+    def stopped(self) -> str:
+        """Why the search is over; empty while it goes on."""
+
+    @abstractmethod
+    def ask(self) -> Sequence[Candidate]:
+        """The next candidates, at least one unless `stopped`."""
+
+    @abstractmethod
+    def tell(self, evaluated: Sequence[Evaluated]) -> None:
+        """Answers to the last candidates, in their order; failures among them."""
+
+    def best(self, history: Sequence[Evaluated]) -> int:
+        """Place of the design to hand over: the best rating."""
+        return max(range(len(history)), key=lambda i: (history[i].merit, -i))
+
+
+METHODS: dict[str, type[Method]] = {}
+
+
+def register(kind: type[Method]) -> type[Method]:
+    """Register a method; ValueError when the id is taken."""
+    if kind.id in METHODS:
+        raise ValueError(f"method {kind.id} is registered twice")
+    METHODS[kind.id] = kind
+    return kind
+
+
+def method_class(name: str, *, source: str) -> type[Method]:
+    """The method of that id; InputError naming `source` when there is none."""
+    if name not in METHODS:
+        raise InputError(
+            f"{source}: {name!r} is no correlation method; known are {', '.join(METHODS)}."
+            f"{nearest(name, METHODS)}"
+        )
+    return METHODS[name]

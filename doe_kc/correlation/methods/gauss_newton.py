@@ -1,0 +1,125 @@
+"""`gauss_newton`: fits the measured curves by exact sensitivities, weighted by their errors.
+
+Minimizes |r(u)|^2 + |(u - u0) / P|^2 between the bounds, r the residuals in standard deviations of the
+data and P the prior standard deviations: the most probable axle (Gauss-Newton in a trust region; J. Nocedal,
+S. J. Wright, Numerical Optimization, 2006, chapter 10). Levels are ignored: its steps are continuous.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, final
+
+import numpy as np
+
+from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.linearization import Linearization
+from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
+from doe_kc.errors import InputError
+from doe_kc.solver.result import NotConverged
+from doe_kc.typing import FloatArray
+
+CONVERGED = 0.01
+"""Predicted decrease of the sum of squares below which the fit stands: a tenth of a standard deviation."""
+SMALLEST = 1e-4
+"""Radius, share of the bounds, below which the search gives up."""
+POOR, GOOD = 0.25, 0.75
+"""Actual over predicted decrease below which the region shrinks, above which it grows."""
+
+
+@final
+@register
+class GaussNewton(Method):
+    """State: the incumbent with its residual and normal equations, and the trust region's radius."""
+
+    id: ClassVar[str] = "gauss_newton"
+    label: ClassVar[str] = "Gauss-Newton with exact sensitivities"
+    needs_exact: ClassVar[bool] = True
+
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        """InputError when there are no records to fit."""
+        del settings
+        if problem.likelihood is None:
+            raise InputError(
+                f"{problem.targets.source}: gauss_newton fits measured curves, and the study names no "
+                "measurement; add one or choose --method ego."
+            )
+        self._problem, self._data = problem, problem.likelihood
+        self._origin = problem.space.start
+        self._weight = problem.space.prior_sd**-2.0
+        self._radius = 1.0
+        self._stopped = ""
+        self._incumbent: Evaluated | None = None
+        self._cost = np.inf
+        self._predicted = 0.0
+
+    @property
+    def stopped(self) -> str:
+        """Converged, or the region has shrunk to nothing."""
+        return self._stopped
+
+    def ask(self) -> Sequence[Candidate]:
+        """The minimizer of the linearized problem within bounds and region."""
+        if self._incumbent is None:
+            raise ValueError("ask() before the baseline was told")
+        point = self._incumbent.point
+        lower = np.maximum(-point, -self._radius)
+        upper = np.minimum(1.0 - point, self._radius)
+        step = bounded_step(self._hessian, self._gradient, lower, upper)
+        self._predicted = float(-(2.0 * self._gradient @ step + step @ self._hessian @ step))
+        return [Candidate(point + step, self.id, self._prediction(self._incumbent, step))]
+
+    def tell(self, evaluated: Sequence[Evaluated]) -> None:
+        """Accept or shrink; stop when the expected gain is nothing."""
+        if self._incumbent is None:
+            self._accept(evaluated[0])
+            return
+        answer = evaluated[-1]
+        cost = self._cost_of(answer)
+        ratio = (self._cost - cost) / max(self._predicted, 1e-300)
+        if ratio < POOR:
+            self._radius = min(self._radius, float(np.abs(answer.point - self._incumbent.point).max())) / 4.0
+        elif ratio > GOOD:
+            self._radius = min(1.0, 2.0 * self._radius)
+        if cost < self._cost:
+            self._accept(answer)
+        if self._predicted < CONVERGED:
+            self._stopped = "converged: the data ask for no further change"
+        elif self._radius < SMALLEST:
+            self._stopped = "the trust region shrank to nothing without a better design"
+
+    def best(self, history: Sequence[Evaluated]) -> int:
+        """The most probable axle, which need not have the best rating."""
+        return self._incumbent.index if self._incumbent is not None else 0
+
+    def _accept(self, answer: Evaluated) -> None:
+        curves = answer.outcome.curves
+        if curves is None:
+            raise InputError("gauss_newton needs curves, and the study's solver gives none; choose ego.")
+        try:
+            expansion = self._problem.linearize(answer.point)
+        except NotConverged as error:
+            self._stopped = f"no sensitivities at the last design: {error}"
+            return
+        jacobian = self._data.jacobian(expansion.curves, expansion.characteristics)
+        residual = self._data.residual(curves, answer.outcome.characteristics)
+        self._incumbent, self._cost, self._expansion = answer, self._cost_of(answer), expansion
+        self._hessian = jacobian.T @ jacobian + np.diag(self._weight)
+        self._gradient = jacobian.T @ residual + self._weight * (answer.point - self._origin)
+
+    _expansion: Linearization
+    _hessian: FloatArray
+    _gradient: FloatArray
+
+    def _cost_of(self, answer: Evaluated) -> float:
+        if answer.outcome.failed or answer.outcome.curves is None:
+            return np.inf
+        residual = self._data.residual(answer.outcome.curves, answer.outcome.characteristics)
+        moved = answer.point - self._origin
+        return float(residual @ residual + self._weight @ moved**2)
+
+    def _prediction(self, incumbent: Evaluated, step: FloatArray) -> Prediction:
+        rows = self._problem.targets.rows
+        values = incumbent.outcome.characteristics[rows] + self._expansion.characteristics[rows] @ step
+        return Prediction(values, np.full(len(rows), np.nan), np.nan, np.nan)

@@ -1,0 +1,32 @@
+"""The `[correlation]` table of a study."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from doe_kc.axle.schema import Strict
+
+Count = Annotated[int, Field(ge=1)]
+SetFirst = Literal["ride_height", "static.toe", "static.camber"]
+
+
+class CorrelationOptions(Strict):
+    """method: id of a registered method. budget: true-solver evaluations, the baseline among them.
+
+    batch: candidates confirmed side by side in one round. first: designs of the opening sample, by
+    default a third of the number of variables, at least 20. gradients: let `ego` start from the exact
+    sensitivities of the baseline. data: curves that `gauss_newton` fits: all that were measured, or those
+    with an objective. set_first: parameters set from the records before the correlation. sampled: let
+    designs of an earlier `sample` campaign count as known.
+    """
+
+    method: str = "ego"
+    budget: Count = 100
+    batch: Count = 1
+    first: Count | None = None
+    gradients: bool = False
+    data: Literal["all", "targets"] = "all"
+    set_first: list[SetFirst] = Field(default=[])
+    sampled: bool = True

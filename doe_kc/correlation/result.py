@@ -1,0 +1,72 @@
+"""What a correlation found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import with_values
+from doe_kc.correlation.loop import Run
+from doe_kc.correlation.posterior import Posterior
+from doe_kc.correlation.problem import Evaluated, Problem
+from doe_kc.targets import Improvement, improvements, mean_improvement
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """A finished run of one method.
+
+    method: its id. steps: what was set before it (ride height, alignment), in sentences. posterior: of the
+    variables at the best design from the exact sensitivities; None when the solver gives none or there are
+    no records. seconds: of the whole run.
+    """
+
+    method: str
+    problem: Problem
+    run: Run
+    steps: tuple[str, ...]
+    posterior: Posterior | None
+    seconds: float
+
+    @property
+    def baseline(self) -> Evaluated:
+        """The design that it started from."""
+        return self.run.evaluated[0]
+
+    @property
+    def best(self) -> Evaluated:
+        """The design to hand over."""
+        return self.run.evaluated[self.run.best]
+
+    @property
+    def rating(self) -> float:
+        """Equation 2.2 of the best design."""
+        return self.best.merit
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the best design meets every constraint."""
+        return self.best.rating is not None and self.best.rating.feasible
+
+    @property
+    def improvements(self) -> list[Improvement]:
+        """Every characteristic with a target, before and after."""
+        before, after = self.baseline.score, self.best.score
+        if before is None or after is None:
+            raise ValueError("a correlation without a solved baseline has no improvement")
+        return improvements(self.problem.targets, before, after)
+
+    @property
+    def mean_improvement(self) -> float:
+        """Percent, over the characteristics that count; nan when none does."""
+        return mean_improvement(self.improvements)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Path -> absolute value of every variable, tied and fixed parameter of the best design."""
+        return self.problem.space.values(self.best.point)
+
+    @property
+    def axle(self) -> Axle:
+        """The correlated axle."""
+        return with_values(self.problem.axle, self.values)

@@ -1,0 +1,53 @@
+"""Exact sensitivities of the mean curves, referred to static as the curves are."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.axle.model import Axle
+from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD
+from doe_kc.solver.curve_set import mean_and_half_width, rising
+from doe_kc.solver.result import CaseSolution, Solution
+from doe_kc.solver.sensitivity import Sensitivities, sensitivities
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class CurveGradients:
+    """Derivatives to p parameters, per unit of each.
+
+    inputs: load case -> (n,). cases: load case -> response -> (2, n, p) of the mean curve.
+    static: response -> (2, p), absolute.
+    """
+
+    paths: tuple[str, ...]
+    inputs: Mapping[str, FloatArray]
+    cases: Mapping[str, Mapping[str, FloatArray]]
+    static: Mapping[str, FloatArray]
+
+
+def curve_gradients(
+    axle: Axle, solution: Solution, paths: Sequence[str], exact: Sensitivities | None = None
+) -> CurveGradients:
+    """Derivatives of every mean curve of a solution; exact: its sensitivities, where they are known."""
+    found = exact if exact is not None else sensitivities(axle, solution, paths)
+    static = {
+        name: np.array([found.static[solution.column(f"{name}@{side}")] for side in SIDES]) for name in ANGLES
+    }
+    cases = {ident: _case(solution, case, found.branches[ident]) for ident, case in solution.cases.items()}
+    inputs = {ident: rising(case) for ident, case in solution.cases.items()}
+    return CurveGradients(tuple(paths), inputs, cases, static)
+
+
+def _case(solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
+    mean, _ = mean_and_half_width(case, list(branches))
+    zero = int(np.argmin(np.abs(rising(case))))
+    out = {}
+    for response in RESPONSE_UNITS:
+        columns = [solution.column(f"{response}@{side}") for side in SIDES]
+        curve = mean[:, columns].transpose(1, 0, 2)
+        out[response] = curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
+    return out

@@ -1,0 +1,28 @@
+"""Targets: what a model shall reach, how much each deviation weighs, how well a design does."""
+
+from __future__ import annotations
+
+from doe_kc.targets.build import build_targets
+from doe_kc.targets.improvement import Improvement, improvements, mean_improvement
+from doe_kc.targets.options import CharacteristicOptions, CurveOptions
+from doe_kc.targets.rating import Rating, rate
+from doe_kc.targets.score import Score, score
+from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
+
+__all__ = [
+    "CharacteristicOptions",
+    "Constraint",
+    "CurveOptions",
+    "CurveTarget",
+    "Improvement",
+    "Objective",
+    "Rating",
+    "Score",
+    "Target",
+    "Targets",
+    "build_targets",
+    "improvements",
+    "mean_improvement",
+    "rate",
+    "score",
+]

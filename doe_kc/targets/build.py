@@ -1,0 +1,178 @@
+"""Targets of a study: from the reduced records, typed in, or both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from fnmatch import fnmatchcase
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from doe_kc.axle.model import Axle
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic
+from doe_kc.comparison.interval import FLOOR, constraint_interval
+from doe_kc.curves import RIG_RESPONSES, CaseCurves
+from doe_kc.errors import InputError, nearest
+from doe_kc.measurement import Measurement
+from doe_kc.targets.options import CharacteristicOptions, CurveOptions
+from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
+
+NOISE_FLOOR = 10.0
+"""A curve's Norm is its range, at least this many noise RMS: a flat curve's noise is not divided by ~0."""
+
+
+def build_targets(
+    axle: Axle,
+    measurement: Measurement | None,
+    characteristics: Sequence[CharacteristicOptions],
+    curves: Sequence[CurveOptions],
+    *,
+    source: str,
+) -> Targets:
+    """Targets from the records, changed by the study's tables.
+
+    Objective and constraint flags default to Appendix B, intervals to equations 5.1 and 5.2, weights to
+    LinWt 1 and QuadWt 10000, Norm to sqrt(target^2 + 0.005) (the measure of the interval) and, for a
+    curve, to its range; curves are objectives where a characteristic is read off them that is one.
+    InputError for unknown names, an interval without its target, or no objective at all.
+    """
+    _check_names(characteristics, curves, source)
+    found = list(_targets(measurement, characteristics, source))
+    wanted = {(t.entry.load_case, t.entry.response) for t in found if t.objective is not None}
+    lines = tuple(_curves(axle, measurement, curves, wanted)) if measurement is not None else ()
+    if not any(t.active for t in found) and not lines:
+        raise InputError(
+            f"{source}: no characteristic has a target and an objective or constraint; give measurement = "
+            '"FOLDER" or a [[characteristics]] with match and target.'
+        )
+    return Targets(tuple(found), lines, measurement.manifest.name if measurement else source)
+
+
+def _targets(
+    measurement: Measurement | None, options: Sequence[CharacteristicOptions], source: str
+) -> Iterator[Target]:
+    for ident, entry in CHARACTERISTICS.items():
+        own = [o for o in options if fnmatchcase(ident, o.match)]
+        value, sd = _value(ident, own, measurement)
+        if math.isfinite(value):
+            yield _target(entry, value, sd, own, source)
+
+
+def _value(
+    ident: str, own: Sequence[CharacteristicOptions], measurement: Measurement | None
+) -> tuple[float, float]:
+    """Typed value and sd before measured ones; a typed value without sd is exact."""
+    typed, sd = last(own, "target"), last(own, "sd")
+    if typed is not None:
+        return typed, sd or 0.0
+    if measurement is None:
+        return math.nan, math.nan
+    estimate = measurement.characteristics[ident]
+    measured_sd = estimate.sd if math.isfinite(estimate.sd) else 0.0
+    return estimate.value, measured_sd if sd is None else sd
+
+
+def _target(
+    entry: Characteristic, value: float, sd: float, own: Sequence[CharacteristicOptions], source: str
+) -> Target:
+    scale = math.sqrt(value**2 + FLOOR)
+    objective = Objective(
+        goal=first(last(own, "goal"), "target"),
+        linear=first(last(own, "linear"), 1.0),
+        quadratic=first(last(own, "quadratic"), 0.0),
+        norm=first(last(own, "norm"), scale),
+    )
+    low, high = constraint_interval(value)
+    low, high = first(last(own, "low"), low), first(last(own, "high"), high)
+    if not low < high:
+        raise InputError(
+            f"{source}: characteristics {entry.id}: the interval [{low:g}, {high:g}] {entry.unit} is empty; "
+            "low must be below high."
+        )
+    constraint = Constraint(
+        low=low,
+        high=high,
+        linear=first(last(own, "constraint_linear"), 0.0),
+        quadratic=first(last(own, "constraint_quadratic"), 10000.0),
+        norm=first(last(own, "constraint_norm"), scale),
+    )
+    typed = any(last(own, k) is not None for k in ("low", "high"))
+    return Target(
+        entry=entry,
+        value=value,
+        sd=sd,
+        objective=objective if first(last(own, "objective"), entry.objective) else None,
+        constraint=constraint if first(last(own, "constraint"), entry.constraint or typed) else None,
+    )
+
+
+def _curves(
+    axle: Axle, measurement: Measurement, options: Sequence[CurveOptions], wanted: set[tuple[str, str]]
+) -> Iterator[CurveTarget]:
+    for case in measurement.curves.cases.values():
+        inside = reached(axle, case)
+        if not inside.any():
+            continue
+        for response in RIG_RESPONSES:
+            own = [o for o in options if fnmatchcase(f"{case.load_case}.{response}", o.match)]
+            if not first(last(own, "objective"), (case.load_case, response) in wanted):
+                continue
+            curve = np.asarray(case.mean[response])[:, inside]
+            noise = measurement.noise[case.load_case][response]
+            variance = [np.diag(noise.covariance(side=side))[inside].mean() for side in (0, 1)]
+            rms = math.sqrt(max(float(np.mean(variance)), 0.0))
+            scale = max(float(np.ptp(curve, axis=1).max()), NOISE_FLOOR * rms)
+            yield CurveTarget(
+                load_case=case.load_case,
+                response=response,
+                input_unit=case.input_unit,
+                input=case.input[inside],
+                curve=curve,
+                noise=rms,
+                objective=Objective(
+                    linear=first(last(own, "linear"), 1.0),
+                    quadratic=first(last(own, "quadratic"), 0.0),
+                    norm=first(last(own, "norm"), scale),
+                ),
+            )
+
+
+def reached(axle: Axle, case: CaseCurves) -> NDArray[np.bool_]:
+    """(n,) measured inputs that the model's sweep reaches; none where it sweeps another quantity."""
+    ours = axle.load_cases.get(case.load_case)
+    if ours is None or ours.unit != case.input_unit:
+        return np.zeros(case.input.size, dtype=bool)
+    inputs = ours.inputs()
+    slack = 1e-9 * np.abs(inputs).max()
+    return np.asarray((case.input >= inputs.min() - slack) & (case.input <= inputs.max() + slack))
+
+
+def _check_names(
+    characteristics: Sequence[CharacteristicOptions], curves: Sequence[CurveOptions], source: str
+) -> None:
+    from doe_kc.solver.load_cases import LOAD_CASES
+
+    lines = [f"{case}.{response}" for case in LOAD_CASES for response in RIG_RESPONSES]
+    for what, options, known in (
+        ("characteristics", characteristics, list(CHARACTERISTICS)),
+        ("curves", curves, lines),
+    ):
+        for option in options:
+            if not any(fnmatchcase(name, option.match) for name in known):
+                raise InputError(
+                    f"{source}: {what}: match = {option.match!r} fits none; expected an id or glob such as "
+                    f"{known[0]} or {known[0].split('.')[0]}.*.{nearest(option.match, known)}"
+                )
+
+
+def last(options: Sequence[CharacteristicOptions] | Sequence[CurveOptions], key: str) -> Any:
+    """The last given value of a key, None when no entry gives it."""
+    found = [getattr(o, key) for o in options if getattr(o, key) is not None]
+    return found[-1] if found else None
+
+
+def first(value: Any, default: Any) -> Any:
+    """The value, or the default in place of None."""
+    return default if value is None else value

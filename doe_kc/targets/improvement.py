@@ -1,0 +1,59 @@
+"""How much of the initial error a correlation removed (thesis, Appendix D)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from doe_kc.targets.score import Score
+from doe_kc.targets.target import Target, Targets
+
+SIGNIFICANT = 3.0
+"""Standard deviations of the target that the baseline must be away for an improvement to mean anything."""
+
+
+@dataclass(frozen=True)
+class Improvement:
+    """One characteristic before and after. percent: 100 = target met, 0 = as far as the baseline.
+
+    counts: active, and the baseline more than three standard deviations of the target away from it.
+    inside: within the constraint interval; True without one.
+    """
+
+    target: Target
+    baseline: float
+    final: float
+
+    @property
+    def percent(self) -> float:
+        """100 (1 - |final - target| / |baseline - target|); nan for a baseline on target."""
+        before = abs(self.baseline - self.target.value)
+        if before == 0.0:
+            return math.nan
+        return 100.0 * (1.0 - abs(self.final - self.target.value) / before)
+
+    @property
+    def counts(self) -> bool:
+        """Whether it enters the mean."""
+        distance = abs(self.baseline - self.target.value)
+        return self.target.active and distance > SIGNIFICANT * self.target.sd and distance > 0.0
+
+    @property
+    def inside(self) -> bool:
+        """Whether the final value lies in the constraint interval."""
+        c = self.target.constraint
+        return c is None or c.low <= self.final <= c.high
+
+
+def improvements(targets: Targets, baseline: Score, final: Score) -> list[Improvement]:
+    """One entry a target, in its order."""
+    return [
+        Improvement(t, float(b), float(f))
+        for t, b, f in zip(targets.characteristics, baseline.values, final.values, strict=True)
+    ]
+
+
+def mean_improvement(entries: list[Improvement]) -> float:
+    """Mean percent over those that count; nan when none does."""
+    counted = [e.percent for e in entries if e.counts]
+    return sum(counted) / len(counted) if counted else math.nan

@@ -1,0 +1,51 @@
+"""The `[[characteristics]]` and `[[curves]]` tables of a study."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from doe_kc.axle.schema import Finite, NotNegative, Positive, Strict
+
+Goal = Literal["target", "minimize", "maximize"]
+
+
+class CharacteristicOptions(Strict):
+    """What differs for the characteristics whose id matches a glob; later entries win.
+
+    target, sd: in place of the measured value and its standard error (a concept's requirement, another
+    car's figure). objective, constraint: in place of Appendix B's flags. low, high: constraint interval
+    in place of equations 5.1 and 5.2. goal: what the objective is: the distance to the target, or the
+    value itself made small or large. linear, quadratic, norm: LinWt, QuadWt, Norm of the objective, those
+    with `constraint_` of the constraint (equation 2.2).
+    """
+
+    match: str
+    target: Finite | None = None
+    sd: NotNegative | None = None
+    objective: bool | None = None
+    constraint: bool | None = None
+    low: Finite | None = None
+    high: Finite | None = None
+    goal: Goal | None = None
+    linear: NotNegative | None = None
+    quadratic: NotNegative | None = None
+    norm: Positive | None = None
+    constraint_linear: NotNegative | None = None
+    constraint_quadratic: NotNegative | None = None
+    constraint_norm: Positive | None = None
+
+
+class CurveOptions(Strict):
+    """The same for whole curves, matched as `load_case.response` ("vertical.toe"); RMS by equation 2.1."""
+
+    match: str
+    objective: bool | None = None
+    linear: NotNegative | None = None
+    quadratic: NotNegative | None = None
+    norm: Positive | None = None
+
+
+Characteristics = Annotated[list[CharacteristicOptions], Field(default=[])]
+Curves = Annotated[list[CurveOptions], Field(default=[])]

@@ -1,0 +1,79 @@
+"""The performance rating of a design (thesis, equation 2.2).
+
+sum_i (LinWt_i S_i Obj_i / Norm_i + QuadWt_i S_i Obj_i^2 / Norm_i^2)
+- sum_j (LinWt_j ConViol_j / Norm_j + QuadWt_j ConViol_j^2 / Norm_j^2)
+
+0 = every target met exactly (with the default goals), the more negative the worse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.targets.score import Score
+from doe_kc.targets.target import Constraint, Objective, Targets
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Rating:
+    """A design's rating and its terms, all of them summed in `total`.
+
+    objectives, constraints: (k,) of the characteristics, 0 without one. curves: (c,).
+    violation: (k,) ConViol in the characteristic's unit, 0 where met.
+    """
+
+    objectives: FloatArray
+    constraints: FloatArray
+    curves: FloatArray
+    violation: FloatArray
+
+    @property
+    def total(self) -> float:
+        """Equation 2.2."""
+        return float(self.objectives.sum() + self.constraints.sum() + self.curves.sum())
+
+    @property
+    def feasible(self) -> bool:
+        """Whether every constraint is met."""
+        return not self.violation.any()
+
+
+def rate(targets: Targets, found: Score) -> Rating:
+    """Rating of one design from its values and RMS deviations; nan values give nan."""
+    pairs = list(zip(targets.characteristics, found.values, strict=True))
+    violation = np.array([0.0 if t.constraint is None else violated(t.constraint, v) for t, v in pairs])
+    return Rating(
+        objectives=np.array(
+            [0.0 if t.objective is None else objective_term(t.objective, v, t.value) for t, v in pairs]
+        ),
+        constraints=np.array(
+            [
+                0.0 if t.constraint is None else constraint_term(t.constraint, x)
+                for (t, _), x in zip(pairs, violation, strict=True)
+            ]
+        ),
+        curves=np.array(
+            [objective_term(t.objective, r, 0.0) for t, r in zip(targets.curves, found.rms, strict=True)]
+        ),
+        violation=violation,
+    )
+
+
+def objective_term(objective: Objective, value: float, target: float) -> float:
+    """LinWt S Obj / Norm + QuadWt S Obj^2 / Norm^2."""
+    size = (abs(value - target) if objective.goal == "target" else value) / objective.norm
+    return float(objective.sign * (objective.linear * size + objective.quadratic * size**2))
+
+
+def violated(constraint: Constraint, value: float) -> float:
+    """ConViol: how far the value lies outside the interval, 0 inside."""
+    return float(np.maximum(np.maximum(constraint.low - value, value - constraint.high), 0.0))
+
+
+def constraint_term(constraint: Constraint, violation: float) -> float:
+    """-(LinWt ConViol / Norm + QuadWt ConViol^2 / Norm^2)."""
+    size = violation / constraint.norm
+    return float(-(constraint.linear * size + constraint.quadratic * size**2))

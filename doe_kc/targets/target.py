@@ -1,0 +1,136 @@
+"""Targets of a correlation: characteristics with objective and constraint, and measured curves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic
+from doe_kc.curves import CurveSet
+from doe_kc.targets.options import Goal
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Objective:
+    """LinWt, QuadWt and Norm of one objective of equation 2.2; norm in the unit of the objective.
+
+    goal "target": Obj = |value - target|, S = -1; "minimize": Obj = value, S = -1; "maximize": S = +1.
+    """
+
+    goal: Goal = "target"
+    linear: float = 1.0
+    quadratic: float = 0.0
+    norm: float = 1.0
+
+    @property
+    def sign(self) -> float:
+        """S of equation 2.2."""
+        return 1.0 if self.goal == "maximize" else -1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constraint:
+    """The interval that the value must lie in, and LinWt, QuadWt, Norm of its violation."""
+
+    low: float
+    high: float
+    linear: float = 0.0
+    quadratic: float = 10000.0
+    norm: float = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Target:
+    """One characteristic's target, in its unit. sd: standard deviation of the target, 0 when exact."""
+
+    entry: Characteristic
+    value: float
+    sd: float
+    objective: Objective | None = None
+    constraint: Constraint | None = None
+
+    @property
+    def active(self) -> bool:
+        """Whether the correlation works on it; the others are followed only."""
+        return self.objective is not None or self.constraint is not None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveTarget:
+    """A measured mean curve of both wheels that the model's shall follow.
+
+    input: (n,) load-case input in `input_unit`. curve: (2, n) left and right, response's unit. noise: its
+    RMS standard deviation, below which two curves do not differ.
+    """
+
+    load_case: str
+    response: str
+    input_unit: str
+    input: FloatArray
+    curve: FloatArray
+    noise: float
+    objective: Objective
+
+    @property
+    def id(self) -> str:
+        """`load_case.response`."""
+        return f"{self.load_case}.{self.response}"
+
+
+@dataclass(frozen=True)
+class Targets:
+    """All targets. Characteristics that have a target but are not `active` are followed only."""
+
+    characteristics: tuple[Target, ...]
+    curves: tuple[CurveTarget, ...]
+    source: str
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """(k,) places of the targets' characteristics in the registry."""
+        order = list(CHARACTERISTICS)
+        return np.array([order.index(t.entry.id) for t in self.characteristics], dtype=int)
+
+    @property
+    def values(self) -> FloatArray:
+        """(k,) target values."""
+        return np.array([t.value for t in self.characteristics])
+
+    @property
+    def active(self) -> np.ndarray:
+        """(k,) bool."""
+        return np.array([t.active for t in self.characteristics], dtype=bool)
+
+    def scaled_curves(self, curves: CurveSet) -> FloatArray:
+        """(N,) the model's curves at the measured inputs, left and right, each point over Norm sqrt(2 n).
+
+        The distance of two such vectors within one curve's block is its RMS over Norm.
+        KeyError for a curve that the model lacks.
+        """
+        blocks = [_scaled(t, sampled(t, curves)) for t in self.curves]
+        return np.concatenate(blocks) if blocks else np.zeros(0)
+
+    @cached_property
+    def scaled_targets(self) -> FloatArray:
+        """(N,) the measured curves, scaled alike."""
+        blocks = [_scaled(t, t.curve) for t in self.curves]
+        return np.concatenate(blocks) if blocks else np.zeros(0)
+
+    @cached_property
+    def blocks(self) -> tuple[slice, ...]:
+        """Where each curve lies in the scaled vector."""
+        ends = np.cumsum([0] + [t.curve.size for t in self.curves])
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+
+
+def sampled(target: CurveTarget, curves: CurveSet) -> FloatArray:
+    case = curves.cases[target.load_case]
+    return np.array([np.interp(target.input, case.input, row) for row in case.mean[target.response]])
+
+
+def _scaled(target: CurveTarget, curve: FloatArray) -> FloatArray:
+    return np.asarray(curve.ravel() / (target.objective.norm * np.sqrt(curve.size)))

@@ -1,0 +1,81 @@
+"""The package's own solver behind the protocol."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+from doe_kc import __version__
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import with_values
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import library_for, solve
+from doe_kc.solver.topology import Topology
+from doe_kc.true_solver.outcome import Outcome, failure, from_curves
+from doe_kc.true_solver.protocol import TrueSolver, Values
+
+COMPILE_FROM = 50
+"""Designs of one topology from which compiling it, some seconds, pays."""
+
+
+@dataclass(frozen=True)
+class AxleSolver(TrueSolver):
+    """windows: as in `reduce_all`. compiled: topologies to run compiled where that is possible.
+
+    asked: how many designs of each topology have been announced by `prepare`.
+    """
+
+    axle: Axle
+    windows: Mapping[str, float] = field(default_factory=dict)
+    compiled: frozenset[Topology] = frozenset()
+    asked: Mapping[Topology, int] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        return "doe_kc"
+
+    @property
+    def quick(self) -> bool:
+        return True
+
+    @property
+    def exact(self) -> bool:
+        return True
+
+    def describe(self) -> dict[str, str]:
+        return {"solver": f"{self.name} {__version__}", **describe_axle(self.axle)}
+
+    def prepare(self, designs: Sequence[Values]) -> AxleSolver:
+        """Compiles the axle's own topology, and those that enough designs switch to (a strut made flexible).
+
+        In this process, so that forked workers inherit the equations and none compiles for itself.
+        """
+        asked = Counter(self.asked)
+        asked.update(with_values(self.axle, values).topology for values in designs)
+        compiled = {self.axle.topology} | {t for t, n in asked.items() if n >= COMPILE_FROM}
+        for topology in compiled - self.compiled:
+            library_for(topology, None)
+        return replace(self, compiled=frozenset(compiled), asked=dict(asked))
+
+    def evaluate(self, values: Values) -> Outcome:
+        """All load cases of the axle; InputError for an unknown path or a value that no axle can have."""
+        started = time.perf_counter()
+        changed = with_values(self.axle, values)
+        solution = solve(changed, throw=False, compiled=None if changed.topology in self.compiled else False)
+        seconds = time.perf_counter() - started
+        if solution.failure is not None:
+            return failure(str(solution.failure), seconds)
+        return from_curves(curve_set(solution), self.windows, seconds)
+
+
+def describe_axle(axle: Axle) -> dict[str, str]:
+    """Every fact of a model: topology, load cases, followers, effects, and each number."""
+    facts = {
+        "topology": repr(axle.topology),
+        "followers": repr(sorted(axle.follow.items())),
+        "effects": repr(sorted((name, sorted(o.items())) for name, o in axle.effects.items())),
+    }
+    facts |= {f"load case {ident}": repr(case) for ident, case in axle.load_cases.items()}
+    return facts | {name: repr(float(value)) for name, value in axle.values.items()}

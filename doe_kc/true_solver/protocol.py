@@ -1,0 +1,61 @@
+"""What a campaign asks of a solver."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+from doe_kc.true_solver.outcome import Outcome
+
+Values = Mapping[str, float]
+
+
+class TrueSolver(Protocol):
+    """Parameter values in, curves or a reason out. Picklable: it goes to worker processes."""
+
+    @property
+    def name(self) -> str:
+        """A word or two for messages and records."""
+        ...
+
+    @property
+    def windows(self) -> Mapping[str, float]:
+        """Load case -> half-width of the fit window in its input unit, where not the default."""
+        return {}
+
+    @property
+    def quick(self) -> bool:
+        """Whether a run costs so little that one or two are not worth another process."""
+        return False
+
+    @property
+    def exact(self) -> bool:
+        """Whether exact sensitivities of its answers are to be had from the axle."""
+        return False
+
+    def describe(self) -> dict[str, str]:
+        """Everything that decides its answers apart from the design and the fit windows, by name."""
+        ...
+
+    def fingerprint(self) -> str:
+        """Hash of what `describe` says: stored evaluations of another fingerprint are not these."""
+        return digest(self.describe())
+
+    def prepare(self, designs: Sequence[Values]) -> TrueSolver:
+        """The solver to use for these designs; may do one-off work such as compiling, in this process."""
+        return self
+
+    def evaluate(self, values: Values) -> Outcome:
+        """One design: path -> absolute value. Failure is a value.
+
+        InputError for a path that there is not; RunError when no design could be run.
+        """
+        ...
+
+
+def digest(description: Mapping[str, str]) -> str:
+    """SHA-256 of a description, 64 hex digits."""
+    text = json.dumps(sorted(description.items()), ensure_ascii=False)
+    return hashlib.sha256(text.encode()).hexdigest()
