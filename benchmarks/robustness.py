@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import tempfile
 import time
 from collections import Counter
+from pathlib import Path
 
 from _common import example_axle, machine, publish
 
-from doe_kc.axle import design_parameters
-from doe_kc.sampling.batch import available_cores, evaluate_all
-from doe_kc.sampling.latin_hypercube import latin_hypercube
+from doe_kc.campaign.processes import available_cores
+from doe_kc.campaign.runner import Campaign
+from doe_kc.sampling import sample
+from doe_kc.true_solver.own import AxleSolver
+from doe_kc.variables import VariableOptions, build_space
 
 
 def main() -> None:
@@ -19,12 +23,13 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     axle = example_axle()
-    parameters = [p for p in design_parameters(axle) if p.active]
-    design = latin_hypercube(parameters, arguments.n, seed=arguments.seed)
+    space = build_space(axle, VariableOptions(levels="continuous"), "benchmark")
+    design = sample(space, arguments.n, seed=arguments.seed)
     started = time.perf_counter()
-    results = evaluate_all(axle, list(design.rows()))
+    with tempfile.TemporaryDirectory() as folder, Campaign(AxleSolver(axle), Path(folder, "s")) as campaign:
+        results = campaign.evaluate(list(design.rows()), "benchmark", curves=False)
     seconds = time.perf_counter() - started
-    failed = Counter(e.reason for e in results if e.reason)
+    failed = Counter(o.reason for o in results if o.failed)
     share = 100.0 * (1 - sum(failed.values()) / arguments.n)
     publish(
         "robustness",
@@ -32,7 +37,7 @@ def main() -> None:
             "# Robustness",
             "",
             f"{arguments.n} Latin-hypercube designs (seed {arguments.seed}) over the default bounds of "
-            f"{len(parameters)} parameters, all eight load cases in both directions.",
+            f"{space.dimension} parameters, all eight load cases in both directions.",
             "",
             f"- converged: {share:.3f} % ({sum(failed.values())} failures)",
             f"- {seconds:.1f} s over {available_cores()} processes, "

@@ -18,18 +18,20 @@ import numpy as np
 from _common import example_axle, machine, publish
 from scipy.optimize import root
 
-from doe_kc.axle import design_parameters
+from doe_kc.axle import Axle
 from doe_kc.axle.parameters import settable_paths
+from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import reduce_all
 from doe_kc.effects import apply_effect
-from doe_kc.sampling.batch import evaluate_all
-from doe_kc.sampling.latin_hypercube import latin_hypercube
+from doe_kc.sampling import sample
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.march import Path, Settings
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.static import static_state
 from doe_kc.solver.suite import library_for, solve
+from doe_kc.true_solver.own import AxleSolver
+from doe_kc.variables import VariableOptions, build_space
 
 FIRST_CALL = """
 import time
@@ -48,6 +50,12 @@ def median_ms(run: Callable[[], object], repeats: int) -> float:
         run()
         times.append(1e3 * (time.perf_counter() - started))
     return statistics.median(times)
+
+
+def campaign(axle: Axle, designs: list[dict[str, float]], workers: int) -> None:
+    """Every design solved, reduced and stored in memory."""
+    with Campaign(AxleSolver(axle), workers=workers) as running:
+        running.evaluate(designs, "benchmark", curves=False)
 
 
 def function_us(name: str) -> float:
@@ -130,9 +138,8 @@ def main() -> None:
     rubbing = apply_effect(rubbing, "strut_friction", {}, source="benchmark")
     looped, loop_paths = solve(rubbing), settable_paths(rubbing)
     along = median_ms(lambda: sensitivities(rubbing, looped, loop_paths), 5)
-    parameters = [p for p in design_parameters(axle) if p.active]
-    rows = list(latin_hypercube(parameters, 400, seed=3).rows())
-    batch = {w: median_ms(lambda w=w: evaluate_all(axle, rows, workers=w), 1) / len(rows) for w in (1, 2)}
+    rows = list(sample(build_space(axle, VariableOptions(), "benchmark"), 400, seed=3).rows())
+    batch = {w: median_ms(lambda w=w: campaign(axle, rows, w), 1) / len(rows) for w in (1, 2)}
     scipy = 1e3 * scipy_seconds()
     publish(
         "solver_speed",

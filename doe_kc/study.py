@@ -12,11 +12,14 @@ from pydantic import Field
 
 from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
 from doe_kc.axle.schema import Positive, Strict
+from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
 from doe_kc.sampling.options import SamplingOptions
 from doe_kc.solver.load_cases import LOAD_CASES
 from doe_kc.surrogates.options import SurrogateOptions
+from doe_kc.targets.names import check_names
+from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.variables import Space, VariableOptions, build_space
 
@@ -44,6 +47,9 @@ class StudyFile(Strict):
     variables: VariableOptions = VariableOptions()
     sampling: SamplingOptions = SamplingOptions()
     surrogates: SurrogateOptions = SurrogateOptions()
+    characteristics: list[CharacteristicOptions] = Field(default=[])
+    curves: list[CurveOptions] = Field(default=[])
+    correlation: CorrelationOptions = CorrelationOptions()
 
 
 @dataclass(frozen=True)
@@ -68,6 +74,9 @@ class Study:
     variables: VariableOptions
     sampling: SamplingOptions
     surrogates: SurrogateOptions
+    characteristics: tuple[CharacteristicOptions, ...]
+    curves: tuple[CurveOptions, ...]
+    correlation: CorrelationOptions
 
     @property
     def folder(self) -> Path:
@@ -107,6 +116,7 @@ def read_study(
     folder = source.parent
     axle = read_axle(folder / file.axle)
     _check_windows(file.windows, axle, str(source))
+    check_names(file.characteristics, file.curves, str(source))
     own = folder / file.measurement if file.measurement is not None else None
     return Study(
         name=file.name or folder.resolve().name,
@@ -123,6 +133,9 @@ def read_study(
         variables=file.variables,
         sampling=file.sampling,
         surrogates=file.surrogates,
+        characteristics=tuple(file.characteristics),
+        curves=tuple(file.curves),
+        correlation=file.correlation,
     )
 
 

@@ -17,3 +17,6 @@ OutOption = Annotated[Path | None, typer.Option(help="Folder for all results, in
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the figures to this JSON file.")]
 WorkersOption = Annotated[int | None, typer.Option(min=1, help="Worker processes; default one per core.")]
 SeedOption = Annotated[int | None, typer.Option(min=0, help="Seed, in place of the study's.")]
+SchedulerOption = Annotated[
+    str | None, typer.Option(help="Address of a Dask scheduler, such as tcp://host:8786.")
+]

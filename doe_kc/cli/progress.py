@@ -20,12 +20,19 @@ from rich.text import Text
 
 class _Rate(ProgressColumn):
     def render(self, task: Task) -> Text:
-        return Text(f"{task.speed:.0f}/s" if task.speed else "")
+        return Text(f"{task.speed:.3g}/s" if task.speed else "")
 
 
 @contextmanager
 def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
     """A function that advances the bar by so many steps."""
+    with described_bar(what, total) as advance:
+        yield lambda steps: advance(steps, what)
+
+
+@contextmanager
+def described_bar(what: str, total: int) -> Iterator[Callable[[int, str], None]]:
+    """A function that advances the bar by so many steps and renames it."""
     console = Console(stderr=True)
     columns = (
         TextColumn("{task.description}"),
@@ -36,4 +43,4 @@ def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
     )
     with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
         task = progress.add_task(what, total=total)
-        yield lambda steps: progress.advance(task, steps)
+        yield lambda steps, words: progress.update(task, advance=steps, description=words)

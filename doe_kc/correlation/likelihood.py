@@ -80,9 +80,11 @@ class Likelihood:
         """M, the number of data."""
         return sum(c.size for c in self.curves) + len(self.figures)
 
-    def residual(self, curves: CurveSet, characteristics: FloatArray) -> FloatArray:
+    def residual(self, curves: CurveSet | None, characteristics: FloatArray) -> FloatArray:
         """(M,) whitened residual of a model; KeyError for a load case that it lacks."""
-        parts = [c.whitened(_model(c, curves) - c.value) for c in self.curves]
+        if curves is None and self.size > sum(f.row >= 0 for f in self.figures):
+            raise ValueError("the model gives no curves to compare with the measured ones")
+        parts = [c.whitened(_model(c, curves) - c.value) for c in self.curves if curves is not None]
         scalars = [(_scalar(f, curves, characteristics) - f.value) / f.sd for f in self.figures]
         return np.concatenate([*parts, np.array(scalars)])
 
@@ -102,19 +104,24 @@ class Likelihood:
 
 
 def build_likelihood(
-    axle: Axle, measurement: Measurement, targets: Targets, *, only_targets: bool = False
+    axle: Axle, measurement: Measurement | None, targets: Targets, *, only_targets: bool = False
 ) -> Likelihood:
-    """Data of the records, within the sweeps of the model.
+    """Data of the records, within the sweeps of the model, and the targets that were typed in.
 
     only_targets: curves that are objectives only. A typed target replaces the curve that its
     characteristic is read off.
     """
-    typed = [t for t in targets.characteristics if t.value != measurement.characteristics[t.entry.id].value]
+    measured = {} if measurement is None else measurement.characteristics
+    typed = [
+        t
+        for t in targets.characteristics
+        if t.entry.id not in measured or t.value != measured[t.entry.id].value
+    ]
     replaced = {(t.entry.load_case, t.entry.response) for t in typed}
     wanted = {(c.load_case, c.response) for c in targets.curves}
     curves = [
         c
-        for c in _measured(axle, measurement)
+        for c in ([] if measurement is None else _measured(axle, measurement))
         if (c.load_case, c.response) not in replaced
         and (not only_targets or (c.load_case, c.response) in wanted)
     ]
@@ -124,7 +131,8 @@ def build_likelihood(
         for t in typed
         if t.active
     ]
-    statics = [f for f in _static(measurement) if ("static", f.response) not in replaced]
+    static = [] if measurement is None else list(_static(measurement))
+    statics = [f for f in static if ("static", f.response) not in replaced]
     return Likelihood(tuple(curves), (*statics, *figures))
 
 
@@ -188,10 +196,10 @@ def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> Floa
     return np.asarray(rows[right - 1] + share[:, None] * (rows[right] - rows[right - 1]))
 
 
-def _scalar(figure: Figure, curves: CurveSet, characteristics: FloatArray) -> float:
+def _scalar(figure: Figure, curves: CurveSet | None, characteristics: FloatArray) -> float:
     if figure.row >= 0:
         return float(characteristics[figure.row])
-    if curves.static is None:
+    if curves is None or curves.static is None:
         raise KeyError("the model gives no static angles")
     return float(curves.static[figure.response][figure.side])
 

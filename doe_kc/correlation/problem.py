@@ -65,13 +65,13 @@ class Evaluated:
 class Problem:
     """axle: the model that points are applied to. exact: whether its sensitivities can be had.
 
-    likelihood: the records as data with errors; None when targets are typed only.
+    likelihood: records and typed targets as data with errors.
     """
 
     axle: Axle
     space: Space
     targets: Targets
-    likelihood: Likelihood | None
+    likelihood: Likelihood
     windows: Mapping[str, float]
     exact: bool
 

@@ -9,13 +9,15 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, with_values
+from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
 from doe_kc.errors import RunError
 from doe_kc.influence.result import Influence
-from doe_kc.sampling.batch import Evaluation, evaluate_all
 from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
+from doe_kc.true_solver.outcome import Outcome
+from doe_kc.true_solver.own import AxleSolver
 from doe_kc.typing import FloatArray
 
 NEARLY_RIGID = 1e-3
@@ -39,13 +41,13 @@ def influence_study(
     started = time.perf_counter()
     rows = list(parameters) if parameters is not None else design_parameters(axle)
     columns = list(characteristics) if characteristics is not None else appendix_c()
-    evaluations = evaluate_all(
-        axle, list(one_at_a_time(rows).rows()), workers=workers, windows=windows, progress=progress
-    )
-    if evaluations[0].reason:
-        raise RunError(f"the nominal axle cannot be solved: {evaluations[0].reason}")
+    with Campaign(AxleSolver(axle, dict(windows or {})), workers=workers) as campaign:
+        designs = list(one_at_a_time(rows).rows())
+        outcomes = campaign.evaluate(designs, "influence", progress, curves=False)
+    if outcomes[0].failed:
+        raise RunError(f"the nominal axle cannot be solved: {outcomes[0].reason}")
     index = [list(CHARACTERISTICS).index(c.id) for c in columns]
-    values = np.array([e.characteristics[index] for e in evaluations])
+    values = np.array([o.characteristics[index] for o in outcomes])
     plus, minus = values[1::2], values[2::2].copy()
     for i, parameter in enumerate(rows):
         if is_one_sided(parameter):  # so that (plus - minus) / 2 is the whole one-sided change
@@ -58,7 +60,7 @@ def influence_study(
         minus=minus,
         exact=exact_changes(axle, rows, columns, windows),
         seconds=time.perf_counter() - started,
-        failures=_failures(rows, evaluations),
+        failures=_failures(rows, outcomes),
     )
 
 
@@ -80,10 +82,10 @@ def exact_changes(
     return np.asarray(gradients * np.array([p.step for p in rows])[:, None])
 
 
-def _failures(rows: Sequence[Parameter], evaluations: Sequence[Evaluation]) -> dict[str, str]:
+def _failures(rows: Sequence[Parameter], outcomes: Sequence[Outcome]) -> dict[str, str]:
     out = {}
     for i, parameter in enumerate(rows):
-        reasons = [e.reason for e in evaluations[1 + 2 * i : 3 + 2 * i] if e.reason]
+        reasons = [o.reason for o in outcomes[1 + 2 * i : 3 + 2 * i] if o.failed]
         if reasons:
             out[parameter.path] = reasons[0]
     return out

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
+from doe_kc.campaign.processes import available_cores, start_context
 from doe_kc.reporting import style
-from doe_kc.sampling.batch import available_cores, start_context
 
 Job = tuple[Path, Callable[[], Figure]]
 

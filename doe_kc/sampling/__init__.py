@@ -1,1 +1,27 @@
-"""Designs of experiments over the parameters of an axle."""
+"""Designs of experiments over the variables of an axle: one module a method, registered by its id."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from doe_kc.registry import import_members
+from doe_kc.sampling._base import SAMPLERS, Request, Sampler, find_sampler
+from doe_kc.sampling.design import Design
+from doe_kc.variables import Space
+
+import_members(sys.modules[__name__])
+
+__all__ = ["SAMPLERS", "Design", "Request", "Sampler", "find_sampler", "sample"]
+
+
+def sample(
+    space: Space, n: int, *, seed: int, method: str = "lhs", levels: int = 3, table: Path | None = None
+) -> Design:
+    """n designs by a registered method; the seed is kept in the design of a method that has chance in it.
+
+    levels: of each variable, for `full_factorial`. table: file of designs, for `table`. InputError for an
+    unknown method, or a space that does not suit it.
+    """
+    request = Request(n=n, seed=seed, levels=levels, table=table)
+    return find_sampler(method, "sampling").sample(space, request)

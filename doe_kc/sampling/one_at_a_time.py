@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 
 from doe_kc.axle.parameters import Parameter
+from doe_kc.sampling._base import Request, Sampler, design_of, sampler
 from doe_kc.sampling.design import Design
+from doe_kc.variables import Space, Variable
 
 
 def one_at_a_time(parameters: Sequence[Parameter]) -> Design:
@@ -31,3 +34,41 @@ def one_at_a_time(parameters: Sequence[Parameter]) -> Design:
 def is_one_sided(parameter: Parameter) -> bool:
     """True for a parameter at its lower limit of zero, which can only be raised."""
     return parameter.lower == 0.0 and parameter.nominal < parameter.step
+
+
+@sampler
+class OneAtATime(Sampler):
+    """(1 + 2 d) designs of a space: its start, then every variable its parameter's step up and down.
+
+    Within the bounds and on the levels; where these are coarser than the step, the next level.
+    """
+
+    id: ClassVar[str] = "one_at_a_time"
+    label: ClassVar[str] = "One at a time"
+    sized: ClassVar[bool] = False
+    seeded: ClassVar[bool] = False
+
+    def sample(self, space: Space, request: Request) -> Design:
+        start = space.snapped(space.start)
+        points, labels = [start], ["start"]
+        for i, variable in enumerate(space.variables):
+            for sign in (1.0, -1.0):
+                point = start.copy()
+                point[i] = stepped(variable, float(start[i]), sign)
+                points.append(point)
+                labels.append(_label(variable, float(start[i]), float(point[i])))
+        return design_of(self.id, space, np.array(points), labels)
+
+
+def stepped(variable: Variable, start: float, sign: float) -> float:
+    """u of a variable, in [0, 1], one step up or down from the u of its start."""
+    value = variable.value(start) + sign * variable.parameter.step
+    u = variable.snapped(variable.place(min(max(value, variable.lower), variable.upper)))
+    if u == start and variable.levels is not None:
+        u = start + sign / (variable.levels - 1)
+    return min(max(u, 0.0), 1.0)
+
+
+def _label(variable: Variable, start: float, u: float) -> str:
+    change = variable.value(u) - variable.value(start)
+    return f"{variable.path} {change:+.6g} {variable.unit}".removesuffix(" -")

@@ -10,8 +10,12 @@ from doe_kc.axle.schema import Strict
 
 
 class SamplingOptions(Strict):
-    """method: id of a registered sampler; n: number of designs; table: CSV or Excel file of designs."""
+    """method: id of a registered sampler; n: number of designs, for the methods that take one.
+
+    levels: of each variable in a full factorial. table: CSV or Excel file of designs, relative to the study.
+    """
 
     method: str = "lhs"
     n: Annotated[int, Field(ge=1)] = 100
+    levels: Annotated[int, Field(ge=2)] = 3
     table: str | None = None

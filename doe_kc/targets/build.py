@@ -14,8 +14,9 @@ from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.comparison.interval import FLOOR, constraint_interval
 from doe_kc.curves import RIG_RESPONSES, CaseCurves
-from doe_kc.errors import InputError, nearest
+from doe_kc.errors import InputError
 from doe_kc.measurement import Measurement
+from doe_kc.targets.names import check_names
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
 
@@ -38,7 +39,7 @@ def build_targets(
     curve, to its range; curves are objectives where a characteristic is read off them that is one.
     InputError for unknown names, an interval without its target, or no objective at all.
     """
-    _check_names(characteristics, curves, source)
+    check_names(characteristics, curves, source)
     found = list(_targets(measurement, characteristics, source))
     wanted = {(t.entry.load_case, t.entry.response) for t in found if t.objective is not None}
     lines = tuple(_curves(axle, measurement, curves, wanted)) if measurement is not None else ()
@@ -147,24 +148,6 @@ def reached(axle: Axle, case: CaseCurves) -> NDArray[np.bool_]:
     inputs = ours.inputs()
     slack = 1e-9 * np.abs(inputs).max()
     return np.asarray((case.input >= inputs.min() - slack) & (case.input <= inputs.max() + slack))
-
-
-def _check_names(
-    characteristics: Sequence[CharacteristicOptions], curves: Sequence[CurveOptions], source: str
-) -> None:
-    from doe_kc.solver.load_cases import LOAD_CASES
-
-    lines = [f"{case}.{response}" for case in LOAD_CASES for response in RIG_RESPONSES]
-    for what, options, known in (
-        ("characteristics", characteristics, list(CHARACTERISTICS)),
-        ("curves", curves, lines),
-    ):
-        for option in options:
-            if not any(fnmatchcase(name, option.match) for name in known):
-                raise InputError(
-                    f"{source}: {what}: match = {option.match!r} fits none; expected an id or glob such as "
-                    f"{known[0]} or {known[0].split('.')[0]}.*.{nearest(option.match, known)}"
-                )
 
 
 def last(options: Sequence[CharacteristicOptions] | Sequence[CurveOptions], key: str) -> Any:

@@ -19,13 +19,13 @@ from doe_kc.true_solver.answer import Unreadable, read_characteristics, read_cur
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
 from doe_kc.true_solver.own import describe_axle
 from doe_kc.true_solver.process import Ended, run_command
-from doe_kc.true_solver.protocol import TrueSolver, Values
+from doe_kc.true_solver.protocol import Values, digest
 
 PARAMETERS = "parameters.json"
 
 
 @dataclass(frozen=True)
-class CommandSolver(TrueSolver):
+class CommandSolver:
     """command: words; `{folder}` and `{parameters}` stand for the run's folder and its parameters.json.
 
     axle: the model whose parameters the designs set; it gives units, load cases and the half track.
@@ -44,6 +44,14 @@ class CommandSolver(TrueSolver):
     def name(self) -> str:
         return Path(self.command[0]).name
 
+    @property
+    def quick(self) -> bool:
+        return False
+
+    @property
+    def exact(self) -> bool:
+        return False
+
     def describe(self) -> dict[str, str]:
         """Files of the study's folder that the command names count by their content."""
         words = {f"command word {i + 1}": self._said(word) for i, word in enumerate(self.command)}
@@ -56,6 +64,9 @@ class CommandSolver(TrueSolver):
             return f"{word} {hashlib.sha256(file.read_bytes()).hexdigest()[:16]}" if file.is_file() else word
         except OSError:
             return word
+
+    def fingerprint(self) -> str:
+        return digest(self.describe())
 
     def prepare(self, designs: Sequence[Values]) -> CommandSolver:
         """InputError for a parameter that the axle does not have."""
@@ -85,9 +96,10 @@ class CommandSolver(TrueSolver):
         if ended.failure:
             return failure(f"{self.name} {ended.failure}{_said_last(ended)}")
         try:
-            return self._answer(place, values)
+            outcome = self._answer(place, values)
         except Unreadable as problem:
-            return failure(f"{self.name}: {problem}{_said_last(ended)}")
+            outcome = failure(str(problem))
+        return failure(f"{self.name}: {outcome.reason}{_said_last(ended)}") if outcome.failed else outcome
 
     def _ended(self, place: Path) -> Ended:
         marks = {"{folder}": str(place), "{parameters}": str(place / PARAMETERS)}
@@ -118,7 +130,9 @@ class CommandSolver(TrueSolver):
 
 def parameters_document(values: Values) -> str:
     """`{"parameters": {path: value}, "units": {path: unit}}`, every digit of the values."""
-    return json.dumps({"parameters": dict(values), "units": {path: unit_of(path) for path in values}}, indent=1)
+    return json.dumps(
+        {"parameters": dict(values), "units": {path: unit_of(path) for path in values}}, indent=1
+    )
 
 
 def unit_of(path: str) -> str:

@@ -32,7 +32,6 @@ class SolverOptions(Strict):
     def _are_known(cls, cases: list[str]) -> list[str]:
         for case in cases:
             if case not in LOAD_CASES:
-                raise ValueError(
-                    f"{case} is not a load case; known are {', '.join(LOAD_CASES)}.{nearest(case, LOAD_CASES)}"
-                )
+                known = ", ".join(LOAD_CASES)
+                raise ValueError(f"{case} is no load case; known are {known}.{nearest(case, LOAD_CASES)}")
         return cases

@@ -14,14 +14,14 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import library_for, solve
 from doe_kc.solver.topology import Topology
 from doe_kc.true_solver.outcome import Outcome, failure, from_curves
-from doe_kc.true_solver.protocol import TrueSolver, Values
+from doe_kc.true_solver.protocol import Values, digest
 
 COMPILE_FROM = 50
 """Designs of one topology from which compiling it, some seconds, pays."""
 
 
 @dataclass(frozen=True)
-class AxleSolver(TrueSolver):
+class AxleSolver:
     """windows: as in `reduce_all`. compiled: topologies to run compiled where that is possible.
 
     asked: how many designs of each topology have been announced by `prepare`.
@@ -46,6 +46,9 @@ class AxleSolver(TrueSolver):
 
     def describe(self) -> dict[str, str]:
         return {"solver": f"{self.name} {__version__}", **describe_axle(self.axle)}
+
+    def fingerprint(self) -> str:
+        return digest(self.describe())
 
     def prepare(self, designs: Sequence[Values]) -> AxleSolver:
         """Compiles the axle's own topology, and those that enough designs switch to (a strut made flexible).

@@ -69,7 +69,9 @@ def _case(
         raise Unreadable(f"curves.csv: load case {case} holds text among its numbers") from None
     bad = np.argwhere(~np.isfinite(numbers))
     if bad.size:
-        raise Unreadable(f"curves.csv: load case {case}, {needed.columns[bad[0][1]]} is missing or not finite")
+        raise Unreadable(
+            f"curves.csv: load case {case}, {needed.columns[bad[0][1]]} is missing or not finite"
+        )
     grid, mean, half = _branches(case, rows, columns)
     zero = int(np.argmin(np.abs(grid)))
     static = {name: mean[name][:, zero] for name in ANGLES if name in mean}
@@ -143,8 +145,8 @@ def _check_grid(curves: CaseCurves, window: float | None) -> None:
         raise Unreadable(f"curves.csv: load case {case} has no point at input 0")
     if inside.sum() < FEWEST_POINTS or grid[0] >= 0 or grid[-1] <= 0:
         raise Unreadable(
-            f"curves.csv: load case {case} has {inside.sum()} points from {grid[0]:g} to {grid[-1]:g} {unit}, "
-            f"too few within the fit window of +-{limit:g} {unit}; cut off?"
+            f"curves.csv: load case {case} has {inside.sum()} points from {grid[0]:g} to {grid[-1]:g} {unit}"
+            f", too few within the fit window of +-{limit:g} {unit}; cut off?"
         )
     if min(-grid[0], grid[-1]) < limit * (1.0 - NEARLY):
         raise Unreadable(

@@ -38,7 +38,7 @@ def build_space(axle: Axle, options: VariableOptions, source: str, *, advice: Ad
     for path in chosen:
         changes = [c for c in options.change if fnmatchcase(path, c.match)]
         value, leader = _last(changes, "fixed"), _last(changes, "tie")
-        parameter = known.get(path) or _plain_parameter(axle, path)
+        parameter = known.get(path) or plain_parameter(axle, path)
         if value is not None:
             fixed[path] = value
         elif leader is not None:
@@ -108,7 +108,7 @@ def _settable(axle: Axle, path: str) -> bool:
     return True
 
 
-def _plain_parameter(axle: Axle, path: str) -> Parameter:
+def plain_parameter(axle: Axle, path: str) -> Parameter:
     """A settable value that is no design parameter: it has no bounds until a change gives some."""
     value = parameter_value(axle, path)
     name = path.split(".", 1)[1] if path.startswith(("left.", "right.")) else path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,6 +63,12 @@ class Space:
     def prior_sd(self) -> FloatArray:
         """(d,) standard deviation of each variable before any measurement."""
         return np.array([v.prior_sd for v in self.variables])
+
+    def started(self, values: Mapping[str, float]) -> Space:
+        """The space about other starts (absolute): bounds shift with them; what is no variable is fixed."""
+        moved = tuple(v.started(values[v.path]) if v.path in values else v for v in self.variables)
+        held = {path: value for path, value in values.items() if path not in self.paths}
+        return replace(self, variables=moved, fixed={**(self.fixed or {}), **held})
 
     def values(self, unit: FloatArray) -> dict[str, float]:
         """Path -> absolute value of every variable, tied and fixed parameter at a point (d,)."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import ndtr, ndtri
@@ -42,6 +42,11 @@ class Variable:
     def unit(self) -> str:
         """The parameter's unit."""
         return self.parameter.unit
+
+    def started(self, value: float) -> Variable:
+        """The variable about another start, its bounds shifted alike."""
+        shift = value - self.start
+        return replace(self, start=value, lower=self.lower + shift, upper=self.upper + shift)
 
     def value(self, u: float) -> float:
         """Absolute value at u."""

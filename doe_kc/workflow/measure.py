@@ -23,6 +23,7 @@ from doe_kc.output import write_csv
 from doe_kc.reporting.rig_figures import write_rig_figures
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
+from doe_kc.solver.suite import solve
 from doe_kc.study import Study
 from doe_kc.workflow.scatter import vertical_scatter
 
@@ -35,6 +36,13 @@ class Reduced:
 
     measurement: Measurement
     ride_height: RideHeight | None
+
+
+def study_records(study: Study, solution: Solution | None = None) -> Reduced | None:
+    """The study's reduced records; None when it names no measurement. solution: of its axle, if solved."""
+    if study.measurement is None:
+        return None
+    return reduce_records(study, solution if solution is not None else solve(study.axle))
 
 
 def reduce_records(study: Study, solution: Solution) -> Reduced:

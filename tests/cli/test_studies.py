@@ -11,7 +11,6 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from doe_kc.sampling import batch
 from doe_kc.solver.load_cases import CASE_ORDER
 from tests.cli.runner import FEW, fails, invoke, leftovers, succeeds, write_study
 from tests.reference import EXAMPLE
@@ -139,10 +138,7 @@ def numbers(document: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_influence_is_the_same_with_one_worker_and_two(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(batch, "CHUNK", 2)
+def test_influence_is_the_same_with_one_worker_and_two(tmp_path: Path) -> None:
     study = write_study(tmp_path)
     results = []
     for workers in (1, 2):

@@ -1,8 +1,6 @@
-"""One at a time and Latin hypercube."""
+"""One at a time over parameters, and the slices of a Latin hypercube."""
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,8 +9,10 @@ from hypothesis import strategies as st
 
 from doe_kc.axle import design_parameters, with_values
 from doe_kc.axle.parameters import Parameter
-from doe_kc.sampling.latin_hypercube import latin_hypercube
+from doe_kc.sampling import sample
+from doe_kc.sampling.latin_hypercube import OPTIMIZED_UP_TO
 from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
+from doe_kc.variables import VariableOptions, build_space
 from tests.reference import nominal
 
 
@@ -67,53 +67,30 @@ def test_rows_are_axles() -> None:
         with_values(nominal(), row)
 
 
-def position(parameter: Parameter, values: np.ndarray) -> np.ndarray:
-    """Between 0 and 1 within the bounds; of factors, in the logarithm."""
-    low, high = parameter.lower, parameter.upper
-    if parameter.unit == "-" and low > 0:
-        low, high, values = np.log(low), np.log(high), np.log(values)
-    return np.asarray((values - low) / (high - low))
+SPACE = build_space(nominal(), VariableOptions(levels="continuous"), "test")
+SMALL = build_space(nominal(), VariableOptions(use=["LLF.*", "llr.Fx"], levels="continuous"), "test")
 
 
-@settings(max_examples=20, deadline=None)
-@given(st.integers(1, 60), st.integers(0, 2**32 - 1))
+@settings(max_examples=15, deadline=None)
+@given(st.sampled_from([1, 2, 5, 12, OPTIMIZED_UP_TO + 1, 300]), st.integers(0, 2**32 - 1))
 def test_every_slice_is_hit_once(n: int, seed: int) -> None:
-    rows = parameters()
-    design = latin_hypercube(rows, n, seed=seed)
-    assert design.values.shape == (n, len(rows)) and design.seed == seed and len(design.labels) == n
-    for i, parameter in enumerate(rows):
-        share = position(parameter, design.values[:, i])
-        assert (share > -1e-12).all() and (share < 1 + 1e-12).all(), parameter.path
-        slices = np.clip(np.floor(share * n + 1e-9 * (share < 1)).astype(int), 0, n - 1)
-        assert sorted(slices) == list(range(n)), parameter.path
+    space = SPACE if n > OPTIMIZED_UP_TO else SMALL
+    design = sample(space, n, seed=seed)
+    shares = np.array([space.unit(row) for row in design.rows()])
+    for i, path in enumerate(space.paths):
+        slices = np.clip(np.floor(shares[:, i] * n + 1e-9), 0, n - 1).astype(int)
+        assert sorted(slices) == list(range(n)), path
 
 
-def test_factors_are_even_in_their_logarithm() -> None:
-    rows = parameters()
-    design = latin_hypercube(rows, 1000, seed=1)
-    column = design.values[:, design.paths.index("llr.Fx")]
-    assert (column < 1.0).mean() == pytest.approx(0.5, abs=0.002)
-    assert column.min() >= 0.5 and column.max() <= 2.0
+def test_a_small_hypercube_is_more_even_than_chance() -> None:
+    from scipy.stats import qmc
+
+    design = sample(SMALL, 40, seed=1)
+    ours = qmc.discrepancy(np.array([SMALL.unit(row) for row in design.rows()]))
+    plain = [qmc.discrepancy(qmc.LatinHypercube(4, rng=s).random(40)) for s in range(10)]
+    assert ours < 0.8 * np.mean(plain)
 
 
-def test_the_seed_decides() -> None:
-    rows = parameters()
-    first, again, other = (latin_hypercube(rows, 20, seed=s) for s in (7, 7, 8))
-    np.testing.assert_array_equal(first.values, again.values)
-    assert np.abs(first.values - other.values).max() > 0
-
-
-def test_optimized_is_a_hypercube_still() -> None:
-    rows = parameters()[:4]
-    design = latin_hypercube(rows, 12, seed=3, optimize=True)
-    for i, parameter in enumerate(rows):
-        share = position(parameter, design.values[:, i])
-        assert sorted(np.floor(share * 12).astype(int)) == list(range(12))
-    again = latin_hypercube(rows, 12, seed=3, optimize=True)
-    np.testing.assert_array_equal(design.values, again.values)
-
-
-def test_a_flexibility_from_zero_is_even_as_it_is() -> None:
-    flexibility = next(p for p in parameters() if p.path == "strut.flexibility")
-    design = latin_hypercube([replace(flexibility, lower=0.0, upper=2.0)], 100, seed=1)
-    assert design.values.mean() == pytest.approx(1.0, abs=0.02) and design.values.min() >= 0.0
+def test_more_sobol_points_keep_the_first_ones() -> None:
+    few, many = (sample(SMALL, n, seed=1, method="sobol").values for n in (100, 200))
+    np.testing.assert_array_equal(few, many[:100])

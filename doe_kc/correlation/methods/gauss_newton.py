@@ -16,7 +16,6 @@ from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.methods._base import Method, Settings, register
 from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
-from doe_kc.errors import InputError
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
 
@@ -38,13 +37,7 @@ class GaussNewton(Method):
     needs_exact: ClassVar[bool] = True
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        """InputError when there are no records to fit."""
         del settings
-        if problem.likelihood is None:
-            raise InputError(
-                f"{problem.targets.source}: gauss_newton fits measured curves, and the study names no "
-                "measurement; add one or choose --method ego."
-            )
         self._problem, self._data = problem, problem.likelihood
         self._origin = problem.space.start
         self._weight = problem.space.prior_sd**-2.0
@@ -94,16 +87,13 @@ class GaussNewton(Method):
         return self._incumbent.index if self._incumbent is not None else 0
 
     def _accept(self, answer: Evaluated) -> None:
-        curves = answer.outcome.curves
-        if curves is None:
-            raise InputError("gauss_newton needs curves, and the study's solver gives none; choose ego.")
         try:
             expansion = self._problem.linearize(answer.point)
         except NotConverged as error:
             self._stopped = f"no sensitivities at the last design: {error}"
             return
         jacobian = self._data.jacobian(expansion.curves, expansion.characteristics)
-        residual = self._data.residual(curves, answer.outcome.characteristics)
+        residual = self._data.residual(answer.outcome.curves, answer.outcome.characteristics)
         self._incumbent, self._cost, self._expansion = answer, self._cost_of(answer), expansion
         self._hessian = jacobian.T @ jacobian + np.diag(self._weight)
         self._gradient = jacobian.T @ residual + self._weight * (answer.point - self._origin)
@@ -113,7 +103,7 @@ class GaussNewton(Method):
     _gradient: FloatArray
 
     def _cost_of(self, answer: Evaluated) -> float:
-        if answer.outcome.failed or answer.outcome.curves is None:
+        if answer.outcome.failed:
             return np.inf
         residual = self._data.residual(answer.outcome.curves, answer.outcome.characteristics)
         moved = answer.point - self._origin

@@ -1,0 +1,61 @@
+"""Workers of a Dask cluster, on this or other machines."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from typing import Any, ParamSpec, TypeVar
+
+from doe_kc.errors import InputError
+
+P = ParamSpec("P")
+T = TypeVar("T")
+TIMEOUT = "10s"
+PER_WORKER = 4
+FEWEST = 8
+
+
+class DaskCluster(Executor):
+    """The workers behind a scheduler; the scheduler itself runs a task again when its worker is lost.
+
+    lost: errors that mean "its workers were lost time and again".
+    """
+
+    def __init__(self, address: str) -> None:
+        self.address = address
+        self._client, self.lost = _connected(address)
+        self._executor: Executor = self._client.get_executor(pure=False)
+
+    @property
+    def workers(self) -> int:
+        """Tasks that run at once at present, and some more so that a new worker finds work."""
+        threads: list[int] = list(self._client.nthreads().values())
+        return max(FEWEST, PER_WORKER * sum(threads))
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """A future on the cluster."""
+        return self._executor.submit(fn, *args, **kwargs)
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Leave the cluster; its workers live on."""
+        self._executor.shutdown(wait=wait and not cancel_futures)  # without waiting it cancels
+        self._client.close()
+
+
+def _connected(address: str) -> tuple[Any, tuple[type[BaseException], ...]]:
+    """Client, and the errors of lost workers; InputError without the package or an answer."""
+    try:
+        distributed: Any = importlib.import_module("distributed")
+    except ImportError:
+        raise InputError(
+            f"--scheduler {address}: needs the extra `dask`; install doe-kc[dask], or leave the option out."
+        ) from None
+    try:
+        client = distributed.Client(address, timeout=TIMEOUT, set_as_default=False)
+        return client, (distributed.scheduler.KilledWorker,)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"--scheduler {address}: no Dask scheduler answers there ({str(error).splitlines()[0]}); start "
+            "one with `dask scheduler`, and give its address, such as tcp://host:8786."
+        ) from None

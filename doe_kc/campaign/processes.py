@@ -1,0 +1,102 @@
+"""Worker processes that live as long as the campaign, and end with it however it ends."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from functools import partial
+from multiprocessing.connection import wait
+from multiprocessing.context import BaseContext
+from typing import Any, ParamSpec, TypeVar
+
+P = ParamSpec("P")
+T = TypeVar("T")
+GRACE = 2.0
+"""Seconds that a worker without parent has to end what it started."""
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+def available_cores() -> int:
+    """Cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+def start_context() -> BaseContext:
+    """Fork on Linux, where it is safe: workers inherit the assembled equations; spawn elsewhere."""
+    return multiprocessing.get_context("fork" if sys.platform == "linux" else "spawn")
+
+
+class Processes(Executor):
+    """A process pool, begun with the first task, that can be made anew after a worker was lost."""
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+        self._pool: ProcessPoolExecutor | None = None
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Raises BrokenProcessPool after a worker was lost: see `renew`."""
+        if self._pool is None:
+            self._pool = ProcessPoolExecutor(self.workers, mp_context=start_context(), initializer=_begin)
+        with warnings.catch_warnings():
+            # Python 3.12 and later warn of a fork beside threads; a progress bar's holds nothing a task needs
+            warnings.filterwarnings("ignore", r"This process .* is multi-threaded", DeprecationWarning)
+            return self._pool.submit(partial(_guarded, fn), *args, **kwargs)
+
+    def renew(self) -> None:
+        """Other workers for the next task."""
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+    def abandon(self) -> None:
+        """End the workers in mid-task; commands that they wait for end too."""
+        for process in list((getattr(self._pool, "_processes", None) or {}).values()):
+            process.terminate()
+        self.renew()
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the workers; `submit` would begin anew."""
+        pool, self._pool = self._pool, None
+        if pool is not None:
+            pool.shutdown(wait=wait, cancel_futures=cancel_futures)
+
+
+def _begin() -> None:
+    """In a new worker: Ctrl-C is the parent's business, SIGTERM ends the task, one thread is enough."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _guarded(fn: Callable[..., T], *args: Any, **kwargs: Any) -> T:
+    """The task; a worker told to end in its middle ends, where a pool would go on with the next task."""
+    try:
+        return fn(*args, **kwargs)
+    except SystemExit:
+        os._exit(1)
+
+
+def _leave(_signal: int, _frame: object) -> None:
+    raise SystemExit(1)
+
+
+def _end_with_parent() -> None:
+    """A killed parent would leave its workers waiting for ever."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+    wait([parent.sentinel])
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(GRACE)
+    os._exit(1)

@@ -1,0 +1,180 @@
+"""All true-solver evaluations of a study in one SQLite file: one writer, any number of readers."""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, closing
+from pathlib import Path
+from typing import Any
+
+from doe_kc.campaign import schema
+from doe_kc.campaign.curves_codec import DamagedCurves
+from doe_kc.campaign.lock import lock
+from doe_kc.campaign.record import Packed, Record, outcome_of
+from doe_kc.campaign.sql_errors import REMOVE, in_words
+from doe_kc.errors import InputError
+from doe_kc.output import make_folder
+from doe_kc.true_solver.outcome import Outcome
+from doe_kc.true_solver.protocol import TrueSolver
+
+COLUMNS = "key, parameters, reason, characteristics, windows, seconds, origin, created, versions"
+
+
+class Store:
+    """Evaluations by key. Made by `open_store` or `read_store`; a context manager; for one thread.
+
+    path: None for a store in memory. Every `put` is on the disk when it returns.
+    """
+
+    def __init__(
+        self, connection: sqlite3.Connection, path: Path | None, meta: Mapping[str, str], held: ExitStack
+    ) -> None:
+        """held: what to give up with the store, the connection among it."""
+        self.path = path
+        self.meta = dict(meta)
+        self._connection = connection
+        self._where = _named(path)
+        self._held = held
+
+    def put(self, record: Record) -> None:
+        """Store a record, in place of one with its key; RunError when the disk is full or not writable."""
+        packed = record.packed
+        row = (
+            record.key,
+            json.dumps(dict(record.parameters)),
+            record.status,
+            packed.reason,
+            json.dumps(dict(packed.characteristics), allow_nan=False),
+            json.dumps(dict(record.windows)),
+            packed.curves,
+            packed.seconds,
+            record.origin,
+            record.created,
+            json.dumps(dict(record.versions)),
+        )
+        with in_words(self._where):
+            marks = ", ".join("?" * len(row))
+            self._connection.execute(f"INSERT OR REPLACE INTO evaluations VALUES ({marks})", row)
+
+    def status(self, key: str) -> str | None:
+        """ok, failed, or None for a design that has not been evaluated."""
+        with in_words(self._where):
+            found = self._connection.execute(
+                "SELECT status FROM evaluations WHERE key = ?", (key,)
+            ).fetchone()
+        return None if found is None else str(found[0])
+
+    def outcome(self, key: str, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
+        """What was stored, its characteristics reduced with `windows`; KeyError for a design not there.
+
+        curves: False leaves them out of the outcome, which saves memory and time.
+        """
+        with in_words(self._where):
+            row = self._connection.execute(
+                f"SELECT {COLUMNS}, curves FROM evaluations WHERE key = ?", (key,)
+            ).fetchone()
+        if row is None:
+            raise KeyError(key)
+        return self.read(_record(row), windows, curves=curves)
+
+    def read(self, record: Record, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
+        """The outcome of a record of this store; InputError when its curves are damaged."""
+        try:
+            return outcome_of(record, windows, curves=curves)
+        except DamagedCurves:
+            raise InputError(
+                f"{self._where}: the curves of evaluation {record.key[:12]} are damaged; {REMOVE}."
+            ) from None
+
+    def records(self, origin: str = "*") -> Iterator[Record]:
+        """All records in the order of their making, of the origins that match a glob such as `sample:*`."""
+        query = f"SELECT {COLUMNS}, curves FROM evaluations WHERE origin GLOB ? ORDER BY rowid"
+        with in_words(self._where):
+            for row in self._connection.execute(query, (origin,)):
+                yield _record(row)
+
+    def counts(self) -> dict[str, int]:
+        """Number of evaluations by status."""
+        with in_words(self._where):
+            rows = self._connection.execute("SELECT status, count(*) FROM evaluations GROUP BY status")
+            return {str(status): int(number) for status, number in rows}
+
+    def __len__(self) -> int:
+        return sum(self.counts().values())
+
+    def close(self) -> None:
+        """Give up the file and the lock on it."""
+        with in_words(self._where):
+            self._held.close()
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.close()
+
+
+def _record(row: tuple[Any, ...]) -> Record:
+    key, parameters, reason, characteristics, windows, seconds, origin, created, versions, curves = row
+    return Record(
+        key=key,
+        parameters=json.loads(parameters),
+        packed=Packed(reason, json.loads(characteristics), curves, seconds),
+        windows=json.loads(windows),
+        origin=origin,
+        created=created,
+        versions=json.loads(versions),
+    )
+
+
+def open_store(path: Path | None, solver: TrueSolver) -> Store:
+    """The store of a solver's evaluations, made if need be, for this process alone to write.
+
+    path: None keeps it in memory. InputError for a file that is damaged, of another program or newer
+    version, or of another model or solver (and says what differs); RunError when another run writes to
+    it, or file or folder are not writable.
+    """
+    where = _named(path)
+    with ExitStack() as undo, in_words(where):
+        if path is not None:
+            make_folder(path.parent)
+            undo.enter_context(closing(lock(path)))
+        connection = undo.enter_context(closing(_connected(str(path or ":memory:"))))
+        description = solver.describe()
+        if schema.is_empty(connection):
+            schema.create(connection, solver.fingerprint(), description)
+        meta = schema.read_meta(connection, where)
+        schema.check_solver(meta, solver.fingerprint(), description, where)
+        if path is not None:  # only now that the file is known to be ours: it changes its header
+            connection.execute("PRAGMA journal_mode = WAL")
+            connection.execute("PRAGMA synchronous = NORMAL")
+        return Store(connection, path, meta, undo.pop_all())
+
+
+def read_store(path: Path) -> Store:
+    """An existing store of any solver, to read; also while another process writes to it."""
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such store; run doe-kc sample first, or check the path.")
+    with ExitStack() as undo, in_words(str(path)):
+        connection = undo.enter_context(closing(_connected(_to_read(path))))
+        connection.execute("PRAGMA query_only = ON")
+        meta = schema.read_meta(connection, str(path))
+        return Store(connection, path, meta, undo.pop_all())
+
+
+def _to_read(path: Path) -> str:
+    """A reader takes part in the write-ahead log, which needs two files beside the store; none on a medium
+    that cannot be written, where nobody writes either."""
+    writable = os.access(path, os.W_OK) and os.access(path.resolve().parent, os.W_OK)
+    return f"{path.resolve().as_uri()}?mode={'rw' if writable else 'ro&immutable=1'}"
+
+
+def _connected(place: str) -> sqlite3.Connection:
+    return sqlite3.connect(place, timeout=30.0, isolation_level=None, uri=place.startswith("file:"))
+
+
+def _named(path: Path | None) -> str:
+    return str(path) if path is not None else "store in memory"

@@ -1,0 +1,73 @@
+"""Curve objectives of the rating over the scores of the curves' principal components."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.targets import Targets
+from doe_kc.typing import FloatArray
+
+CORNER = 1e-3
+"""RMS over Norm at which the corner of the root is rounded for gradients."""
+
+
+@dataclass(frozen=True)
+class CurveTerms:
+    """(RMS / Norm)^2 of c curves at scores s: s'As + 2 b's + e.
+
+    a: (c, q, q). b: (c, q). e: (c,). linear, quadratic: (c,) LinWt and QuadWt.
+    """
+
+    a: FloatArray
+    b: FloatArray
+    e: FloatArray
+    linear: FloatArray
+    quadratic: FloatArray
+
+    @classmethod
+    def of(cls, targets: Targets, mean: FloatArray, basis: FloatArray) -> CurveTerms:
+        """Of curves = mean + scores basis, all scaled by Norm."""
+        q, count = len(basis), len(targets.curves)
+        off = mean - targets.scaled_targets
+        parts = targets.blocks
+        return cls(
+            np.array([basis[:, p] @ basis[:, p].T for p in parts]).reshape(count, q, q),
+            np.array([basis[:, p] @ off[p] for p in parts]).reshape(count, q),
+            np.array([off[p] @ off[p] for p in parts]),
+            np.array([c.objective.linear for c in targets.curves]),
+            np.array([c.objective.quadratic for c in targets.curves]),
+        )
+
+    def squares(self, s: FloatArray) -> FloatArray:
+        """(p, c) (RMS / Norm)^2 at scores (p, q)."""
+        out = np.einsum("pi,cij,pj->pc", s, self.a, s, optimize=True) + 2.0 * s @ self.b.T + self.e
+        return np.asarray(np.maximum(out, 0.0))
+
+    def value(self, s: FloatArray) -> FloatArray:
+        """(p,) sum of the curves' terms of equation 2.2."""
+        square = self.squares(s)
+        return np.asarray(-np.sqrt(square) @ self.linear - square @ self.quadratic)
+
+    def slope(self, s: FloatArray) -> FloatArray:
+        """(p, q) derivative of `value`."""
+        weight = self.linear / np.sqrt(self.squares(s) + CORNER**2) + 2.0 * self.quadratic
+        push = np.einsum("cij,pj->pci", self.a, s, optimize=True) + self.b
+        return np.asarray(-np.einsum("pc,pci->pi", weight, push))
+
+    def expected(self, s: FloatArray, variance: FloatArray) -> FloatArray:
+        """(p,) terms at the expected squares, scores (p, q) with independent variances (q,) or (p, q)."""
+        square = self._blurred(s, variance)
+        return np.asarray(-np.sqrt(square) @ self.linear - square @ self.quadratic)
+
+    def majorizer(self, s: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Hessian (q, q) and gradient (q,) of -expected, and its derivative by the variances (q,)."""
+        square = self._blurred(s[None], variance)[0]
+        weight = self.linear / np.sqrt(square + CORNER**2) + 2.0 * self.quadratic
+        push = self.a @ s + self.b
+        by_variance = 0.5 * weight @ np.einsum("cii->ci", self.a)
+        return np.einsum("c,cij->ij", weight, self.a), weight @ push, np.asarray(by_variance)
+
+    def _blurred(self, s: FloatArray, variance: FloatArray) -> FloatArray:
+        return np.asarray(self.squares(s) + variance @ np.einsum("cii->ic", self.a))

@@ -1,0 +1,90 @@
+"""Gauss-Newton proposals: the best rating that the surrogates let expect inside a box."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.correlation.composite import Composite
+from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.surrogates.interface import Fitted
+from doe_kc.typing import FloatArray
+
+STEPS = 30
+SETTLED = 1e-4
+"""Relative gain of a step below which the search has settled."""
+RIDGE = 1e-3
+"""Rating per squared prior sd."""
+
+
+@dataclass(frozen=True)
+class Box:
+    """Where a proposal may lie. lower, upper: (d,) in [0, 1]."""
+
+    lower: FloatArray
+    upper: FloatArray
+
+    @classmethod
+    def around(cls, centre: FloatArray, radius: float) -> Box:
+        """The trust region: `radius` either way, within the bounds."""
+        return cls(np.maximum(centre - radius, 0.0), np.minimum(centre + radius, 1.0))
+
+    def clip(self, points: FloatArray) -> FloatArray:
+        """Points moved inside."""
+        return np.clip(points, self.lower, self.upper)
+
+
+@dataclass(frozen=True)
+class Pull:
+    """A weak pull (d,) towards `home`, so that variables without influence stay where they are."""
+
+    home: FloatArray
+    weight: FloatArray
+
+    @classmethod
+    def towards(cls, home: FloatArray, prior: FloatArray) -> Pull:
+        """RIDGE per squared prior sd."""
+        return cls(home, RIDGE * prior**-2.0)
+
+
+def gauss_newton(
+    model: Fitted, composite: Composite, box: Box, first: FloatArray, pull: Pull, *, doubt: float = 1.0
+) -> FloatArray:
+    """(d,) maximizer of the expected rating by majorized Gauss-Newton steps from `first`.
+
+    doubt: factor of the predicted variances; 0 = the predictions are taken for true.
+    """
+    point, weight, home = box.clip(first), pull.weight, pull.home
+
+    def merit(x: FloatArray) -> float:
+        variance = doubt * model.variance(x[None])[0] if doubt else np.zeros(model.outputs)
+        expected = composite.expected(model.predict(x[None]), variance)
+        return float(expected[0] - 0.5 * weight @ (x - home) ** 2)
+
+    value = merit(point)
+    for _ in range(STEPS):
+        known = model.predict_all(point[None])
+        near = composite.majorizer(known.mean[0], doubt * known.variance[0])
+        jacobian = known.gradient[0]
+        hessian = jacobian.T @ near.hessian @ jacobian + np.diag(weight)
+        gradient = jacobian.T @ near.gradient + doubt * known.variance_gradient[0].T @ near.variance
+        gradient += weight * (point - home)
+        step = bounded_step(hessian, gradient, box.lower - point, box.upper - point)
+        point, gained = _line_search(merit, point, step, value)
+        if gained <= SETTLED * max(1.0, abs(value)):
+            break
+        value += gained
+    return point
+
+
+def _line_search(
+    merit: Callable[[FloatArray], float], point: FloatArray, step: FloatArray, value: float
+) -> tuple[FloatArray, float]:
+    """The first share of the step that gains, and its gain; no step and 0 when none does."""
+    for share in (1.0, 0.5, 0.25, 0.1, 0.02):
+        found = merit(point + share * step)
+        if found > value:
+            return point + share * step, found - value
+    return point, 0.0

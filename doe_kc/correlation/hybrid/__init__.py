@@ -1,0 +1,1 @@
+"""Several searches, global and local, that share one archive of true evaluations."""

@@ -1,0 +1,45 @@
+"""Shares the budget between searches by what they gained of late.
+
+Probability matching with a least probability (D. Thierens, An adaptive pursuit strategy for allocating
+operator probabilities, GECCO 2005): each search has a quality, the running mean of its rewards.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.correlation.hybrid.search import Trial
+from doe_kc.typing import FloatArray
+
+LEAST = 0.05
+"""Probability that every search keeps."""
+RATE = 0.4
+"""Weight of the last reward in the running mean."""
+FULL = 0.03
+"""Gain, share of the best rating's size, that earns the full reward."""
+HOPE = 0.01
+"""Quality of a search that gains nothing: when none does, all are tried alike."""
+
+
+class Credit:
+    """Qualities of n searches, all 1 at first."""
+
+    def __init__(self, searches: int) -> None:
+        self._quality = np.ones(searches)
+
+    @property
+    def probability(self) -> FloatArray:
+        """(n,) of being asked next."""
+        quality = self._quality + HOPE
+        count = quality.size
+        return np.asarray(LEAST + (1.0 - count * LEAST) * quality / quality.sum())
+
+    def reward(self, search: int, trial: Trial) -> None:
+        """Move a search's quality towards the reward of a trial."""
+        self._quality[search] += RATE * (reward(trial) - self._quality[search])
+
+
+def reward(trial: Trial) -> float:
+    """0 without a gain, 1 from 3 % of the best rating on."""
+    size = FULL * max(abs(trial.before), 1e-12)
+    return float(np.clip(trial.gain / size, 0.0, 1.0)) if np.isfinite(trial.gain) else 0.0

@@ -1,0 +1,101 @@
+"""`hybrid`: several searches at once on one archive, for solvers that fail or jump.
+
+Differential evolution and mutation look at ratings alone; trust regions on a linear model and on Gaussian
+processes, and restarts, look at every output. Who gained of late is asked more often (`credit.py`). The idea
+of simultaneous hybrid search is the thesis's, section 2.3; nothing here is taken from that product.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, final
+
+import numpy as np
+
+from doe_kc.correlation.hybrid.credit import Credit
+from doe_kc.correlation.hybrid.evolution import DifferentialEvolution, Mutation
+from doe_kc.correlation.hybrid.model_searches import LinearSearch, Restart, SurrogateSearch
+from doe_kc.correlation.hybrid.opening import opening_sample
+from doe_kc.correlation.hybrid.record import Record
+from doe_kc.correlation.hybrid.search import Search, Trial
+from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+
+WORTH = 0.001
+"""Gain, share of the rating's size, that counts as progress."""
+PATIENCE = 60
+"""Designs without progress, or as many as there are variables, that end the search."""
+
+
+@final
+@register
+class Hybrid(Method):
+    """State: all answers, the searches with their credit, and who proposed the last candidates."""
+
+    id: ClassVar[str] = "hybrid"
+    label: ClassVar[str] = "Simultaneous global and local searches"
+
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        self._problem, self._settings = problem, settings
+        self._evaluated: list[Evaluated] = []
+        self._searches: tuple[Search, ...] = (
+            SurrogateSearch(),
+            LinearSearch(),
+            DifferentialEvolution(),
+            Mutation(),
+            Restart(),
+        )
+        self._credit = Credit(len(self._searches))
+        self._asked: list[int] = []
+        self._opened = False
+        self._idle = 0
+
+    @property
+    def stopped(self) -> str:
+        """No search has gained for long."""
+        if self._idle < max(PATIENCE, self._problem.space.dimension):
+            return ""
+        return f"no search gained {100 * WORTH:g} % of the rating in the last {self._idle} designs"
+
+    def ask(self) -> Sequence[Candidate]:
+        """The opening sample, then `batch` candidates, each from a search drawn by credit."""
+        self._asked = []
+        if not self._opened:
+            self._opened = True
+            opening = opening_sample(self._problem.space, self._settings, len(self._evaluated) - 1)
+            if opening:
+                return opening
+        record = Record(self._problem, self._evaluated, seed=self._settings.seed)
+        rng = np.random.default_rng([self._settings.seed, len(self._evaluated)])
+        out: list[Candidate] = []
+        for _ in range(self._settings.batch):
+            place = int(rng.choice(len(self._searches), p=self._credit.probability))
+            out.append(self._proposed(place, record, out, rng))
+        return out
+
+    def tell(self, evaluated: Sequence[Evaluated]) -> None:
+        """Answers; searches and their credit learn from their own."""
+        before = max((e.merit for e in self._evaluated if np.isfinite(e.merit)), default=-np.inf)
+        self._evaluated.extend(evaluated)
+        for place, answer in zip(self._asked, evaluated, strict=False):
+            trial = Trial(answer, before)
+            self._credit.reward(place, trial)
+            self._searches[place].learn(trial)
+        gain = max((e.merit for e in evaluated if np.isfinite(e.merit)), default=-np.inf) - before
+        progress = not self._asked or gain > WORTH * abs(before)
+        self._idle = 0 if progress else self._idle + len(evaluated)
+
+    def _proposed(
+        self, place: int, record: Record, out: Sequence[Candidate], rng: np.random.Generator
+    ) -> Candidate:
+        """The search's candidate, or a mutation when it has none, moved off designs that are known."""
+        found = self._searches[place].propose(record, rng)
+        if found is None:
+            place = next(i for i, s in enumerate(self._searches) if isinstance(s, Mutation))
+            found = self._searches[place].propose(record, rng)
+        if found is None:
+            raise ValueError("mutation needs no more than the baseline")
+        self._asked.append(place)
+        point = record.fresh(found.point, [c.point for c in out], rng)
+        predicted = found.predicted if np.array_equal(point, found.point) else None
+        return Candidate(point, found.origin, predicted)

@@ -1,0 +1,136 @@
+"""`pareto`: the trade-offs between load cases in conflict, as a front of confirmed designs.
+
+Opening sample, then rounds: NSGA-III on surrogates of all outputs inside a trust region, with the objective
+terms of equation 2.2 summed by load case and the violation of constraints as a constraint; a few designs
+spread over the predicted front, the best predicted rating first, are confirmed by the true solver and
+the surrogates fitted anew (thesis, section 2.3, MO-SHERPA; K. Deb, H. Jain, IEEE Trans. Evol. Comput. 18(4),
+2014; J. Knowles, ParEGO, IEEE Trans. Evol. Comput. 10(1), 2006, for the confirmed infill).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, final
+
+import numpy as np
+
+from doe_kc.correlation.ego.proposal import Box
+from doe_kc.correlation.hybrid.model_searches import can_model
+from doe_kc.correlation.hybrid.opening import opening_sample
+from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
+from doe_kc.correlation.hybrid.record import Record
+from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.pareto.front import Front, front_of, knee
+from doe_kc.correlation.pareto.infill import predicted_front, spread_out
+from doe_kc.correlation.pareto.modelled import ModelledObjectives
+from doe_kc.correlation.pareto.nsga3 import check_installed
+from doe_kc.correlation.pareto.objectives import objectives
+from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+from doe_kc.typing import FloatArray
+
+ROUND = 5
+"""Designs of a round at least: one search for the front is dearer than a fit."""
+FIRST_RADIUS, LARGEST, SMALLEST = 0.3, 0.5, 0.02
+SHRINK, GROW = 0.7, 1.6
+WORTH = 0.01
+"""Gain, share of the best rating's or of an objective's range on the front, that counts as progress."""
+PATIENCE = 6
+"""Rounds without progress that end the search."""
+
+
+@final
+@register
+class Pareto(Method):
+    """State: all answers, the trust region about the best rating, the front's best values so far.
+
+    `best` is the best rating: with the weights as given, that is the point of the front that they prefer.
+    """
+
+    id: ClassVar[str] = "pareto"
+    label: ClassVar[str] = "Front of trade-offs by NSGA-III on surrogates"
+
+    def __init__(self, problem: Problem, settings: Settings) -> None:
+        """InputError with fewer than two objectives, or without pymoo."""
+        check_installed()
+        self._problem, self._settings = problem, settings
+        self._objectives = objectives(problem.targets)
+        self._evaluated: list[Evaluated] = []
+        self._radius, self._idle = FIRST_RADIUS, 0
+        self._opened, self._infill = False, False
+        self._stopped = ""
+
+    @property
+    def stopped(self) -> str:
+        """Neither the best rating nor the best value of an objective improves any more."""
+        return self._stopped
+
+    @property
+    def front(self) -> Front:
+        """Of the designs confirmed so far."""
+        return front_of(self._problem.targets, self._evaluated, found=self._objectives)
+
+    def ask(self) -> Sequence[Candidate]:
+        """The opening sample, then a round spread over the predicted front."""
+        if not self._opened:
+            self._opened = True
+            opening = opening_sample(self._problem.space, self._settings, len(self._evaluated) - 1)
+            if opening:
+                return opening
+        record = Record(self._problem, self._evaluated, seed=self._settings.seed)
+        rng = np.random.default_rng([self._settings.seed, len(self._evaluated)])
+        self._infill = can_model(record)
+        return self._round(record, rng) if self._infill else self._random(record, rng)
+
+    def tell(self, evaluated: Sequence[Evaluated]) -> None:
+        """Answers; the region follows the best rating, patience the front."""
+        before = self.front if self._evaluated else None
+        self._evaluated.extend(evaluated)
+        if before is None or not self._infill:
+            return
+        after = self.front
+        gained = after.ratings[0] - before.ratings[0]
+        self._radius = self._radius * SHRINK if gained <= 0.0 else min(LARGEST, self._radius * GROW)
+        if self._radius < SMALLEST:
+            self._radius = FIRST_RADIUS
+        self._idle = 0 if _progress(before, after) else self._idle + 1
+        if self._idle >= PATIENCE:
+            self._stopped = (
+                f"neither the best rating nor an objective's best value gained {100 * WORTH:g} % in "
+                f"{PATIENCE} rounds"
+            )
+
+    def _round(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+        modelled = ModelledObjectives(self._problem.targets, self._objectives, record.archive, record.model)
+        box = Box.around(record.best.point, self._radius)
+        points = predicted_front(record, modelled, box, len(self._objectives.names), rng)
+        values, _ = modelled.values(points)
+        chosen = [("best rating", self._best_rating(record, box)), ("knee", points[knee(values)])]
+        confirmed = np.array([self._objectives.values(e.rating) for e in record.ranked[:100] if e.rating])
+        number = max(ROUND, self._settings.batch)
+        rest = spread_out(values, np.vstack([confirmed, values[[knee(values)]]]), number - len(chosen))
+        chosen += [("front", points[i]) for i in rest]
+        out: list[Candidate] = []
+        for origin, point in chosen[:number]:
+            new = record.fresh(point, [c.point for c in out], rng)
+            out.append(Candidate(new, origin, prediction(self._problem, record.archive, record.model, new)))
+        return out
+
+    def _best_rating(self, record: Record, box: Box) -> FloatArray:
+        composite = record.archive.composite
+        return best_predicted(self._problem, record.model, composite, box, record.best.point)
+
+    def _random(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+        """Random designs near the best one while too few have an answer."""
+        box = Box.around(record.best.point, self._radius)
+        drawn = rng.uniform(box.lower, box.upper, (max(ROUND, self._settings.batch), box.lower.size))
+        return [Candidate(record.fresh(p, [], rng), "random") for p in drawn]
+
+
+def _progress(before: Front, after: Front) -> bool:
+    """Whether the front has become feasible, or its best rating or an objective's best value better."""
+    if before.feasible != after.feasible:
+        return True
+    worth = WORTH * abs(before.ratings[0])
+    ideal, better = before.values.min(axis=0), after.values.min(axis=0)
+    span = np.maximum(np.ptp(before.values, axis=0), 1e-12)
+    return bool(after.ratings[0] - before.ratings[0] > worth or np.any(ideal - better > WORTH * span))

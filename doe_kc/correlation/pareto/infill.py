@@ -1,0 +1,81 @@
+"""Chooses the designs of a round: where the surrogates see the front, spread over it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from doe_kc.correlation.ego.proposal import Box
+from doe_kc.correlation.hybrid.output_model import best_predicted
+from doe_kc.correlation.hybrid.record import Record
+from doe_kc.correlation.pareto.front import bearable, non_dominated
+from doe_kc.correlation.pareto.modelled import ModelledObjectives
+from doe_kc.correlation.pareto.nsga3 import nsga3, reference_directions
+from doe_kc.typing import FloatArray
+
+GENERATIONS = 40
+STRESS = 4.0
+"""Weight of the objective that a starting corner favours, the others 1."""
+SPREAD = 0.05
+"""Standard deviation of the rest of the first population about the corners, share of the bounds."""
+
+
+def predicted_front(
+    record: Record, modelled: ModelledObjectives, box: Box, count: int, rng: np.random.Generator
+) -> FloatArray:
+    """(p, d) non-dominated designs on levels that the surrogates expect, of `count` objectives.
+
+    The population starts from the confirmed designs in the box and from Gauss-Newton optima of the rating
+    with each objective stressed in turn: from random designs NSGA-III would need far more generations.
+    """
+    space = record.problem.space
+    directions = reference_directions(count)
+    inside = [e.point for e in record.ranked if np.all((e.point >= box.lower) & (e.point <= box.upper))]
+    seeds = [*corners(record, modelled, box, count), *inside][: len(directions)]
+    chosen = rng.integers(len(seeds), size=len(directions) - len(seeds))
+    near = np.array(seeds)[chosen] + SPREAD * rng.standard_normal((len(chosen), space.dimension))
+    first = box.clip(np.vstack([np.array(seeds), near]))
+    limit = bearable(modelled.values(record.best.point[None])[0].sum())
+
+    def judge(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        values, violation = modelled.values(space.snapped(x))
+        return values, violation + np.maximum(values.sum(axis=1) - limit, 0.0) / max(abs(limit), 1e-12)
+
+    found = nsga3(
+        judge,
+        first,
+        directions,
+        box.lower,
+        box.upper,
+        generations=GENERATIONS,
+        seed=int(rng.integers(2**31)),
+    )
+    points = np.unique(space.snapped(found), axis=0)
+    values, violation = judge(points)
+    ranked = np.column_stack([values, violation]) if (violation > 0.0).all() else values
+    allowed = np.flatnonzero((violation <= 0.0) | (violation > 0.0).all())
+    return np.asarray(points[allowed[non_dominated(ranked[allowed])]])
+
+
+def corners(record: Record, modelled: ModelledObjectives, box: Box, count: int) -> list[FloatArray]:
+    """Best predicted rating with equal weights, and with each objective stressed in turn."""
+    weights = [np.ones(count), *(1.0 + (STRESS - 1.0) * np.eye(count))]
+    composites = [modelled.weighted(w) for w in weights]
+    start = record.best.point
+    return [best_predicted(record.problem, record.model, c, box, start, doubt=0.0) for c in composites]
+
+
+def spread_out(values: FloatArray, known: FloatArray, number: int) -> NDArray[np.int_]:
+    """Places of up to `number` rows (p, g), each the farthest from `known` (n, g) and those chosen before.
+
+    Distances in objectives scaled by the range of the rows.
+    """
+    scale = np.ptp(values, axis=0)
+    scale = np.where(scale > 0.0, scale, 1.0)
+    taken = [*(known / scale)]
+    chosen: list[int] = []
+    while len(chosen) < min(number, len(values)):
+        apart = np.linalg.norm((values / scale)[:, None] - np.array(taken)[None], axis=2).min(axis=1)
+        chosen.append(int(np.argmax(apart)))
+        taken.append(values[chosen[-1]] / scale)
+    return np.array(chosen, dtype=int)

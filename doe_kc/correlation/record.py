@@ -1,0 +1,198 @@
+"""A finished correlation as a file: what was asked, predicted and chosen; the answers are in the store."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+import numpy as np
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
+from doe_kc.axle.schema import Strict
+from doe_kc.campaign.key import design_key
+from doe_kc.campaign.store import Store
+from doe_kc.correlation.loop import Run
+from doe_kc.correlation.posterior import Posterior
+from doe_kc.correlation.problem import Candidate, Prediction, Problem
+from doe_kc.correlation.result import Correlation
+from doe_kc.errors import InputError
+from doe_kc.files import validate
+from doe_kc.variables import Space, Tie, Variable
+from doe_kc.variables.build import plain_parameter
+from doe_kc.variables.options import Distribution
+
+
+class VariableRecord(Strict):
+    """A variable as it was in the run; absolute values."""
+
+    path: str
+    lower: float
+    upper: float
+    start: float
+    levels: int | None
+    distribution: Distribution
+    logarithmic: bool
+
+
+class TieRecord(Strict):
+    """A tie as it was in the run."""
+
+    follower: str
+    leader: str
+    ratio: bool
+    follower_nominal: float
+    leader_nominal: float
+
+
+class PredictionRecord(Strict):
+    """What was expected of a candidate; None where no model said anything."""
+
+    values: list[float | None]
+    sd: list[float | None]
+    rating: float | None
+    rating_sd: float | None
+
+
+class EvaluationRecord(Strict):
+    """One design: its place between the bounds, who proposed it, what was expected."""
+
+    point: list[float]
+    origin: str
+    predicted: PredictionRecord | None
+
+
+class RunRecord(Strict):
+    """The whole file."""
+
+    schema_: Literal["doe_kc.run/1"] = "doe_kc.run/1"
+    method: str
+    stopped: str
+    best: int
+    seconds: float
+    steps: list[str]
+    variables: list[VariableRecord]
+    ties: list[TieRecord]
+    fixed: dict[str, float]
+    posterior_sd: list[float] | None
+    posterior_correlation: list[list[float]] | None
+    evaluations: list[EvaluationRecord]
+
+
+def run_document(found: Correlation) -> dict[str, Any]:
+    """The record of a correlation, for `write_json`."""
+    space, after = found.problem.space, found.posterior
+    record = RunRecord(
+        method=found.method,
+        stopped=found.run.stopped,
+        best=found.run.best,
+        seconds=found.seconds,
+        steps=list(found.steps),
+        variables=[
+            VariableRecord(
+                path=v.path,
+                lower=v.lower,
+                upper=v.upper,
+                start=v.start,
+                levels=v.levels,
+                distribution=v.distribution,
+                logarithmic=v.logarithmic,
+            )
+            for v in space.variables
+        ],
+        ties=[TieRecord(**vars(t)) for t in space.ties],
+        fixed=dict(space.fixed or {}),
+        posterior_sd=None if after is None else after.sd.tolist(),
+        posterior_correlation=None if after is None else after.correlation.tolist(),
+        evaluations=[_evaluation(e.candidate) for e in found.run.evaluated],
+    )
+    return record.model_dump()
+
+
+def _evaluation(candidate: Candidate) -> EvaluationRecord:
+    expected = candidate.predicted
+    predicted = None
+    if expected is not None:
+        predicted = PredictionRecord(
+            values=expected.values.tolist(),
+            sd=expected.sd.tolist(),
+            rating=expected.rating,
+            rating_sd=expected.rating_sd,
+        )
+    return EvaluationRecord(point=candidate.point.tolist(), origin=candidate.origin, predicted=predicted)
+
+
+def read_record(document: Mapping[str, Any], source: str) -> RunRecord:
+    """The checked record; InputError for a damaged file."""
+    record = validate(RunRecord, document, source)
+    if not 0 <= record.best < len(record.evaluations):
+        raise InputError(
+            f"{source}: best = {record.best} is no evaluation of the file; run doe-kc correlate again."
+        )
+    return record
+
+
+def recorded_space(record: RunRecord, axle: Axle) -> Space:
+    """The space of the run."""
+    known = {p.path: p for p in design_parameters(axle)}
+    variables = tuple(
+        Variable(
+            parameter=known.get(v.path) or _plain(axle, v.path),
+            lower=v.lower,
+            upper=v.upper,
+            start=v.start,
+            levels=v.levels,
+            distribution=v.distribution,
+            logarithmic=v.logarithmic,
+        )
+        for v in record.variables
+    )
+    return Space(variables, tuple(Tie(**t.model_dump()) for t in record.ties), record.fixed)
+
+
+def _plain(axle: Axle, path: str) -> Parameter:
+    parameter_value(axle, path)
+    return plain_parameter(axle, path)
+
+
+def recalled(record: RunRecord, problem: Problem, store: Store, source: str) -> Correlation:
+    """The correlation again, judged by the problem's present targets and weights.
+
+    InputError when the store lacks one of its designs. The design to hand over is the best rating, but for
+    `gauss_newton` the one it chose.
+    """
+    evaluated = []
+    for index, entry in enumerate(record.evaluations):
+        point = np.array(entry.point)
+        try:
+            outcome = store.outcome(design_key(problem.space.values(point)), problem.windows)
+        except KeyError:
+            raise InputError(
+                f"{source}: evaluation {index} is not in {store.path}; run doe-kc correlate again."
+            ) from None
+        evaluated.append(problem.judged(index, Candidate(point, entry.origin, _expected(entry)), outcome))
+    chosen = record.best
+    if record.method != "gauss_newton":
+        chosen = max(range(len(evaluated)), key=lambda i: (evaluated[i].merit, -i))
+    after = None
+    if record.posterior_sd is not None and chosen == record.best:
+        after = Posterior(
+            np.array(record.posterior_sd), problem.space.prior_sd, np.array(record.posterior_correlation)
+        )
+    return Correlation(
+        record.method,
+        problem,
+        Run(tuple(evaluated), chosen, record.stopped),
+        tuple(record.steps),
+        after,
+        record.seconds,
+    )
+
+
+def _expected(entry: EvaluationRecord) -> Prediction | None:
+    found = entry.predicted
+    if found is None:
+        return None
+    values, sd = (np.array([np.nan if v is None else v for v in x]) for x in (found.values, found.sd))
+    rating, spread = (np.nan if x is None else x for x in (found.rating, found.rating_sd))
+    return Prediction(values, sd, rating, spread)

@@ -1,0 +1,162 @@
+"""The parameters of a correlation before and after (thesis, Appendix A)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.axle.parameters import KINDS, SIDE_PREFIXES
+from doe_kc.correlation.posterior import AT_BOUND
+from doe_kc.correlation.result import Correlation
+from doe_kc.variables import Tie
+
+Role = Literal["variable", "tied", "fixed"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterRow:
+    """One parameter; baseline, final, lower, upper, sd absolute in `unit`, nan where there is none.
+
+    role: free between bounds, tied to `leader`, or fixed. at_bound: "lower", "upper" or "". sd: from the
+    posterior. visible: whether the measurement at least halves what was known before; None without posterior.
+    start, place, spread: baseline, final and sd as places between the bounds (0 = lower, 1 = upper).
+    """
+
+    path: str
+    label: str
+    group: str
+    unit: str
+    role: Role = "variable"
+    leader: str = ""
+    baseline: float
+    final: float
+    lower: float = np.nan
+    upper: float = np.nan
+    at_bound: str = ""
+    sd: float = np.nan
+    visible: bool | None = None
+    start: float = np.nan
+    place: float = np.nan
+    spread: float = np.nan
+
+    @property
+    def change(self) -> float:
+        """Final minus baseline."""
+        return self.final - self.baseline
+
+    @property
+    def remark(self) -> str:
+        """What an engineer should know of the final value, in words; empty when nothing."""
+        words = {
+            "tied": f"follows {self.leader}",
+            "fixed": "fixed",
+            "variable": f"at its {self.at_bound} bound" if self.at_bound else "",
+        }[self.role]
+        unseen = "not visible in these measurements" if self.visible is False else ""
+        return "; ".join(w for w in (words, unseen) if w)
+
+
+def parameter_rows(found: Correlation) -> list[ParameterRow]:
+    """Variables in their order, then tied and fixed parameters."""
+    space = found.problem.space
+    before, after = space.values(found.baseline.point), found.values
+    rows = list(_variables(found, before, after))
+    by_path = {r.path: r for r in rows}
+    rows += [_tied(t, by_path[t.leader], before, after) for t in space.ties]
+    fixed = dict(space.fixed or {})
+    return rows + [_plain(path, "fixed", before, after) for path in fixed]
+
+
+def _variables(
+    found: Correlation, before: dict[str, float], after: dict[str, float]
+) -> Iterator[ParameterRow]:
+    space, seen = found.problem.space, found.posterior
+    for i, variable in enumerate(space.variables):
+        place = float(found.best.point[i])
+        spread = float(seen.sd[i]) if seen is not None else np.nan
+        yield ParameterRow(
+            path=variable.path,
+            label=variable.parameter.label,
+            group=variable.parameter.group,
+            unit=variable.unit,
+            baseline=before[variable.path],
+            final=after[variable.path],
+            lower=variable.lower,
+            upper=variable.upper,
+            at_bound="lower" if place <= AT_BOUND else "upper" if place >= 1.0 - AT_BOUND else "",
+            sd=spread * variable.slope(place),
+            visible=bool(seen.visible[i]) if seen is not None else None,
+            start=float(found.baseline.point[i]),
+            place=place,
+            spread=spread,
+        )
+
+
+def _tied(tie: Tie, leader: ParameterRow, before: dict[str, float], after: dict[str, float]) -> ParameterRow:
+    row = _plain(tie.follower, "tied", before, after)
+    extra = {"leader": tie.leader, "sd": leader.sd * abs(tie.slope), "visible": leader.visible}
+    return ParameterRow(**{**asdict(row), **extra})
+
+
+def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, float]) -> ParameterRow:
+    head, _, rest = path.partition(".")
+    kind = KINDS.get(rest if head in SIDE_PREFIXES else path)
+    return ParameterRow(
+        path=path,
+        label=kind.label if kind else path,
+        group=kind.group if kind else "OTHER",
+        unit=kind.unit if kind else "",
+        role=role,
+        baseline=before[path],
+        final=after[path],
+    )
+
+
+def parameter_frame(found: Correlation) -> pd.DataFrame:
+    """One row a parameter: path, label, group, unit, role, values, bounds, sd and what to think of them."""
+    return pd.DataFrame(
+        [
+            {
+                "path": r.path,
+                "label": r.label,
+                "group": r.group,
+                "unit": r.unit,
+                "role": r.role,
+                "tied_to": r.leader,
+                "baseline": r.baseline,
+                "final": r.final,
+                "change": r.change,
+                "lower": r.lower,
+                "upper": r.upper,
+                "at_bound": r.at_bound,
+                "sd": r.sd,
+                "not_visible": "" if r.visible is None else not r.visible,
+            }
+            for r in parameter_rows(found)
+        ]
+    )
+
+
+def bound_sentences(found: Correlation) -> list[str]:
+    """What to think of variables at their bounds and of those that the measurements cannot see."""
+    rows = [r for r in parameter_rows(found) if r.role == "variable"]
+    bound = [f"{r.path} ({r.at_bound})" for r in rows if r.at_bound]
+    unseen = [r.path for r in rows if r.visible is False]
+    out = []
+    if bound:
+        out.append(
+            f"{len(bound)} of {len(rows)} variables end at a bound: {', '.join(bound)}. Widen the bound if "
+            "the part allows it; otherwise the model may lack an effect that they stand in for."
+        )
+    if unseen:
+        out.append(
+            f"{len(unseen)} of {len(rows)} variables are not visible in these measurements: "
+            f"{', '.join(unseen)}. Their final values say nothing about the car."
+        )
+    if found.posterior is None:
+        out.append("No standard deviations: the solver gives no sensitivities or no records were given.")
+    return out

@@ -1,0 +1,164 @@
+"""The terms of the rating (thesis, equation 2.2) and the deviations of the curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.correlation.problem import Evaluated
+from doe_kc.correlation.result import Correlation
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
+from doe_kc.reporting.correlation_characteristics import case_label
+from doe_kc.targets import Constraint, Objective
+from doe_kc.targets.options import Goal
+
+Kind = Literal["objective", "curve", "constraint"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TermRow:
+    """One term of the rating; target, low, high, norm, baseline, final in `unit`, nan where there is none.
+
+    baseline, final: the characteristic's value or the curve's RMS deviation. sign: S. goal: what an objective
+    is. baseline_term, final_term: LinWt S Obj / Norm + QuadWt S Obj^2 / Norm^2, or minus the same of ConViol.
+    """
+
+    kind: Kind
+    id: str
+    label: str
+    unit: str
+    goal: Goal | Literal[""] = ""
+    target: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    linear: float
+    quadratic: float
+    norm: float
+    sign: float
+    baseline: float
+    final: float
+    baseline_term: float
+    final_term: float
+
+
+def term_rows(found: Correlation) -> list[TermRow]:
+    """Objectives, curves, constraints; their terms sum to the rating."""
+    return [*_objectives(found), *_curves(found), *_constraints(found)]
+
+
+def term_frame(found: Correlation) -> pd.DataFrame:
+    """One row a term, with its weights."""
+    return pd.DataFrame([asdict(r) for r in term_rows(found)])
+
+
+def _weights(of: Objective | Constraint) -> dict[str, Any]:
+    return {"linear": of.linear, "quadratic": of.quadratic, "norm": of.norm}
+
+
+def _both(found: Correlation, part: str, row: int) -> tuple[float, float]:
+    return _of(found.baseline, part, row), _of(found.best, part, row)
+
+
+def _of(evaluated: Evaluated, part: str, row: int) -> float:
+    where = evaluated.score if part in {"values", "rms"} else evaluated.rating
+    return float(getattr(where, part)[row]) + 0.0 if where is not None else np.nan  # + 0: no minus zero
+
+
+def _objectives(found: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(found.problem.targets.characteristics):
+        if t.objective is not None:
+            value, term = _both(found, "values", i), _both(found, "objectives", i)
+            yield TermRow(
+                kind="objective",
+                id=t.entry.id,
+                label=f"{case_label(t.entry.load_case)}: {t.entry.label}",
+                unit=t.entry.unit,
+                goal=t.objective.goal,
+                target=t.value,
+                sign=t.objective.sign,
+                baseline=value[0],
+                final=value[1],
+                baseline_term=term[0],
+                final_term=term[1],
+                **_weights(t.objective),
+            )
+
+
+def _constraints(found: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(found.problem.targets.characteristics):
+        if t.constraint is not None:
+            value, term = _both(found, "values", i), _both(found, "constraints", i)
+            yield TermRow(
+                kind="constraint",
+                id=t.entry.id,
+                label=f"{case_label(t.entry.load_case)}: {t.entry.label}",
+                unit=t.entry.unit,
+                low=t.constraint.low,
+                high=t.constraint.high,
+                sign=-1.0,
+                baseline=value[0],
+                final=value[1],
+                baseline_term=term[0],
+                final_term=term[1],
+                **_weights(t.constraint),
+            )
+
+
+def _curves(found: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(found.problem.targets.curves):
+        rms, term = _both(found, "rms", i), _both(found, "curves", i)
+        yield TermRow(
+            kind="curve",
+            id=t.id,
+            label=f"{case_label(t.load_case)}: {RESPONSE_LABELS[t.response]}, RMS",
+            unit=RESPONSE_UNITS[t.response],
+            goal="target",
+            target=0.0,
+            sign=t.objective.sign,
+            baseline=rms[0],
+            final=rms[1],
+            baseline_term=term[0],
+            final_term=term[1],
+            **_weights(t.objective),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveRow:
+    """One curve that is an objective: RMS deviations of both wheels, noise and Norm in `unit`."""
+
+    id: str
+    load_case: str
+    response: str
+    unit: str
+    rms_baseline: float
+    rms_final: float
+    noise_rms: float
+    norm: float
+
+
+def curve_rows(found: Correlation) -> list[CurveRow]:
+    """In the order of the targets."""
+    return [
+        CurveRow(
+            id=t.id,
+            load_case=t.load_case,
+            response=t.response,
+            unit=row.unit,
+            rms_baseline=row.baseline,
+            rms_final=row.final,
+            noise_rms=t.noise,
+            norm=row.norm,
+        )
+        for t, row in zip(found.problem.targets.curves, _curves(found), strict=True)
+    ]
+
+
+def curve_frame(found: Correlation) -> pd.DataFrame:
+    """`curve_rows` as a table; its heads stand even when no curve is an objective."""
+    columns = [f.name for f in fields(CurveRow)]
+    return pd.DataFrame([asdict(r) for r in curve_rows(found)], columns=columns)

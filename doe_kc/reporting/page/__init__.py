@@ -1,0 +1,15 @@
+"""The report page: one self-contained HTML file made of sections."""
+
+from __future__ import annotations
+
+from doe_kc.reporting.page.correlation import correlation_sections, write_correlation_page
+from doe_kc.reporting.page.section import Section, embedded, page_html, render
+
+__all__ = [
+    "Section",
+    "correlation_sections",
+    "embedded",
+    "page_html",
+    "render",
+    "write_correlation_page",
+]

@@ -1,0 +1,37 @@
+"""The rating over the evaluations, to hover over."""
+
+from __future__ import annotations
+
+from doe_kc.correlation.result import Correlation
+from doe_kc.reporting import style
+from doe_kc.reporting.correlation_convergence import threshold
+from doe_kc.reporting.correlation_evaluations import history
+from doe_kc.reporting.page.section import Section, embedded, render
+
+LEAD = (
+    "Minus the rating on a symmetric logarithmic axis: 0 = every target met exactly. Open marks violate a "
+    "constraint; crosses on top had no equilibrium."
+)
+
+
+def convergence_section(found: Correlation) -> Section:
+    """Chart of every evaluation and what was expected of it."""
+    past = history(found)
+    data = {
+        "number": past.number,
+        "origin": list(past.origin),
+        "rating": past.rating,
+        "best": past.best,
+        "feasible": past.feasible,
+        "failed": past.failed,
+        "predicted": past.predicted,
+        "sd": past.sd,
+        "reason": [e.outcome.reason for e in found.run.evaluated],
+        "origins": [
+            {"name": name, "colour": style.CYCLE[k % len(style.CYCLE)]} for k, name in enumerate(past.origins)
+        ],
+        "linear": threshold(past),
+        "first": past.first_feasible,
+        "chosen": found.run.best + 1,
+    }
+    return Section("Convergence", render("convergence.html", data=embedded(data)), LEAD)

@@ -1,0 +1,56 @@
+"""The report page of a correlation."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from doe_kc.correlation.result import Correlation
+from doe_kc.measurement import Measurement
+from doe_kc.output import write_whole
+from doe_kc.reporting.correlation_parameters import bound_sentences
+from doe_kc.reporting.correlation_summary import summary
+from doe_kc.reporting.page.characteristics import characteristics_section
+from doe_kc.reporting.page.convergence import convergence_section
+from doe_kc.reporting.page.curves import curves_section
+from doe_kc.reporting.page.parameters import parameters_section
+from doe_kc.reporting.page.section import Section, page_html, render
+
+
+def correlation_sections(
+    found: Correlation, measurement: Measurement | None, *, notes: Mapping[str, str] | None = None
+) -> list[Section]:
+    """Summary, Characteristics, Curves, Convergence, Parameters. notes: further lines of the summary."""
+    sections = [_summary(found, notes or {}), characteristics_section(found)]
+    sections += curves_section(found, measurement)
+    return [*sections, convergence_section(found), parameters_section(found)]
+
+
+def write_correlation_page(
+    path: Path,
+    found: Correlation,
+    measurement: Measurement | None,
+    *,
+    study: str,
+    date: str,
+    notes: Mapping[str, str] | None = None,
+    more: Sequence[Section] = (),
+) -> Path:
+    """Write the page; `more` sections follow the correlation's. RunError when it cannot be written."""
+    sections = [*correlation_sections(found, measurement, notes=notes), *more]
+    html = page_html(f"Correlation: {study}", sections, subtitle=date)
+    return write_whole(path, lambda p: p.write_text(html, encoding="utf-8"))
+
+
+def _summary(found: Correlation, notes: Mapping[str, str]) -> Section:
+    html = render(
+        "summary.html",
+        lines=summary(found),
+        feasible=found.feasible,
+        mean=found.mean_improvement,
+        rating=found.rating,
+        evaluations=len(found.run.evaluated),
+        remarks=bound_sentences(found),
+        notes=notes,
+    )
+    return Section("Summary", html)

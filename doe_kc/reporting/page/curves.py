@@ -1,0 +1,80 @@
+"""Measured, baseline and final curves, to choose, hover and zoom (thesis, Appendix E)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from doe_kc.comparison.deviation import rms_deviation
+from doe_kc.correlation.result import Correlation
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, TYRE_LOAD, CaseCurves
+from doe_kc.measurement import Measurement
+from doe_kc.reporting.correlation_characteristics import case_label
+from doe_kc.reporting.correlation_curves import BAND, CaseView, case_views, response_name
+from doe_kc.reporting.page.section import Section, embedded, render
+
+LEAD = "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
+
+
+def curves_section(found: Correlation, measurement: Measurement | None) -> list[Section]:
+    """One chart for all load cases and responses; no section when there is no curve at all."""
+    views = case_views(found, measurement)
+    if not views:
+        return []
+    cases = {view.load_case: _case(view) for view in views}
+    data = {"cases": cases, "responses": {r: _response(r) for r in RIG_RESPONSES}, "band": BAND}
+    html = render("curves.html", data=embedded(data), cases=cases, responses=data["responses"])
+    return [Section("Curves", html, LEAD)]
+
+
+def _response(response: str) -> dict[str, str]:
+    change = "" if response == TYRE_LOAD else "Δ "
+    return {
+        "label": RESPONSE_LABELS[response],
+        "axis": f"{change}{response_name(response)} [{RESPONSE_UNITS[response]}]",
+        "unit": RESPONSE_UNITS[response],
+    }
+
+
+def _case(view: CaseView) -> dict[str, Any]:
+    return {
+        "label": case_label(view.load_case),
+        "input": view.input_label,
+        "unit": view.any.input_unit,
+        "measured": None if view.measured is None else _measured(view, view.measured),
+        "baseline": _model(view.baseline),
+        "final": _model(view.final),
+        "rms": {r: _rms(view, r) for r in RIG_RESPONSES},
+    }
+
+
+def _model(case: CaseCurves | None) -> dict[str, Any] | None:
+    if case is None:
+        return None
+    return {"x": case.input, "y": {r: case.mean[r] for r in RIG_RESPONSES if r in case.mean}}
+
+
+def _measured(view: CaseView, case: CaseCurves) -> dict[str, Any]:
+    present = [r for r in RIG_RESPONSES if r in case.mean]
+    nothing = np.zeros((2, case.input.size))
+    return {
+        "x": case.input,
+        "y": {r: case.mean[r] for r in present},
+        "half": {r: case.half_width[r] for r in present},
+        "sd": {r: view.sd.get(r, nothing) for r in present},
+    }
+
+
+def _rms(view: CaseView, response: str) -> list[list[float | None]]:
+    """[baseline, final] of the left and of the right wheel, where both curves reach."""
+    return [[_deviation(view, c, response, s) for c in (view.baseline, view.final)] for s in (0, 1)]
+
+
+def _deviation(view: CaseView, model: CaseCurves | None, response: str, side: int) -> float | None:
+    rig = view.measured
+    if model is None or rig is None or response not in rig.mean or response not in model.mean:
+        return None
+    inside = (rig.input >= model.input[0]) & (rig.input <= model.input[-1])
+    ours = np.interp(rig.input[inside], model.input, model.mean[response][side])
+    return rms_deviation(ours, rig.mean[response][side][inside])

@@ -1,0 +1,135 @@
+"""surrogates.xlsx: quality of every model, influence, variance shares, and how to read them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+from openpyxl.utils import get_column_letter
+from openpyxl.workbook import Workbook
+from openpyxl.worksheet.worksheet import Worksheet
+
+from doe_kc.influence.result import percent_of_column
+from doe_kc.output import write_whole
+from doe_kc.reporting.surrogate_tables import judged_document
+from doe_kc.reporting.workbook_cells import A3, clean, colour_scale, page, put, title, widths
+from doe_kc.reporting.workbook_matrix import case_label
+from doe_kc.reporting.workbook_tables import Value, table
+from doe_kc.surrogates.models import SURROGATES
+from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.typing import FloatArray
+
+LEGEND = (
+    ("Q2", "1 - left-out squared error / squares about the mean: 1 = perfect, 0 = no better than the mean."),
+    ("RMSE", "Root mean square left-out error, in the characteristic's unit."),
+    ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration."),
+    ("Sharpness", "Half width of the 95 % interval over the characteristic's standard deviation."),
+    ("Chosen", "The simplest model whose left-out squared error is within 10 % of the best one's."),
+    ("Left out", "Models with many hyper-parameters are refitted to each fold; linear and radial ones leave "
+     "one design out in closed form; the quadratic one chooses its terms anew in each fold."),
+    ("Influence", "Gradient of the chosen model at the unchanged axle times the parameter's step, percent of "
+     "the column's largest entry; one at a time: the same by the true solver."),
+    ("Shares", "Total effect: share of the characteristic's variance over the variables' ranges that the "
+     "parameter takes part in, percent."),
+)  # fmt: skip
+
+
+def write_surrogate_workbook(path: Path, report: SurrogateReport, *, study: str, date: str) -> Path:
+    """Sheets Quality, Influence, Shares and Legend; RunError as `write_influence_workbook`."""
+    book = Workbook()
+    book.remove(book.active)
+    _quality(book, report, study)
+    below = "Percent of each column's largest entry, at the unchanged axle; + = both grow together."
+    _matrix(book, "Influence", percent_of_column(report.changes), report, study, below, agreement=True)
+    _matrix(book, "Shares", 100.0 * report.shares, report, study, "Total effects over the ranges, percent.")
+    _legend(book, report, study, date)
+    book.properties.title = clean(f"Surrogates: {study}")
+    book.properties.creator = "doe_kc"
+    content = BytesIO()
+    book.save(content)
+    return write_whole(path, lambda beside: beside.write_bytes(content.getvalue()))
+
+
+def _quality(book: Workbook, report: SurrogateReport, study: str) -> None:
+    ws = book.create_sheet("Quality")
+    n = len(report.designs.x)
+    title(ws, f"Surrogates: {study}", f"Cross-validation over {n} designs; the model in use and all others.")
+    models = list(report.fitted.models)
+    heads = [
+        "Load case",
+        "Characteristic",
+        "Unit",
+        "Model",
+        "Q2",
+        "RMSE",
+        "Coverage",
+        "Calibrated",
+        "Sharpness",
+    ]
+    rows: list[Sequence[Value]] = []
+    documents = {name: judged_document(report, name) for name in models}
+    for entry, name in zip(report.designs.characteristics, report.fitted.chosen, strict=True):
+        d = documents[name][entry.id]
+        own: list[Value] = [case_label(entry.load_case), entry.label, entry.unit, SURROGATES[name].label]
+        own += [float(d[k]) for k in ("q2", "rmse", "coverage", "calibrated_coverage", "sharpness")]
+        rows.append([*own, *(float(documents[m][entry.id]["q2"]) for m in models)])
+    row = table(ws, 4, [*heads, *(f"Q2 {m}" for m in models)], rows, number="0.0000")
+    ws.auto_filter.ref = f"A4:{get_column_letter(len(heads) + len(models))}{row - 1}"
+    widths(ws, [24, 34, 9, 22, *[11.0] * (5 + len(models))])
+    ws.freeze_panes = "C5"
+    page(ws, study, paper=A3, single=True)
+
+
+def _matrix(
+    book: Workbook, name: str, values: FloatArray, report: SurrogateReport, study: str, below: str,
+    *, agreement: bool = False,
+) -> None:  # fmt: skip
+    ws = book.create_sheet(name)
+    title(ws, f"{name} by surrogates: {study}", below)
+    entries = report.designs.characteristics
+    heads = ["Path", "Step", *(f"{case_label(c.load_case)}: {c.label}" for c in entries)]
+    rows: list[Sequence[Value]] = []
+    for i, variable in enumerate(report.space.variables):
+        step = f"{variable.parameter.step:g} {variable.unit}".removesuffix(" -")
+        rows.append([variable.path, step, *(_finite(v) for v in values[i])])
+    row = table(ws, 4, heads, rows, number="0")
+    colour_scale(ws, f"C5:{get_column_letter(2 + len(entries))}{row - 1}")
+    if agreement:
+        _agreement(ws, row + 1, report)
+    ws.row_dimensions[4].height = 90
+    ws.freeze_panes = "C5"
+    widths(ws, [22, 12, *[11.0] * len(entries)])
+    page(ws, study, paper=A3, single=True)
+
+
+def _agreement(ws: Worksheet, row: int, report: SurrogateReport) -> None:
+    a = report.agreement
+    lines = (
+        ("Correlation with one at a time", a.correlation, "0.000"),
+        ("Strong entries of equal sign", a.same_sign, "0.00"),
+        ("Root mean square difference, percent", a.error, "0.0"),
+    )
+    for k, (text, values, number) in enumerate(lines):
+        put(ws, row + k, 1, text, bold=True)
+        for j, value in enumerate(values):
+            put(ws, row + k, 3 + j, _finite(value), number=number)
+
+
+def _legend(book: Workbook, report: SurrogateReport, study: str, date: str) -> None:
+    ws = book.create_sheet("Legend")
+    title(ws, f"Surrogates: {study}", f"doe_kc, {date}")
+    designs = report.designs
+    counts = (
+        f"{len(designs.x)} used; {designs.failed} failed, {designs.elsewhere} of other variables or bounds"
+    )
+    skipped = [(f"{name} left out", reason) for name, reason in report.fitted.skipped.items()]
+    rows: list[Sequence[Value]] = [*LEGEND, ("Designs", counts), *skipped]
+    table(ws, 4, ("Term", "Meaning"), rows)
+    widths(ws, [18, 130])
+    page(ws, study)
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

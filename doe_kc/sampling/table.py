@@ -1,0 +1,114 @@
+"""A user's table of designs: one row a design, one column a variable, absolute values."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import ClassVar
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.errors import InputError, nearest
+from doe_kc.files import read_bytes
+from doe_kc.sampling._base import Request, Sampler, design_of, sampler
+from doe_kc.sampling.design import Design
+from doe_kc.typing import FloatArray
+from doe_kc.variables import Space, Variable
+
+LABEL = "label"
+EXCEL = (".xlsx", ".xlsm")
+HEADER = 1
+SLACK = 1e-9
+"""Share of the range by which a rounded value may be beyond a bound."""
+
+
+@sampler
+class Table(Sampler):
+    """Values as they are in the table; a variable without a column keeps its start, and a column `label`
+    names the rows."""
+
+    id: ClassVar[str] = "table"
+    label: ClassVar[str] = "Table of designs"
+    sized: ClassVar[bool] = False
+    seeded: ClassVar[bool] = False
+
+    def sample(self, space: Space, request: Request) -> Design:
+        if request.table is None:
+            raise InputError(
+                'sampling: method "table" needs a file; add table = "designs.csv" to [sampling] or give '
+                "the table in the study."
+            )
+        frame = read_frame(request.table)
+        columns = _columns(frame, space, request.table)
+        points = np.tile(space.start, (len(frame), 1))
+        for i, variable in enumerate(space.variables):
+            if variable.path in columns:
+                points[:, i] = _places(frame, variable, request.table)
+        return design_of(self.id, space, points, _labels(frame))
+
+
+def read_frame(file: Path) -> pd.DataFrame:
+    """All cells of a CSV or Excel file as text; InputError when it is neither, or empty."""
+    header = read_bytes(file, "table").partition(b"\n")[0]
+    try:
+        if file.suffix.lower() in EXCEL:
+            frame = pd.read_excel(file, dtype=str, engine="openpyxl")
+        else:
+            separator = max(",;\t", key=lambda mark: header.count(mark.encode()))
+            frame = pd.read_csv(file, dtype=str, sep=separator, encoding="utf-8-sig")
+    except Exception as error:  # whatever is inside: zip, XML, encoding, CSV
+        reason = (str(error).splitlines() or [type(error).__name__])[0]
+        raise InputError(
+            f"{file}: is not a table ({reason}); expected CSV or an Excel workbook (.xlsx) with a header row."
+        ) from None
+    if frame.empty:
+        raise InputError(f"{file}: has no row below its header; add one a design.")
+    return frame.rename(columns=lambda name: str(name).strip())
+
+
+def _columns(frame: pd.DataFrame, space: Space, file: Path) -> set[str]:
+    names = [str(name) for name in frame.columns if name != LABEL]
+    for number, name in enumerate(frame.columns, start=1):
+        if name != LABEL and name not in space.paths:
+            raise InputError(
+                f"{file}: column {number}, {name!r}, is not a variable of the study; remove it, or make it "
+                f"one in [variables].{nearest(str(name), space.paths)}"
+            )
+    if len(set(names)) != len(names):
+        twice = next(n for n in names if names.count(n) > 1)
+        raise InputError(f"{file}: column {twice} is there twice; remove one.")
+    if not names:
+        raise InputError(f"{file}: has no column of a variable; expected parameter paths such as LLF.x.")
+    return set(names)
+
+
+def _places(frame: pd.DataFrame, variable: Variable, file: Path) -> FloatArray:
+    """(n,) u of a column."""
+    cells = [str(c) for c in frame[variable.path].where(frame[variable.path].notna(), "")]
+    return np.array([_place(cell, variable, f"{file}: row {i + HEADER + 1}") for i, cell in enumerate(cells)])
+
+
+def _place(cell: str, variable: Variable, where: str) -> float:
+    where = f"{where}, column {variable.path}"
+    if not cell.strip():
+        raise InputError(f"{where}: the value is missing; fill it in.")
+    try:
+        value = float(cell)
+    except ValueError:
+        raise InputError(f"{where}: {cell!r} is not a number.") from None
+    if not math.isfinite(value):
+        raise InputError(f"{where}: {cell}, expected a finite number.")
+    slack = SLACK * (variable.upper - variable.lower)
+    if not variable.lower - slack <= value <= variable.upper + slack:
+        raise InputError(
+            f"{where}: {value:g} is outside the bounds [{variable.lower:g}, {variable.upper:g}] "
+            f"{variable.unit}; change it, or widen the bounds in [variables]."
+        )
+    return variable.place(min(max(value, variable.lower), variable.upper))
+
+
+def _labels(frame: pd.DataFrame) -> list[str]:
+    if LABEL in frame:
+        return [str(text) for text in frame[LABEL].fillna("")]
+    return [f"row {i + HEADER + 1}" for i in range(len(frame))]

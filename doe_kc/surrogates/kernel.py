@@ -1,0 +1,95 @@
+"""Covariance of the `gp` surrogate, one kernel an output: a linear trend and a smooth bend of it.
+
+k(x, x') = c + z'Wz + b E(x, x') + nugget [x = x'],  z = x - centre,  W, V diagonal
+E = exp(r - (q + q') / 2) with r = z'Vz', q = z'Vz: the squared exponential of length-scales 1 / sqrt(V).
+Where value and slope at the centre are known ("pinned"), E is that kernel conditioned on both being zero
+there: exp(-(q + q') / 2) (exp(r) - 1 - r), and W = c = 0.
+Reference: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, 2006, ch. 4 and 9.4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """m kernels over d variables of standardised outputs.
+
+    relevance: (m, d) diagonal of W, the variance of each linear coefficient. curvature: (m, d) diagonal of V,
+    inverse squared length-scales. bend, constant, nugget: (m,) variances b, c and of the training rows.
+    """
+
+    relevance: FloatArray
+    curvature: FloatArray
+    bend: FloatArray
+    constant: FloatArray
+    nugget: FloatArray
+    pinned: bool = False
+
+    def scaled(self, factor: FloatArray) -> Kernel:
+        """The same functions, of outputs with variances times `factor` (m,); the nugget stays."""
+        return replace(
+            self,
+            relevance=self.relevance * factor[:, None],
+            bend=self.bend * factor,
+            constant=self.constant * factor,
+        )
+
+
+@dataclass(frozen=True)
+class Bend:
+    """E (m, p, n) and what its derivatives are made of.
+
+    dE/dz = own V z + other V z' and dE/dV = own (z² + z'²) / 2 + other z z', per variable.
+    """
+
+    value: FloatArray
+    own: FloatArray
+    other: FloatArray
+
+
+def weighted_inner(weights: FloatArray, z: FloatArray, other: FloatArray) -> FloatArray:
+    """(m, p, n) inner products of points (p, d) and (n, d) under each row of weights (m, d)."""
+    return np.asarray((z[None] * weights[:, None]) @ other.T)
+
+
+def bend(kernel: Kernel, z: FloatArray, other: FloatArray) -> Bend:
+    """E of points (p, d) and (n, d)."""
+    square = kernel.curvature @ (z * z).T
+    other_square = kernel.curvature @ (other * other).T
+    inner = weighted_inner(kernel.curvature, z, other)
+    half = -0.5 * (square[:, :, None] + other_square[:, None, :])
+    full = np.exp(np.minimum(half + inner, 0.0))
+    if not kernel.pinned:
+        return Bend(full, -full, full)
+    damping = np.exp(half)
+    value = full - damping * (1.0 + inner)
+    return Bend(value, -value, full - damping)
+
+
+def bend_at_itself(kernel: Kernel, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """E(x, x) (m, p) of points (p, d), and f (m, p) with dE(x, x)/dz = f V z."""
+    square = kernel.curvature @ (z * z).T
+    if not kernel.pinned:
+        return np.ones_like(square), np.zeros_like(square)
+    damping = np.exp(-square)
+    return 1.0 - (1.0 + square) * damping, 2.0 * square * damping
+
+
+def covariance(kernel: Kernel, z: FloatArray, other: FloatArray, curved: Bend) -> FloatArray:
+    """(m, p, n) of points (p, d) and (n, d) without the nugget; curved: their `bend`."""
+    linear = 0.0 if kernel.pinned else weighted_inner(kernel.relevance, z, other)
+    return np.asarray(linear + kernel.bend[:, None, None] * curved.value + kernel.constant[:, None, None])
+
+
+def training_covariance(kernel: Kernel, z: FloatArray) -> tuple[FloatArray, Bend]:
+    """(m, n, n) of the training rows (n, d) with the nugget, and their bend."""
+    curved = bend(kernel, z, z)
+    total = covariance(kernel, z, z, curved)
+    total[:, np.arange(len(z)), np.arange(len(z))] += kernel.nugget[:, None]
+    return total, curved

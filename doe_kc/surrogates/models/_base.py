@@ -1,0 +1,29 @@
+"""The registry of surrogates."""
+
+from __future__ import annotations
+
+from typing import TypeVar
+
+from doe_kc.errors import InputError, nearest
+from doe_kc.surrogates.interface import Surrogate
+
+SURROGATES: dict[str, type[Surrogate]] = {}
+Kind = TypeVar("Kind", bound=type[Surrogate])
+
+
+def register(kind: Kind) -> Kind:
+    """Register a surrogate; ValueError when the id is taken."""
+    if kind.id in SURROGATES:
+        raise ValueError(f"surrogate {kind.id} is registered twice")
+    SURROGATES[kind.id] = kind
+    return kind
+
+
+def make(name: str, source: str = "surrogates") -> Surrogate:
+    """The surrogate of that id with default options; InputError naming `source` when there is none."""
+    if name not in SURROGATES:
+        raise InputError(
+            f"{source}: models: {name!r} is no surrogate; known are {', '.join(SURROGATES)}."
+            f"{nearest(name, SURROGATES)}"
+        )
+    return SURROGATES[name]()

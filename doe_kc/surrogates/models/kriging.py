@@ -1,0 +1,35 @@
+"""`kriging`: one rate a variable and output, found by SMT's KRG."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, final
+
+import numpy as np
+
+from doe_kc.surrogates.interface import Fitted, Surrogate
+from doe_kc.surrogates.models._base import register
+from doe_kc.surrogates.ordinary_kriging import ordinary_kriging
+from doe_kc.surrogates.smt_library import train_kriging
+from doe_kc.typing import FloatArray
+
+
+@final
+@register
+@dataclass(frozen=True)
+class Kriging(Surrogate):
+    """Ordinary kriging. starts: of the likelihood's maximisation, each taking seconds an output in 60-D."""
+
+    starts: int = 1
+
+    id: ClassVar[str] = "kriging"
+    label: ClassVar[str] = "Kriging (SMT)"
+    complexity: ClassVar[int] = 5
+    costly: ClassVar[bool] = True
+    interpolates: ClassVar[bool] = True
+    exact_folds: ClassVar[bool] = True
+    flatters: ClassVar[bool] = True
+
+    def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
+        theta = [train_kriging(x, column, starts=self.starts, seed=seed) for column in y.T]
+        return ordinary_kriging(x, y, np.array(theta))

@@ -1,0 +1,184 @@
+"""Fits and cross-validates surrogates of all characteristics, and chooses one for each."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from doe_kc.campaign.processes import available_cores, start_context
+from doe_kc.errors import DoeKcError, InputError, RunError
+from doe_kc.surrogates.calibration import Calibrated, calibration_factors, coverage_after
+from doe_kc.surrogates.folds import fold, fold_rows
+from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.models import SURROGATES, make
+from doe_kc.surrogates.selection import choose, join
+from doe_kc.surrogates.validation import Quality, quality
+from doe_kc.surrogates.varying import fit_varying
+from doe_kc.typing import FloatArray
+
+FEWEST = 10
+"""Designs below which a cross-validation says little."""
+Progress = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A model of all outputs. held: what it says of rows it was not fitted to. factors: (m,) of calibration.
+    covered: (m,) coverage with them. seconds: of one fit.
+    """
+
+    fitted: Fitted
+    held: Held
+    quality: Quality
+    factors: FloatArray
+    covered: FloatArray
+    seconds: float
+
+
+@dataclass(frozen=True)
+class SurrogateStudy:
+    """x: (n, d) designs, y: (n, m) outputs. models: id -> result, the simplest first. skipped: id -> why.
+    chosen: (m,) model id of each output.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    models: dict[str, Judged]
+    skipped: dict[str, str]
+    chosen: tuple[str, ...]
+
+    @property
+    def model(self) -> Fitted:
+        """The chosen models as one, variances calibrated."""
+        return join({k: Calibrated(m.fitted, m.factors) for k, m in self.models.items()}, self.chosen)
+
+    def of_chosen(self, values: dict[str, FloatArray]) -> FloatArray:
+        """(..., m) of model -> (..., m): each output's from its chosen model."""
+        return np.stack([values[name][..., j] for j, name in enumerate(self.chosen)], axis=-1)
+
+
+def default_models(designs: int, variables: int) -> list[str]:
+    """Models that fit all outputs in seconds and need no more designs than there are."""
+    return [k for k, kind in SURROGATES.items() if not kind.costly and kind().fewest(variables) <= designs]
+
+
+def number_of_tasks(names: Sequence[str], designs: int, folds: int) -> int:
+    """Steps of the progress of `fit_study`."""
+    return sum(1 + (min(folds, designs) if SURROGATES[n].flatters else 0) for n in names if n in SURROGATES)
+
+
+def fit_study(
+    x: FloatArray,
+    y: FloatArray,
+    *,
+    models: Sequence[str] = (),
+    folds: int = 10,
+    seed: int = 0,
+    workers: int | None = None,
+    progress: Progress = lambda _: None,
+) -> SurrogateStudy:
+    """Every model fitted to designs x (n, d) in the unit cube and outputs y (n, m), judged and chosen from.
+
+    models: ids, default those of `default_models`. Models that learn many hyper-parameters are judged by
+    refitting them to `folds`; the others by their own cross-validation. A model that cannot be fitted is
+    skipped with its reason; InputError when none can, or there are fewer than 10 designs.
+    """
+    if len(x) < FEWEST:
+        raise InputError(
+            f"surrogates: {len(x)} designs, needs at least {FEWEST}; run more with doe-kc sample."
+        )
+    names = sorted(models or default_models(*x.shape), key=lambda n: make(n).complexity)
+    results = _all(_tasks(names, x, y, folds, seed), workers, progress)
+    judged: dict[str, Judged] = {}
+    skipped: dict[str, str] = {}
+    for name in names:
+        parts = results[name]
+        failed = [p for p in parts if isinstance(p, str)]
+        if failed:
+            skipped[name] = failed[0]
+        else:
+            judged[name] = _judged(parts, x, y, folds, seed)
+    if not judged:
+        raise InputError(next(iter(skipped.values())))
+    complexity = {name: SURROGATES[name].complexity for name in judged}
+    chosen = choose({name: j.quality.q2 for name, j in judged.items()}, complexity)
+    return SurrogateStudy(x, y, judged, skipped, chosen)
+
+
+@dataclass(frozen=True)
+class _Whole:
+    fitted: Fitted
+    seconds: float
+
+
+_Part = _Whole | tuple[FloatArray, FloatArray] | str
+_Task = Callable[[], _Part]
+
+
+def _tasks(
+    names: Sequence[str], x: FloatArray, y: FloatArray, folds: int, seed: int
+) -> list[tuple[str, _Task]]:
+    tasks: list[tuple[str, _Task]] = []
+    for name in names:
+        tasks.append((name, partial(_whole, name, x, y, seed)))
+        if SURROGATES[name].flatters:
+            rows = fold_rows(len(x), folds, seed)
+            tasks += [(name, partial(_fold, name, x, y, left, seed)) for left in rows]
+    return tasks
+
+
+def _whole(name: str, x: FloatArray, y: FloatArray, seed: int) -> _Part:
+    started = time.perf_counter()
+    try:
+        fitted = fit_varying(make(name), x, y, seed=seed)
+    except DoeKcError as error:
+        return str(error)
+    return _Whole(fitted, time.perf_counter() - started)
+
+
+def _fold(name: str, x: FloatArray, y: FloatArray, left: np.ndarray, seed: int) -> _Part:
+    try:
+        return fold(make(name), x, y, left, seed)
+    except DoeKcError as error:
+        return str(error)
+
+
+def _all(tasks: list[tuple[str, _Task]], workers: int | None, progress: Progress) -> dict[str, list[_Part]]:
+    results: dict[str, list[_Part]] = {name: [] for name, _ in tasks}
+    count = min(workers or available_cores(), len(tasks))
+    if count <= 1:
+        for name, task in tasks:
+            results[name].append(task())
+            progress(1)
+        return results
+    with ProcessPoolExecutor(count, mp_context=start_context()) as pool:
+        futures = [(name, pool.submit(task)) for name, task in tasks]
+        try:
+            for name, future in futures:
+                results[name].append(future.result())
+                progress(1)
+        except BrokenProcessPool:
+            raise RunError("a worker process was ended from outside; use fewer --workers.") from None
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return results
+
+
+def _judged(parts: list[_Part], x: FloatArray, y: FloatArray, folds: int, seed: int) -> Judged:
+    whole = next(p for p in parts if isinstance(p, _Whole))
+    refits = [p for p in parts if isinstance(p, tuple)]
+    held = whole.fitted.cross_validate()
+    if refits:
+        residual, variance = np.empty_like(y), np.empty_like(y)
+        for left, (e, v) in zip(fold_rows(len(x), folds, seed), refits, strict=True):
+            residual[left], variance[left] = e, v
+        held = Held(residual, variance)
+    covered = coverage_after(held, seed=seed)
+    return Judged(whole.fitted, held, quality(y, held), calibration_factors(held), covered, whole.seconds)

@@ -1,0 +1,48 @@
+"""How good a surrogate is, from values that it was not fitted to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.typing import FloatArray
+
+NOMINAL = 0.95
+"""Coverage that an interval promises."""
+WIDTH = float(norm.ppf(0.5 + NOMINAL / 2.0))
+"""Standard deviations to either side of it."""
+
+
+@dataclass(frozen=True)
+class Quality:
+    """All (m,).
+
+    q2: 1 - sum of squared residuals / sum of squares about the mean; 1 = perfect, 0 = no better than the
+    mean, nan for an output that does not vary. rmse: unit of the output. coverage: share of true values
+    inside the 95 % interval. sharpness: half width of that interval, root mean square, over the output's
+    standard deviation.
+    """
+
+    q2: FloatArray
+    rmse: FloatArray
+    coverage: FloatArray
+    sharpness: FloatArray
+
+
+def quality(values: FloatArray, held: Held) -> Quality:
+    """Of true values (n, m), their residuals and predicted variances."""
+    total = np.square(values - values.mean(axis=0)).sum(axis=0)
+    square = np.square(held.residual)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        q2 = np.where(total > 0.0, 1.0 - square.sum(axis=0) / total, np.nan)
+        half = WIDTH * np.sqrt(held.variance.mean(axis=0) / (total / len(values)))
+    inside = np.sqrt(square) <= WIDTH * np.sqrt(held.variance)
+    return Quality(q2, np.sqrt(square.mean(axis=0)), inside.mean(axis=0), half)
+
+
+def quality_on(model: Fitted, x: FloatArray, y: FloatArray) -> Quality:
+    """On an independent set of points x (n, d) with true values y (n, m)."""
+    return quality(y, Held(y - model.predict(x), model.variance(x)))

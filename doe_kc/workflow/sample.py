@@ -1,0 +1,154 @@
+"""Samples the study's variables by the true solver, every result into the study's store."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from doe_kc.campaign.export import Format, designs_frame, export_store, write_table
+from doe_kc.campaign.runner import Campaign
+from doe_kc.campaign.store import read_store
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.sampling import Design, find_sampler, sample
+from doe_kc.study import Study
+from doe_kc.true_solver.make import solver_for
+from doe_kc.true_solver.outcome import Outcome
+from doe_kc.variables import Space
+
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """outcomes: of the design's rows, without curves, which are in the store.
+
+    runs: true-solver runs made; kept: rows whose result was there before, or stands in an earlier row.
+    """
+
+    design: Design
+    outcomes: tuple[Outcome, ...]
+    runs: int
+    seconds: float
+
+    @property
+    def kept(self) -> int:
+        return len(self.outcomes) - self.runs
+
+    @property
+    def failed(self) -> list[Outcome]:
+        """Rows without a result."""
+        return [o for o in self.outcomes if o.failed]
+
+
+def study_design(study: Study, space: Space | None = None, *, method: str | None, n: int | None) -> Design:
+    """Designs of the study's space (or another); method and n in place of the study's own.
+
+    InputError for an unknown method, a table that does not fit, or a full factorial too large.
+    """
+    options = study.sampling
+    chosen = method or options.method
+    find_sampler(chosen, "--method" if method else f"{study.source}: sampling.method")
+    return sample(
+        space or study.space,
+        n or options.n,
+        seed=study.seed,
+        method=chosen,
+        levels=options.levels,
+        table=study.folder / options.table if options.table is not None else None,
+    )
+
+
+def run_sample(
+    study: Study,
+    design: Design,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    retry_failed: bool = False,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Sampled:
+    """Every design of the sample evaluated, by the study's solver into the study's store."""
+    started = time.perf_counter()
+    solver = solver_for(study.axle, study.solver, study.windows, study.folder)
+    with Campaign(
+        solver, study.store, workers=workers, scheduler=scheduler, retry_failed=retry_failed
+    ) as campaign:
+        found = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
+    return Sampled(design, tuple(found), campaign.runs, time.perf_counter() - started)
+
+
+def write_sample(study: Study, sampled: Sampled, folder: Path, form: Format | None = None) -> list[Path]:
+    """designs.csv of the sample; with a format also designs.parquet and the whole store, curves included."""
+    frame = designs_frame(list(sampled.design.rows()), sampled.outcomes)
+    frame.insert(0, "label", list(sampled.design.labels))
+    written = [write_table(folder / "designs.csv", frame)]
+    if form == "parquet":
+        written.append(write_table(folder / "designs.parquet", frame))
+    if form is not None:
+        with read_store(study.store) as store:
+            written += export_store(store, folder, form, study.windows)
+    return written
+
+
+def reasons(outcomes: Sequence[Outcome]) -> list[tuple[int, str]]:
+    """How often each kind of failure, the most frequent first; alike but for numbers is one kind.
+
+    The reason given is the first of its kind.
+    """
+    kinds = [NUMBER.sub("#", o.reason) for o in outcomes]
+    first = {kind: o.reason for kind, o in reversed(list(zip(kinds, outcomes, strict=True)))}
+    return [(count, first[kind]) for kind, count in Counter(kinds).most_common()]
+
+
+def sample_document(study: Study, sampled: Sampled) -> dict[str, Any]:
+    """Counts, reasons of failures, and low, mean, high of each characteristic.
+
+    `{"method", "n", "seed", "runs", "kept", "failed", "reasons", "characteristics", "store", "seconds"}`.
+    """
+    values = np.array([o.characteristics for o in sampled.outcomes if not o.failed])
+    known = [(i, c) for i, c in enumerate(CHARACTERISTICS.values()) if values.size and _known(values[:, i])]
+    return {
+        "method": sampled.design.method,
+        "n": len(sampled.outcomes),
+        "seed": sampled.design.seed,
+        "runs": sampled.runs,
+        "kept": sampled.kept,
+        "failed": len(sampled.failed),
+        "reasons": [{"count": count, "reason": reason} for count, reason in reasons(sampled.failed)],
+        "characteristics": {
+            c.id: {
+                "low": np.nanmin(values[:, i]),
+                "mean": np.nanmean(values[:, i]),
+                "high": np.nanmax(values[:, i]),
+                "unit": c.unit,
+            }
+            for i, c in known
+        },
+        "store": str(study.store),
+        "seconds": sampled.seconds,
+    }
+
+
+def _known(column: Any) -> bool:
+    return bool(np.isfinite(column).any())
+
+
+def sample_lines(document: dict[str, Any]) -> list[str]:
+    """For a terminal: the span of every characteristic, the counts, the reasons of failures."""
+    lines = [f"{'characteristic':32}{'lowest':>12}{'mean':>12}{'highest':>12}"]
+    for name, span in document["characteristics"].items():
+        numbers = "".join(f"{span[key]:12.5g}" for key in ("low", "mean", "high"))
+        lines.append(f"{name:32}{numbers}  {span['unit']}")
+    lines += [f"{entry['count']} x {entry['reason']}" for entry in document["reasons"]]
+    lines.append(
+        f"{document['n']} designs ({document['method']}): {document['runs']} run, {document['kept']} already "
+        f"there, {document['failed']} failed; {document['seconds']:.1f} s"
+    )
+    return lines

@@ -1,0 +1,34 @@
+"""Bounded quadratic steps against an independent solver."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import lsq_linear
+
+from doe_kc.correlation.least_squares import bounded_step
+
+
+@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("d", [1, 5, 40])
+def test_equals_an_interior_point_solution(seed: int, d: int) -> None:
+    rng = np.random.default_rng(seed)
+    root = rng.standard_normal((d + 3, d)) * 10.0 ** rng.uniform(-2, 2, d)
+    wish = rng.standard_normal(d + 3) * 5.0
+    lower, upper = -rng.uniform(0.0, 0.3, d), rng.uniform(0.01, 0.3, d)
+    found = bounded_step(root.T @ root, -root.T @ wish, lower, upper)
+    known = lsq_linear(root, wish, (lower - 1e-15, upper), method="trf", tol=1e-14, max_iter=2000)
+    assert np.all((found >= lower) & (found <= upper))
+    assert np.sum((root @ found - wish) ** 2) <= 2.0 * known.cost * (1.0 + 1e-7) + 1e-9
+
+
+def test_a_box_of_nothing_gives_no_step() -> None:
+    zero = np.zeros(3)
+    assert np.all(bounded_step(np.eye(3), np.ones(3), zero, zero) == 0.0)
+
+
+def test_unbounded_is_newton() -> None:
+    hessian = np.array([[4.0, 1.0], [1.0, 3.0]])
+    gradient = np.array([1.0, -2.0])
+    found = bounded_step(hessian, gradient, np.full(2, -10.0), np.full(2, 10.0))
+    np.testing.assert_allclose(found, -np.linalg.solve(hessian, gradient), rtol=1e-10)
