@@ -7,22 +7,27 @@ from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.typing import FloatArray
 
-ITERATIONS = 200
-SHARES = 0.5 ** np.arange(30)
+ITERATIONS = 500
+HALVINGS = 30
 SUFFICIENT = 1e-4
 """Share of the slope's promise that a step must keep (Armijo)."""
 
 
 def bounded_step(
-    hessian: FloatArray, gradient: FloatArray, lower: FloatArray, upper: FloatArray
+    hessian: FloatArray,
+    gradient: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    *,
+    iterations: int = ITERATIONS,
 ) -> FloatArray:
     """(d,) s that minimizes 1/2 s'Hs + g's with lower <= s <= upper; H (d, d) positive definite.
 
     Newton steps on the free variables, projected onto the box (D. P. Bertsekas, Projected Newton methods,
-    SIAM J. Control Optim. 20(2), 1982).
+    SIAM J. Control Optim. 20(2), 1982). iterations: fewer leave a step that is good but not the best.
     """
     step = np.clip(np.zeros_like(gradient), lower, upper)
-    for _ in range(ITERATIONS):
+    for _ in range(iterations):
         slope = hessian @ step + gradient
         held = ((step <= lower) & (slope > 0)) | ((step >= upper) & (slope < 0))
         free = ~held
@@ -30,7 +35,7 @@ def bounded_step(
             return step
         move = np.zeros_like(step)
         move[free] = -cho_solve(cho_factor(hessian[np.ix_(free, free)]), slope[free])
-        if -slope @ move <= 1e-14 * max(1.0, abs(gradient @ step)):
+        if -slope @ move <= 1e-14 * max(1.0, float(abs(gradient @ step))):
             return step
         following = _projected(hessian, slope, step, move, lower, upper)
         if following is None:
@@ -48,8 +53,8 @@ def _projected(
     upper: FloatArray,
 ) -> FloatArray | None:
     """The longest halved move along the projected arc that gains enough; None when none does."""
-    for share in SHARES:
-        new = np.clip(step + share * move, lower, upper)
+    for halving in range(HALVINGS):
+        new = np.clip(step + 0.5**halving * move, lower, upper)
         change = new - step
         promised = slope @ change
         if promised < 0 and promised + 0.5 * change @ hessian @ change <= SUFFICIENT * promised:

@@ -13,7 +13,7 @@ from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.reduction import static_sd
-from doe_kc.solver.curve_gradient import CurveGradients
+from doe_kc.solver.curve_gradient import CurveGradients, interpolated
 from doe_kc.targets.build import reached
 from doe_kc.targets.target import Targets
 from doe_kc.typing import FloatArray
@@ -187,13 +187,6 @@ def _model(data: CurveData, curves: CurveSet) -> FloatArray:
 def _rows(data: CurveData, gradients: CurveGradients) -> FloatArray:
     values = gradients.cases[data.load_case][data.response][data.side]
     return interpolated(data.input, gradients.inputs[data.load_case], values)
-
-
-def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:
-    """(m, p) rows (n, p) on `grid`, linear between its points."""
-    right = np.clip(np.searchsorted(grid, wanted), 1, grid.size - 1)
-    share = (wanted - grid[right - 1]) / (grid[right] - grid[right - 1])
-    return np.asarray(rows[right - 1] + share[:, None] * (rows[right] - rows[right - 1]))
 
 
 def _scalar(figure: Figure, curves: CurveSet | None, characteristics: FloatArray) -> float:

@@ -10,9 +10,10 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
-from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients
+from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients, interpolated
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
+from doe_kc.targets import CurveTarget
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
@@ -65,3 +66,10 @@ def _chained(gradients: CurveGradients, chain: FloatArray, space: Space) -> Curv
         cases={c: {r: g @ chain for r, g in responses.items()} for c, responses in gradients.cases.items()},
         static={r: g @ chain for r, g in gradients.static.items()},
     )
+
+
+def scaled_slopes(target: CurveTarget, curves: CurveGradients) -> FloatArray:
+    """(2 n, d) slopes of one curve at the measured inputs, scaled as `Targets.scaled_curves`."""
+    found = curves.cases[target.load_case][target.response]
+    sides = [interpolated(target.input, curves.inputs[target.load_case], side) for side in found]
+    return np.vstack(sides) / (target.objective.norm * np.sqrt(target.curve.size))

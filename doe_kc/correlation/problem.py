@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.correlation.linearization import Linearization, linearize
+from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
 from doe_kc.errors import RunError
 from doe_kc.targets import Rating, Score, Targets, rate, score
 from doe_kc.true_solver.outcome import Outcome
@@ -80,6 +80,13 @@ class Problem:
         if not self.exact:
             raise RunError("the study's solver gives no sensitivities; choose a method that needs none.")
         return linearize(self.axle, self.space, point, self.windows)
+
+    def output_slopes(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Exact slopes of the targets' characteristics (k, d) and of the scaled curves (N, d)."""
+        expansion = self.linearize(point)
+        rows = [scaled_slopes(t, expansion.curves) for t in self.targets.curves]
+        empty = np.zeros((0, self.space.dimension))
+        return expansion.characteristics[self.targets.rows], np.vstack([empty, *rows])
 
     def judged(self, index: int, candidate: Candidate, outcome: Outcome) -> Evaluated:
         """The candidate with its answer scored and rated; a response that is not finite is a failure."""

@@ -67,7 +67,7 @@ def _row(ws: Worksheet, r: int, row: TermRow) -> None:
     for c, value in enumerate(numbers, start=6):
         put(ws, r, c, value, number="General" if c in {9, 10, 11} else VALUE)
     for column in EDITED:
-        if ws[f"{column}{r}"].value is not None and not (row.kind == "curve" and column == "F"):
+        if ws[f"{column}{r}"].value is not None:
             ws[f"{column}{r}"].fill = INPUT
     for value, at in ((row.baseline, "MNO"), (row.final, "PQR")):
         _formulas(ws, r, row, value, at)

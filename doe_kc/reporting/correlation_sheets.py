@@ -32,6 +32,7 @@ from doe_kc.reporting.workbook_cells import (
 )
 
 FIRST = 5
+COLUMNS_PER_PAGE = 24
 Value = str | float | int | None
 INSIDE = PatternFill("solid", bgColor="D6E9F8")
 OUTSIDE = PatternFill("solid", bgColor="FBDDB3")
@@ -51,7 +52,7 @@ def grid(
     for r, values in enumerate(rows, start=start + 1):
         for c, value in enumerate(values, start=1):
             number = formats[c - 1] if c <= len(formats) and not isinstance(value, str) else None
-            put(ws, r, c, value, number=number or None)
+            put(ws, r, c, value, number=number or None, indent=int(isinstance(value, str)))
     last = start + len(rows)
     frame(ws, range(start, last + 1), range(1, len(heads) + 1))
     ws.auto_filter.ref = f"A{start}:{get_column_letter(len(heads))}{max(last, start)}"
@@ -163,6 +164,8 @@ def evaluations_sheet(book: Workbook, found: Correlation, study: str) -> None:
     ws.freeze_panes = ws.cell(FIRST, 4)
     widths(ws, [11, 18, 13, 13, 9, 9, 34, 13, 12, 9, *[11.0] * len(names)])
     page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    ws.page_setup.fitToWidth = -(-len(heads) // COLUMNS_PER_PAGE)
+    ws.print_title_cols = "A:C"
 
 
 def _head(column: str, unit: str) -> str:

@@ -116,8 +116,6 @@ def _curves(found: Correlation) -> Iterator[TermRow]:
             id=t.id,
             label=f"{case_label(t.load_case)}: {RESPONSE_LABELS[t.response]}, RMS",
             unit=RESPONSE_UNITS[t.response],
-            goal="target",
-            target=0.0,
             sign=t.objective.sign,
             baseline=rms[0],
             final=rms[1],

@@ -68,7 +68,7 @@ def _pair(ax: Axes, front: Front) -> None:
 
 
 def _marked(front: Front) -> list[tuple[int, str, str, str]]:
-    """Place, colour, marker and line, and words of the designs that stand out; shapes differ as colours do."""
+    """Place, colour, marker with line, and words of the designs that stand out; shapes differ as well."""
     best = (0, BEST, "o-", f"best rating {front.ratings[0]:.3g}: design {front.indices[0]}")
     knee = front.knee
     words = f"knee, rating {front.ratings[knee]:.3g}: design {front.indices[knee]}"

@@ -67,7 +67,8 @@ def _panel(ax: Axes, report: SurrogateReport, j: int, predicted: FloatArray, sd:
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_locator(MaxNLocator(3))
     q2 = report.fitted.models[name].quality.q2[j]
-    heads = f"{case_label(entry.load_case)}\n{entry.label} / {entry.unit}\n{name}, Q² {q2:.4f}"
+    how = f"{name}, Q² {q2:.4f}" if np.isfinite(q2) else "never changes"
+    heads = f"{case_label(entry.load_case)}\n{entry.label} / {entry.unit}\n{how}"
     ax.set_title(heads, fontsize=6.5, parse_math=False)
 
 
@@ -101,7 +102,13 @@ def model_quality(report: SurrogateReport, *, study: str) -> Figure:
     coverage.set_yticklabels([])
     for ax in (quality, coverage):
         ax.set_ylim(len(entries) - 0.4, -0.6)
-        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.5 / (height - 1.6)), ncols=3, fontsize=6.5, frameon=False)
+        ax.legend(
+            loc="upper center",
+            bbox_to_anchor=(0.5, -0.5 / (height - 1.6)),
+            ncols=3,
+            fontsize=6.5,
+            frameon=False,
+        )
     fig.suptitle(f"Quality of the surrogates: {study}", fontsize=11, parse_math=False)
     return fig
 
@@ -131,6 +138,7 @@ def _coverage(ax: Axes, report: SurrogateReport, places: FloatArray) -> None:
     ax.plot(100.0 * after, places, "o", ms=4.0, mew=0, color=PALETTE["blue"], label="calibrated")
     low = min(80.0, 100.0 * float(min(before.min(), after.min())) - 3.0)
     ax.set_xlim(low, 101.0)
+    ax.set_xticks([t for t in range(0, 101, 10 if low > 50.0 else 20) if t >= low])
     label(ax, "in the 95 % interval / %", None)
 
 

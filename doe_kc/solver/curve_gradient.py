@@ -51,3 +51,10 @@ def _case(solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ..
         curve = mean[:, columns].transpose(1, 0, 2)
         out[response] = curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
     return out
+
+
+def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:
+    """(m, p) rows (n, p) on `grid`, linear between its points."""
+    right = np.clip(np.searchsorted(grid, wanted), 1, grid.size - 1)
+    share = (wanted - grid[right - 1]) / (grid[right] - grid[right - 1])
+    return np.asarray(rows[right - 1] + share[:, None] * (rows[right] - rows[right - 1]))

@@ -17,7 +17,7 @@ from doe_kc.surrogates.cholesky import ALIKE, inverse_roots
 from doe_kc.surrogates.interface import Fitted, Held
 from doe_kc.typing import FloatArray
 
-NUGGETS = (1e-12, 1e-10, 1e-8)
+NUGGETS = (1e-10, 1e-8)
 """Tried in turn until the correlation can be factorised."""
 
 

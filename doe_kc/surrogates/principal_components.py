@@ -12,6 +12,9 @@ import numpy as np
 from doe_kc.errors import InputError
 from doe_kc.typing import FloatArray
 
+ROUND_OFF = 1e-13
+"""Of the largest value: smaller differences of curves are none."""
+
 
 @dataclass(frozen=True)
 class Components:
@@ -48,7 +51,8 @@ def principal_components(curves: FloatArray, *, error: float, most: int | None =
         raise InputError("curves: expected two or more rows of finite values; leave failed designs out.")
     mean = values.mean(axis=0)
     left, size, shapes = np.linalg.svd(values - mean, full_matrices=False)
-    count = _fewest(left * size, values.shape[1], error)
+    least = ROUND_OFF * float(np.abs(values).max())
+    count = _fewest(left * size, values.shape[1], max(error, least))
     count = min(count, len(size) if most is None else most)
     rest = ((left[:, count:] * size[count:]) @ shapes[count:]) ** 2
     spread = size[:count] / np.sqrt(len(values))
@@ -60,5 +64,4 @@ def _fewest(scores: FloatArray, points: int, error: float) -> int:
     square = np.zeros((len(scores), scores.shape[1] + 1))
     square[:, :-1] = np.cumsum(scores[:, ::-1] ** 2, axis=1)[:, ::-1]
     worst = np.sqrt(square.max(axis=0) / points)
-    floor = 1e-14 * worst[0]
-    return int(np.argmax(worst <= max(error, floor)))
+    return int(np.argmax(worst <= error))

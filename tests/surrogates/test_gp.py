@@ -16,6 +16,7 @@ from doe_kc.surrogates.kernel import Kernel, training_covariance
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn
 from doe_kc.surrogates.models.gp import FittedGaussianProcess, GaussianProcess, Trend
 from doe_kc.surrogates.posterior import condition
+from doe_kc.surrogates.threads import one_thread
 from doe_kc.typing import FloatArray
 from tests.surrogates.problems import differences, points, problem
 
@@ -67,7 +68,8 @@ def test_left_out_rows_are_those_of_a_fit_without_them() -> None:
 def test_learning_raises_the_likelihood() -> None:
     sample = Sample(P.x - P.x.mean(axis=0), (P.y - P.y.mean(axis=0)) / P.y.std(axis=0))
     before = even_kernel(sample, Learning())
-    after = learn(before, sample, Learning())
+    with one_thread():
+        after = learn(before, sample, Learning())
     likelihoods = [condition(k, sample.z, sample.values).evidence for k in (before, after)]
     assert (likelihoods[1] > likelihoods[0] + 1.0).all()
 
@@ -136,10 +138,10 @@ def test_a_known_expansion_helps() -> None:
         fitted = GaussianProcess(trend=trend).fit(x, outputs(x))
         errors.append(np.square((fitted.predict(test) - outputs(test)) / P.y.std(axis=0)).mean(axis=0))
         gradient = fitted.gradient(P.test) / P.y.std(axis=0)[:, None]
-        wanted = differences(fitted.predict, P.test, 1e-4) / P.y.std(axis=0)[:, None]
+        wanted = differences(fitted.predict, P.test, 2e-3) / P.y.std(axis=0)[:, None]
         assert np.abs(gradient - wanted).max() < 1e-5
         slope = fitted.variance_gradient(P.test) / P.y.var(axis=0)[:, None]
-        wanted = differences(fitted.variance, P.test, 1e-4) / P.y.var(axis=0)[:, None]
+        wanted = differences(fitted.variance, P.test, 2e-3) / P.y.var(axis=0)[:, None]
         assert np.abs(slope - wanted).max() < 1e-5
     assert (errors[1] < 0.8 * errors[0]).all()
 
@@ -155,9 +157,11 @@ def test_learning_goes_on_from_an_earlier_fit() -> None:
     first = fit()
     same = fit(start=first, learning=KEEP)
     np.testing.assert_allclose(same.predict(P.test), first.predict(P.test), rtol=1e-12)
-    other = GaussianProcess(start=first, learning=KEEP).fit(P.x[:30], 5.0 * P.y[:30])
-    direct = GaussianProcess(start=first, learning=KEEP).fit(P.x[:30], P.y[:30])
-    np.testing.assert_allclose(other.predict(P.test), 5.0 * direct.predict(P.test), rtol=1e-9)
+    fewer = GaussianProcess(start=first, learning=KEEP).fit(P.x[:20], P.y[:20])
+    assert isinstance(fewer, FittedGaussianProcess)
+    for kernel in ("relevance", "bend", "constant"):
+        before, after = (getattr(f.kernel, kernel).T * f.scaling.scale**2 for f in (first, fewer))
+        np.testing.assert_allclose(after, before, rtol=1e-12)  # the same function, in the outputs' units
 
 
 def test_an_earlier_fit_of_something_else_is_refused() -> None:

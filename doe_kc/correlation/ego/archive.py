@@ -14,13 +14,17 @@ from doe_kc.typing import FloatArray
 
 UNRESOLVED = 2e-3
 """RMS over Norm that the left-out principal components of a curve may have: a tenth of a rig's noise."""
+STRETCH = 0.1
+"""Change of a variable, share of its bounds, over which exact slopes of the curves are to be resolved."""
+Slopes = tuple[FloatArray, FloatArray]
 
 
 @dataclass(frozen=True)
 class Archive:
     """Designs with an answer. points: (n, d). outputs: (n, k + q). composite: the rating of such outputs.
 
-    failed: (f, d) points without an answer.
+    failed: (f, d) points without an answer. expansion: (k + q, d) exact slopes of the outputs at the best
+    design, None without them.
     """
 
     solved: tuple[Evaluated, ...]
@@ -28,6 +32,7 @@ class Archive:
     outputs: FloatArray
     composite: Composite
     failed: FloatArray
+    expansion: FloatArray | None
 
     @property
     def best(self) -> Evaluated:
@@ -35,21 +40,33 @@ class Archive:
         return max(self.solved, key=lambda e: e.merit)
 
 
-def build_archive(targets: Targets, evaluated: Sequence[Evaluated]) -> Archive:
-    """Archive of distinct designs; curves as scores of their principal components."""
+def build_archive(targets: Targets, evaluated: Sequence[Evaluated], slopes: Slopes | None = None) -> Archive:
+    """Archive of distinct designs; curves as scores of their principal components.
+
+    slopes: exact ones of the characteristics (k, d) and of the scaled curves (N, d) at the best design.
+    """
     solved = tuple(distinct([e for e in evaluated if e.score is not None]))
     dead = [e.point for e in evaluated if e.score is None]
     points = np.array([e.point for e in solved])
     values = np.array([e.score.values for e in solved if e.score is not None])
     scaled = np.array([e.scaled for e in solved])
-    mean, basis = principal_axes(scaled, targets)
+    mean, basis = principal_axes(_seen(solved, scaled, slopes), targets)
     return Archive(
         solved,
         points,
         np.hstack([values, (scaled - mean) @ basis.T]),
         Composite(targets, mean, basis),
         np.array(dead).reshape(len(dead), points.shape[1]),
+        None if slopes is None else np.vstack([slopes[0], basis @ slopes[1]]),
     )
+
+
+def _seen(solved: Sequence[Evaluated], scaled: FloatArray, slopes: Slopes | None) -> FloatArray:
+    """Curves that the components must resolve: those of the designs, and those that the slopes lead to."""
+    if slopes is None:
+        return scaled
+    best = int(np.argmax([e.merit for e in solved]))
+    return np.vstack([scaled, scaled[best] + STRETCH * slopes[1].T])
 
 
 def distinct(evaluated: Sequence[Evaluated]) -> list[Evaluated]:
@@ -65,11 +82,10 @@ def principal_axes(scaled: FloatArray, targets: Targets) -> tuple[FloatArray, Fl
     mean = scaled.mean(axis=0)
     if scaled.shape[1] == 0:
         return mean, np.zeros((0, 0))
-    centred = scaled - mean
-    u, s, basis = np.linalg.svd(centred, full_matrices=False)
-    left = centred.copy()
+    left = scaled - mean
+    u, s, basis = np.linalg.svd(left, full_matrices=False)
     for q in range(len(s)):
         if all(np.linalg.norm(left[:, part], axis=1).max() <= UNRESOLVED for part in targets.blocks):
             return mean, basis[:q]
-        left -= np.outer(u[:, q] * s[q], basis[q])
+        left = left - np.outer(u[:, q] * s[q], basis[q])
     return mean, basis[s > 1e-9 * max(s[0], 1e-300)]

@@ -15,6 +15,8 @@ from doe_kc.typing import FloatArray
 STEPS = 30
 SETTLED = 1e-4
 """Relative gain of a step below which the search has settled."""
+ROUGH = 10
+"""Iterations of each step's bounds: the next step goes on where they end."""
 RIDGE = 1e-3
 """Rating per squared prior sd."""
 
@@ -71,7 +73,7 @@ def gauss_newton(
         hessian = jacobian.T @ near.hessian @ jacobian + np.diag(weight)
         gradient = jacobian.T @ near.gradient + doubt * known.variance_gradient[0].T @ near.variance
         gradient += weight * (point - home)
-        step = bounded_step(hessian, gradient, box.lower - point, box.upper - point)
+        step = bounded_step(hessian, gradient, box.lower - point, box.upper - point, iterations=ROUGH)
         point, gained = _line_search(merit, point, step, value)
         if gained <= SETTLED * max(1.0, abs(value)):
             break

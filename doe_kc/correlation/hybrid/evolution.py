@@ -52,7 +52,7 @@ class DifferentialEvolution(Search):
         mutant = np.where(mutant > 1.0, 0.5 * (parent + 1.0), mutant)
         crossed = rng.random(parent.size) < np.clip(rng.normal(0.5, 0.1), 0.0, 1.0)
         crossed[rng.integers(parent.size)] = True
-        return np.where(crossed, mutant, parent)
+        return np.asarray(np.where(crossed, mutant, parent))
 
 
 @final

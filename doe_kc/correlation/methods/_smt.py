@@ -6,6 +6,7 @@ import contextlib
 import io
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -39,19 +40,19 @@ def propose(points: FloatArray, losses: FloatArray, *, number: int, seed: int) -
     One of its iterations is run on a function that only notes what it is asked for. Empty when its inner
     search fails. RunError when the surrogate cannot be trained.
     """
-    from smt.applications import EGO
-    from smt.design_space import DesignSpace
-    from smt.surrogate_models import KPLS
+    from smt import applications, design_space, surrogate_models
 
+    library: Any = applications
+    models: Any = surrogate_models
     asked: list[FloatArray] = []
 
     def note(x: FloatArray) -> FloatArray:
         asked.extend(np.array(x, dtype=float))
         return np.zeros((len(x), 1))
 
-    space = DesignSpace(np.tile([0.0, 1.0], (points.shape[1], 1)), seed=seed)
-    surrogate = KPLS(design_space=space, print_global=False, seed=seed)
-    ego = EGO(
+    space = design_space.DesignSpace(np.tile([0.0, 1.0], (points.shape[1], 1)), seed=seed)
+    surrogate = models.KPLS(design_space=space, print_global=False, seed=seed)
+    ego = library.EGO(
         n_iter=1,
         criterion="EI",
         n_parallel=number,
@@ -67,12 +68,18 @@ def propose(points: FloatArray, losses: FloatArray, *, number: int, seed: int) -
             ego.optimize(note)
         except (ValueError, np.linalg.LinAlgError) as error:
             raise RunError(f"SMT's EGO could not be trained on {len(points)} designs ({error}).") from None
-    known = {p.tobytes() for p in points}  # after a failed inner search EGO asks for the last ones again
-    new = [np.clip(x, 0.0, 1.0) for x in asked if x.tobytes() not in known]
-    return [_expected(ego.gpr, x) for x in new]
+    return [_expected(ego.gpr, np.clip(x, 0.0, 1.0)) for x in _without_repeats(asked, points)]
 
 
-def _expected(surrogate: object, point: FloatArray) -> Proposal:
-    loss = float(surrogate.predict_values(point[None])[0, 0])  # type: ignore[attr-defined]
-    variance = float(surrogate.predict_variances(point[None])[0, 0])  # type: ignore[attr-defined]
+def _without_repeats(asked: list[FloatArray], points: FloatArray) -> list[FloatArray]:
+    """After a failed inner search EGO asks for the last known designs again, before the new ones."""
+    for repeated in range(min(len(asked), len(points)), 0, -1):
+        if np.array_equal(np.array(asked[:repeated]), points[-repeated:]):
+            return asked[repeated:]
+    return asked
+
+
+def _expected(surrogate: Any, point: FloatArray) -> Proposal:
+    loss = float(surrogate.predict_values(point[None])[0, 0])
+    variance = float(surrogate.predict_variances(point[None])[0, 0])
     return Proposal(point, loss, float(np.sqrt(max(variance, 0.0))))

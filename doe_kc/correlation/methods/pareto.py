@@ -101,10 +101,9 @@ class Pareto(Method):
 
     def _round(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
         modelled = ModelledObjectives(self._problem.targets, self._objectives, record.archive, record.model)
-        box = Box.around(record.best.point, self._radius)
-        points = predicted_front(record, modelled, box, len(self._objectives.names), rng)
+        points = predicted_front(record, modelled, self._region(record), len(self._objectives.names), rng)
         values, _ = modelled.values(points)
-        chosen = [("best rating", self._best_rating(record, box)), ("knee", points[knee(values)])]
+        chosen = [("best rating", self._best_rating(record)), ("knee", points[knee(values)])]
         confirmed = np.array([self._objectives.values(e.rating) for e in record.ranked[:100] if e.rating])
         number = max(ROUND, self._settings.batch)
         rest = spread_out(values, np.vstack([confirmed, values[[knee(values)]]]), number - len(chosen))
@@ -115,8 +114,18 @@ class Pareto(Method):
             out.append(Candidate(new, origin, prediction(self._problem, record.archive, record.model, new)))
         return out
 
-    def _best_rating(self, record: Record, box: Box) -> FloatArray:
-        composite = record.archive.composite
+    def _region(self, record: Record) -> Box:
+        """The box that holds the front of feasible designs, wider by the radius: its ends may lie apart."""
+        front = self.front
+        known = {e.index: e.point for e in record.evaluated}
+        points = (
+            np.array([known[int(i)] for i in front.indices]) if front.feasible else record.best.point[None]
+        )
+        lower, upper = points.min(axis=0) - self._radius, points.max(axis=0) + self._radius
+        return Box(np.maximum(lower, 0.0), np.minimum(upper, 1.0))
+
+    def _best_rating(self, record: Record) -> FloatArray:
+        composite, box = record.archive.composite, Box.around(record.best.point, self._radius)
         return best_predicted(self._problem, record.model, composite, box, record.best.point)
 
     def _random(self, record: Record, rng: np.random.Generator) -> list[Candidate]:

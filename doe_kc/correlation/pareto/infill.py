@@ -10,7 +10,7 @@ from doe_kc.correlation.hybrid.output_model import best_predicted
 from doe_kc.correlation.hybrid.record import Record
 from doe_kc.correlation.pareto.front import bearable, non_dominated
 from doe_kc.correlation.pareto.modelled import ModelledObjectives
-from doe_kc.correlation.pareto.nsga3 import nsga3, reference_directions
+from doe_kc.correlation.pareto.nsga3 import Judge, nsga3, reference_directions
 from doe_kc.typing import FloatArray
 
 GENERATIONS = 40
@@ -23,38 +23,48 @@ SPREAD = 0.05
 def predicted_front(
     record: Record, modelled: ModelledObjectives, box: Box, count: int, rng: np.random.Generator
 ) -> FloatArray:
-    """(p, d) non-dominated designs on levels that the surrogates expect, of `count` objectives.
-
-    The population starts from the confirmed designs in the box and from Gauss-Newton optima of the rating
-    with each objective stressed in turn: from random designs NSGA-III would need far more generations.
-    """
-    space = record.problem.space
+    """(p, d) non-dominated designs on levels that the surrogates expect, of `count` objectives."""
+    judge = _judge(record, modelled)
     directions = reference_directions(count)
-    inside = [e.point for e in record.ranked if np.all((e.point >= box.lower) & (e.point <= box.upper))]
-    seeds = [*corners(record, modelled, box, count), *inside][: len(directions)]
-    chosen = rng.integers(len(seeds), size=len(directions) - len(seeds))
-    near = np.array(seeds)[chosen] + SPREAD * rng.standard_normal((len(chosen), space.dimension))
-    first = box.clip(np.vstack([np.array(seeds), near]))
+    first = _first_population(record, modelled, box, directions, rng)
+    seed = int(rng.integers(2**31))
+    found = nsga3(judge, first, directions, box.lower, box.upper, generations=GENERATIONS, seed=seed)
+    points = np.unique(record.problem.space.snapped(found), axis=0)
+    values, violation = judge(points)
+    if (violation > 0.0).all():
+        return np.asarray(points[non_dominated(np.column_stack([values, violation]))])
+    allowed = np.flatnonzero(violation <= 0.0)
+    return np.asarray(points[allowed[non_dominated(values[allowed])]])
+
+
+def _judge(record: Record, modelled: ModelledObjectives) -> Judge:
+    """Objectives on levels; a loss beyond what is bearable counts as a violation."""
+    space = record.problem.space
     limit = bearable(modelled.values(record.best.point[None])[0].sum())
 
     def judge(x: FloatArray) -> tuple[FloatArray, FloatArray]:
         values, violation = modelled.values(space.snapped(x))
         return values, violation + np.maximum(values.sum(axis=1) - limit, 0.0) / max(abs(limit), 1e-12)
 
-    found = nsga3(
-        judge,
-        first,
-        directions,
-        box.lower,
-        box.upper,
-        generations=GENERATIONS,
-        seed=int(rng.integers(2**31)),
-    )
-    points = np.unique(space.snapped(found), axis=0)
-    values, violation = judge(points)
-    ranked = np.column_stack([values, violation]) if (violation > 0.0).all() else values
-    allowed = np.flatnonzero((violation <= 0.0) | (violation > 0.0).all())
-    return np.asarray(points[allowed[non_dominated(ranked[allowed])]])
+    return judge
+
+
+def _first_population(
+    record: Record,
+    modelled: ModelledObjectives,
+    box: Box,
+    directions: FloatArray,
+    rng: np.random.Generator,
+) -> FloatArray:
+    """(r, d) corners, then confirmed designs in the box, then random ones near both.
+
+    From random designs alone NSGA-III would need far more generations.
+    """
+    inside = [e.point for e in record.ranked if np.all((e.point >= box.lower) & (e.point <= box.upper))]
+    seeds = [*corners(record, modelled, box, directions.shape[1]), *inside][: len(directions)]
+    chosen = rng.integers(len(seeds), size=len(directions) - len(seeds))
+    near = np.array(seeds)[chosen] + SPREAD * rng.standard_normal((len(chosen), box.lower.size))
+    return box.clip(np.vstack([np.array(seeds), near]))
 
 
 def corners(record: Record, modelled: ModelledObjectives, box: Box, count: int) -> list[FloatArray]:

@@ -74,11 +74,11 @@ def weighted(targets: Targets, found: Objectives, weight: FloatArray) -> Targets
     return replace(
         targets,
         characteristics=tuple(
-            replace(t, objective=_scaled(t.objective, factor[g]))
+            replace(t, objective=t.objective and _times(t.objective, factor[g]))
             for t, g in zip(targets.characteristics, found.characteristics, strict=True)
         ),
         curves=tuple(
-            replace(c, objective=replace(c.objective, **_weights(c.objective, factor[g])))
+            replace(c, objective=_times(c.objective, factor[g]))
             for c, g in zip(targets.curves, found.curves, strict=True)
         ),
     )
@@ -94,9 +94,5 @@ def _bare(target: Target) -> Target:
     return replace(target, objective=None, constraint=constraint)
 
 
-def _scaled(objective: Objective | None, factor: float) -> Objective | None:
-    return None if objective is None else replace(objective, **_weights(objective, factor))
-
-
-def _weights(objective: Objective, factor: float) -> dict[str, float]:
-    return {"linear": objective.linear * factor, "quadratic": objective.quadratic * factor}
+def _times(objective: Objective, factor: float) -> Objective:
+    return replace(objective, linear=objective.linear * factor, quadratic=objective.quadratic * factor)

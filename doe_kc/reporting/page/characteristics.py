@@ -12,12 +12,12 @@ from doe_kc.reporting.correlation_characteristics import CharacteristicRow, char
 from doe_kc.reporting.correlation_dna import REACH, note
 from doe_kc.reporting.page.section import Section, render, significant
 
-WIDTH = 260
+WIDTH = 230
 """Units across a bar's drawing."""
 LEAD = (
     "Values normalised to their target: 1 is the target, the grey band the constraint interval (dotted where "
-    "it is no constraint); arrows point to values beyond the axis. 100 % = target met, 0 % = as far off as the "
-    "baseline. Near zero the measure of the interval, sqrt(target² + 0.005), stands in for the target."
+    "it is no constraint); arrows point to values beyond the axis. 100 % = target met, 0 % = as far off as "
+    "the baseline. Near zero the measure of the interval, sqrt(target² + 0.005), stands in for the target."
 )
 
 

@@ -10,8 +10,8 @@ from doe_kc.reporting.correlation_parameters import ParameterRow, parameter_rows
 from doe_kc.reporting.page.section import Section, render
 
 LEAD = (
-    "Bars run from the baseline (tick) to the final value (dot) between lower and upper bound; whiskers are one "
-    "standard deviation from the exact sensitivities. Hatched: not visible in these measurements."
+    "Bars run from the baseline (tick) to the final value (dot) between lower and upper bound; whiskers are "
+    "one standard deviation from the exact sensitivities. Hatched: not visible in these measurements."
 )
 
 

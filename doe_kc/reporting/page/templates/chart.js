@@ -12,7 +12,7 @@ const makeChart = (function () {
   };
   function step(span, count) {
     const raw = span / count, power = Math.pow(10, Math.floor(Math.log10(raw)));
-    return [1, 2, 2.5, 5, 10].map((m) => m * power).find((s) => s >= raw * 0.999);
+    return [1, 2, 2.5, 5, 10].map((m) => m * power).find((s) => s >= raw * 0.7);
   }
   function linearTicks(low, high, count) {
     const by = step(high - low, count), out = [];
@@ -95,7 +95,7 @@ const makeChart = (function () {
       }
     }
     function frame(s) {
-      const many = Math.max(2, Math.floor(s.w / 110));
+      const many = Math.max(2, Math.floor(s.w / 90));
       let xs = linearTicks(view.x0, view.x1, many);
       if (options.whole) xs = xs.filter((x) => Number.isInteger(x));
       for (const x of xs) {

@@ -26,17 +26,19 @@
   const failed = data.number.filter((n, i) => data.failed[i]);
   layers.push({ kind: "cross", free: true, x: failed, colour: "#d55e00", width: 2 });
   chart.show(layers, { x: "true-solver evaluation (1 = baseline)", y: "minus rating [-], symmetric log" });
-  function entry(text, colour) {
-    const item = document.createElement("span"), dot = document.createElement("span");
-    dot.className = "key dot";
-    dot.style.borderColor = dot.style.background = colour;
-    item.append(dot, " " + text);
+  function entry(text, colour, sign) {
+    const item = document.createElement("span"), mark = document.createElement("b");
+    mark.style.color = colour;
+    mark.textContent = sign;
+    item.append(mark, " " + text);
     legend.append(item);
   }
-  data.origins.forEach((origin) => entry(origin.name, origin.colour));
-  if (expected.length) entry("predicted ± sd", "#8a9199");
-  if (failed.length) entry("no equilibrium", "#d55e00");
-  if (data.first !== null) entry("feasible from evaluation " + data.first, "#cfe5cf");
+  entry("best so far", "#000000", "━");
+  data.origins.forEach((origin) => entry(origin.name, origin.colour, "●"));
+  if (data.feasible.some((yes) => !yes)) entry("open: constraints violated", "#5b6670", "○");
+  if (expected.length) entry("predicted ± sd", "#8a9199", "┼");
+  if (failed.length) entry("no equilibrium", "#d55e00", "✕");
+  if (data.first !== null) entry("feasible from evaluation " + data.first, "#cfe5cf", "■");
   function tell(n) {
     const i = n - 1;
     const parts = ["Evaluation " + n + " (" + data.origin[i] + ")"];

@@ -27,7 +27,8 @@
         layers.push({ kind: "line", x: set.x, y: y.map((v, i) => v + sign * half[i]), colour: "#5b6670", width: 0.8 });
       }
     }
-    layers.push({ kind: "dots", x: set.x, y, colour: INK, radius: side ? 2.2 : 2.6, width: 1, open: y.map(() => side === 1) });
+    const every = Math.ceil(set.x.length / 40), some = (list) => list.filter((v, i) => i % every === 0);
+    layers.push({ kind: "dots", x: some(set.x), y: some(y), colour: INK, radius: side ? 2.2 : 2.6, width: 1, open: y.map(() => side === 1) });
   }
   function refresh() {
     const { item, response } = now(), layers = [];

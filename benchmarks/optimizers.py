@@ -1,0 +1,40 @@
+"""Evaluations that correlation methods and other optimizers need on car_b, all 72 variables.
+
+Same start, bounds, targets and counting for everyone. Deviation: sum over the active characteristics of
+((value - target) / Norm)^2, its measure for all methods alike; the curves and their noise are not in it.
+
+    python benchmarks/optimizers.py [--out DIR] [--methods NAME ...] [--seeds N] [--report]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from _common import publish
+
+from optimizers.report import report  # isort: skip  # after the thread limits
+from optimizers.picture import draw  # isort: skip
+from optimizers.running import PEERS, results, run_missing  # isort: skip
+
+DEFAULT = Path(tempfile.gettempdir()) / "doe_kc_optimizers"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--out", type=Path, default=DEFAULT, help="folder of finished runs; they are kept")
+    parser.add_argument("--methods", nargs="*", default=[p.id for p in PEERS])
+    parser.add_argument("--seeds", type=int, default=5)
+    parser.add_argument("--report", action="store_true", help="only report the runs that are there")
+    given = parser.parse_args()
+    if not given.report:
+        run_missing(given.out, given.methods, given.seeds)
+    found = list(results(given.out))
+    draw(found)
+    publish("optimizers", report(found, "python " + " ".join(["benchmarks/optimizers.py", *sys.argv[1:]])))
+
+
+if __name__ == "__main__":
+    main()

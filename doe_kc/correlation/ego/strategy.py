@@ -1,0 +1,70 @@
+"""What to propose next: how much to trust the surrogates, and when to stop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+Kind = Literal["Gauss-Newton", "expected improvement", "trust region", "restart"]
+CYCLE: tuple[Kind, ...] = ("Gauss-Newton", "expected improvement", "trust region")
+GAIN = 0.002
+"""Gain, share of the rating, below which a proposal was not worth its run."""
+PATIENCE = 15
+"""Proposals in a row without a worthwhile gain that end the search, or start it anew elsewhere."""
+RESTARTS = 3
+DARE, FEAR = 0.3, 3.0
+"""Factors of the risk aversion after a worthwhile Gauss-Newton proposal and after another."""
+AVERSION = (1e-3, 1.0)
+GROW, SHRINK = 1.6, 0.7
+"""Factors of the trust region's half-width after a worthwhile bold step and after another."""
+REACH = (0.02, 0.3)
+
+
+@dataclass(frozen=True)
+class Strategy:
+    """aversion: factor of the predicted variances in Gauss-Newton proposals, 1 = the expected rating.
+
+    reach: half-width of the trust region in which predictions are taken at their word. idle: proposals in a
+    row without a worthwhile gain. kind: of the next proposal.
+    """
+
+    kind: Kind = CYCLE[0]
+    aversion: float = 1.0
+    reach: float = 0.1
+    idle: int = 0
+    restarts: int = 0
+
+    def after(self, gain: float, best: float) -> Strategy:
+        """After a round that raised the best rating from `best` by `gain`."""
+        won = gain > GAIN * max(abs(best), 1e-3)
+        aversion, reach = self.aversion, self.reach
+        if self.kind == "Gauss-Newton":
+            aversion = float(np.clip(aversion * (DARE if won else FEAR), *AVERSION))
+        if self.kind == "trust region":
+            reach = float(np.clip(reach * (GROW if won else SHRINK), *REACH))
+        new = replace(self, aversion=aversion, reach=reach, idle=0 if won else self.idle + 1)
+        if new.idle >= PATIENCE and self.restarts < RESTARTS:
+            return Strategy(kind="restart", restarts=self.restarts + 1)
+        return replace(new, kind=self.kind if won and self.kind != "restart" else self._next())
+
+    def _next(self) -> Kind:
+        if self.kind == "restart":
+            return CYCLE[0]
+        return CYCLE[(CYCLE.index(self.kind) + 1) % len(CYCLE)]
+
+    @property
+    def stopped(self) -> str:
+        """Why the search is over; empty while it goes on."""
+        if self.idle < PATIENCE:
+            return ""
+        return (
+            f"{PATIENCE} proposals in a row gained less than {100.0 * GAIN:g} % of the rating, also after "
+            "a restart elsewhere"
+        )
+
+    def others(self) -> tuple[Kind, ...]:
+        """Kinds to turn to, in order, when this one proposes a design that is known already."""
+        start = CYCLE.index(self.kind) if self.kind in CYCLE else -1
+        return tuple(CYCLE[(start + 1 + i) % len(CYCLE)] for i in range(len(CYCLE)))

@@ -1,0 +1,124 @@
+"""Handover: everything that a finished correlation leaves to the engineer, and its JSON and terminal text."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from doe_kc.axle.write import write_axle
+from doe_kc.correlation.result import Correlation
+from doe_kc.measurement import Measurement
+from doe_kc.output import write_csv
+from doe_kc.reporting.correlation_characteristics import characteristic_frame, characteristic_rows
+from doe_kc.reporting.correlation_evaluations import evaluation_frame
+from doe_kc.reporting.correlation_figures import write_correlation_figures
+from doe_kc.reporting.correlation_parameters import bound_sentences, parameter_frame, parameter_rows
+from doe_kc.reporting.correlation_summary import summary
+from doe_kc.reporting.correlation_terms import curve_frame, term_frame
+from doe_kc.reporting.correlation_workbook import write_correlation_workbook
+from doe_kc.reporting.page import write_correlation_page
+from doe_kc.study import Study
+from doe_kc.targets import Targets
+
+TABLES = {
+    "parameters.csv": parameter_frame,
+    "characteristics.csv": characteristic_frame,
+    "curves.csv": curve_frame,
+    "rating_terms.csv": term_frame,
+    "evaluations.csv": evaluation_frame,
+}
+AXLE = "axle.toml"
+
+
+def write_correlation(
+    study: Study,
+    found: Correlation,
+    measurement: Measurement | None,
+    folder: Path,
+    *,
+    workers: int | None = None,
+) -> list[Path]:
+    """axle.toml, five tables, correlation.xlsx, report.html and the figures; returns the paths.
+
+    measurement: for the measured curves; None with typed targets. workers: processes that draw. RunError
+    when the folder cannot be written.
+    """
+    note = f"correlated by {found.method}, rating {found.rating:.6g}"
+    axle = write_axle(found.axle, study.axle_path, folder / AXLE, note=note)
+    notes = {
+        "Axle": f"{found.axle.name}: {AXLE}, from {study.axle_path.name}",
+        "Measurement": measurement.manifest.name if measurement is not None else "none, targets are typed",
+        "Effects": ", ".join(found.axle.effects) or "none",
+    }
+    words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat(), "notes": notes}
+    return [
+        axle,
+        *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
+        write_correlation_workbook(folder / "correlation.xlsx", found, **words),
+        write_correlation_page(folder / "report.html", found, measurement, **words),
+        *write_correlation_figures(found, measurement, folder, study=study.name, workers=workers),
+    ]
+
+
+def correlation_document(found: Correlation, axle_path: Path) -> dict[str, Any]:
+    """What `correlate --json` writes. Numbers that are not finite become null in the file.
+
+    low, high: the constraint interval; where the study sets none, that of equations 5.1 and 5.2.
+    """
+    return {
+        "method": found.method,
+        "evaluations": len(found.run.evaluated),
+        "rating": found.rating,
+        "feasible": found.feasible,
+        "mean_improvement_percent": found.mean_improvement,
+        "characteristics": [
+            {
+                "name": r.id,
+                "target": r.entry.target.value,
+                "baseline": r.entry.baseline,
+                "final": r.entry.final,
+                "improvement_percent": r.entry.percent,
+                "low": r.interval[0],
+                "high": r.interval[1],
+            }
+            for r in characteristic_rows(found)
+        ],
+        "parameters": {
+            r.path: {"baseline": r.baseline, "final": r.final, "sd": r.sd} for r in parameter_rows(found)
+        },
+        "axle": str(axle_path),
+        "seconds": found.seconds,
+        "stopped": found.run.stopped,
+        "steps": list(found.steps),
+    }
+
+
+def correlation_lines(found: Correlation) -> list[str]:
+    """The outcome for a terminal; * marks what lies outside its constraint interval."""
+    head = f"{'characteristic':34}{'target':>11}{'baseline':>11}{'final':>11}{'improved':>10}  unit"
+    lines = [head]
+    for r in characteristic_rows(found):
+        e = r.entry
+        percent = f"{e.percent:.1f} %" if math.isfinite(e.percent) else "-"
+        mark = "*" if r.constraint and not r.inside else " "
+        lines.append(
+            f"{r.id:34}{e.target.value:>11.4g}{e.baseline:>11.4g}{e.final:>11.4g}{percent:>10} {mark}{r.unit}"
+        )
+    lines += [f"{key}: {text}" for key, text in summary(found).items()]
+    return lines + bound_sentences(found)
+
+
+def rerated(found: Correlation, targets: Targets) -> Correlation:
+    """The same evaluations judged by other targets or weights, the best by them; nothing is solved again.
+
+    What the method predicted belonged to the old ones and is left out.
+    """
+    problem = replace(found.problem, targets=targets)
+    runs = tuple(
+        problem.judged(e.index, replace(e.candidate, predicted=None), e.outcome) for e in found.run.evaluated
+    )
+    best = max(range(len(runs)), key=lambda i: (runs[i].merit, -i))
+    return replace(found, problem=problem, run=replace(found.run, evaluated=runs, best=best))

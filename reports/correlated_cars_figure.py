@@ -1,0 +1,58 @@
+"""Estimate beside truth, and how well the stated errors hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from recovery import STATED, Fit
+from scipy.stats import norm
+
+from doe_kc.reporting.style import PALETTE, figure, label
+
+SEEN, UNSEEN = PALETTE["blue"], PALETTE["grey"]
+
+
+def recovery_figure(fits: Mapping[str, Fit], synthetic: Sequence[Fit]) -> Figure:
+    """One panel a car, and the errors of the synthetic cars in stated standard deviations."""
+    fig, axes = figure(1, len(fits) + 1, size=(3.9 * (len(fits) + 1), 4.3), share_x=False)
+    for ax, (car, fit) in zip(axes[0], fits.items(), strict=False):
+        _beside_truth(ax, car, fit)
+    _errors(axes[0, -1], synthetic)
+    return fig
+
+
+def _beside_truth(ax: Axes, car: str, fit: Fit) -> None:
+    scale, start, seen = np.array(fit.prior), np.array(fit.start), np.array(fit.visible)
+    known = np.isfinite(fit.true)
+    x, y = (np.array(fit.true) - start) / scale, (np.array(fit.estimate) - start) / scale
+    bar = STATED * np.array(fit.sd) / scale
+    for mask, colour, word, order in (
+        (known & ~seen, UNSEEN, "not visible", 2),
+        (known & seen, SEEN, "visible", 3),
+    ):
+        ax.errorbar(
+            x[mask], y[mask], yerr=bar[mask], fmt="o", ms=3.5, lw=0.0, elinewidth=0.7, color=colour,
+            alpha=1.0 if colour == SEEN else 0.6, zorder=order, label=f"{word} ({mask.sum()})",
+        )  # fmt: skip
+    reach = 1.05 * float(np.abs(x[known]).max())
+    ax.plot([-reach, reach], [-reach, reach], color=PALETTE["black"], lw=0.8, label="estimate = truth")
+    label(ax, "true change from nominal [prior sd]", f"estimate ± {STATED:g} stated sd [prior sd]")
+    ax.set_title(f"{car}: {fit.inside} of {fit.judged.sum()} visible within {STATED:g} sd")
+    ax.legend(loc="upper left", frameon=True, framealpha=0.9)
+
+
+def _errors(ax: Axes, synthetic: Sequence[Fit]) -> None:
+    z = np.concatenate([f.z[f.judged] for f in synthetic])
+    edges = np.linspace(-4.0, 4.0, 33)
+    ax.hist(np.clip(z, -4.0, 4.0), edges, density=True, color=PALETTE["sky"], label=f"{z.size} parameters")
+    x = np.linspace(-4.0, 4.0, 161)
+    ax.plot(x, norm.pdf(x), color=PALETTE["black"], label="as stated: N(0, 1)")
+    for limit in (-STATED, STATED):
+        ax.axvline(limit, color=PALETTE["vermillion"], lw=0.9, ls="--")
+    label(ax, "(estimate - truth) / stated sd [-]", "density [-]")
+    ax.set_title(f"{len(synthetic)} synthetic cars, visible parameters")
+    ax.set_ylim(0.0, 0.58)
+    ax.legend(loc="upper left", frameon=True, framealpha=0.9)

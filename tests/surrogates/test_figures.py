@@ -1,0 +1,85 @@
+"""The figures show every characteristic, in its unit, with nothing cut off."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.reporting.surrogate_figures import model_quality, predicted_against_true, write_surrogate_figures
+from doe_kc.surrogates.designs import Designs
+from doe_kc.surrogates.influence import Agreement
+from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.surrogates.study import fit_study
+from tests.surrogates.problems import problem
+from tests.surrogates.test_selection import space
+
+ENTRIES = tuple(
+    CHARACTERISTICS[i] for i in ("vertical.bump_steer", "lateral.toe_change", "static.camber", "static.toe")
+)
+
+
+@cache
+def report() -> SurrogateReport:
+    """Three outputs of the test problem and one that never changes."""
+    p = problem(24)
+    y = np.column_stack([p.y, np.full(24, 0.5)])
+    fitted = fit_study(p.x, y, models=("linear", "gp"), folds=3, workers=1)
+    none = np.full((5, 4), np.nan)
+    agreement = Agreement(none[0], none[0], none[0])
+    designs = Designs(ENTRIES, p.x, y, 0, 0)
+    targets = {"vertical.bump_steer": float(y[:, 0].mean()), "lateral.toe_change": 99.0}
+    return SurrogateReport(space(5), designs, fitted, none, none, none, agreement, targets)
+
+
+def outside(fig: Figure) -> list[str]:
+    """Texts that reach beyond the page."""
+    from matplotlib.text import Text
+
+    fig.canvas.draw()
+    page = fig.bbox
+    out = []
+    for text in fig.findobj(Text):
+        if isinstance(text, Text) and text.get_visible() and text.get_text().strip():
+            box = text.get_window_extent()
+            if box.x0 < page.x0 or box.x1 > page.x1 or box.y0 < page.y0 or box.y1 > page.y1:
+                out.append(text.get_text())
+    return out
+
+
+def test_one_panel_a_characteristic_with_its_unit_and_model() -> None:
+    fig = predicted_against_true(report(), study="small")
+    panels = [ax for ax in fig.axes if ax.get_visible()]
+    assert len(panels) == 4
+    for ax, entry in zip(panels, ENTRIES, strict=True):
+        assert entry.label in ax.get_title()
+        assert f"/ {entry.unit}" in ax.get_title()
+    assert "gp, Q² 1.0000" in panels[1].get_title()
+    assert "never changes" in panels[3].get_title()
+    assert [t.get_text() for t in panels[1].texts] == ["99 →"]
+    assert outside(fig) == []
+
+
+def test_quality_names_models_and_characteristics() -> None:
+    fig = model_quality(report(), study="small")
+    labels = [t.get_text() for t in fig.axes[0].get_yticklabels()]
+    assert len(labels) == 4
+    assert all(e.label in text for e, text in zip(ENTRIES, labels, strict=True))
+    legend = fig.axes[0].get_legend()
+    assert legend is not None
+    assert [t.get_text() for t in legend.get_texts()] == ["Linear (ridge)", "Gaussian process"]
+    assert outside(fig) == []
+
+
+def test_equal_studies_give_equal_files(tmp_path: Path) -> None:
+    one = write_surrogate_figures(report(), tmp_path / "a", study="small", workers=1)
+    two = write_surrogate_figures(replace(report()), tmp_path / "b", study="small", workers=1)
+    assert [p.name for p in one] == [p.name for p in two]
+    assert len(one) == 4
+    for a, b in zip(one, two, strict=True):
+        assert a.read_bytes() == b.read_bytes()
+    assert one[0].stat().st_size > 10_000
