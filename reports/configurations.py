@@ -34,7 +34,10 @@ FIGURES: Mapping[int, tuple[str, tuple[tuple[str, str], ...]]] = {
     6: ("resolution", (("levels_21", "21 levels"), (STANDARD, "101 levels"), ("continuous", "continuous"))),
     7: ("variables", ((STANDARD, "all {n}"), ("selection", "selection, {n}"), ("dozen", "a dozen"))),
     8: ("bounds", (("narrow", "narrow, × 0.5"), (STANDARD, "standard"), ("wide", "wide, × 2"))),
-    9: ("algorithm", ((STANDARD, "ego"), ("pareto", "pareto"), ("hybrid", "hybrid"), ("gauss_newton", "gauss_newton"))),
+    9: (
+        "algorithm",
+        ((STANDARD, "ego"), ("pareto", "pareto"), ("hybrid", "hybrid"), ("gauss_newton", "gauss_newton")),
+    ),
 }
 """Number of the thesis's figure -> what varies, and its configurations with their names in the figure."""
 
@@ -48,7 +51,9 @@ class Plan:
     left_out: tuple[str, ...] = ()
 
 
-QUICK = Plan(seeds=1, budget=24, left_out=("selection", "levels_21", "continuous", "narrow", "pareto", "hybrid"))
+QUICK = Plan(
+    seeds=1, budget=24, left_out=("selection", "levels_21", "continuous", "narrow", "pareto", "hybrid")
+)
 
 
 @lru_cache(maxsize=1)

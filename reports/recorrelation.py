@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from correlation_runs import Trace, arguments, cached, cached_trace, nominal, problem_of
-from recorrelation_figure import recorrelation_figure
+from recorrelation_figure import parameter_figure, recorrelation_figure
 from recorrelation_text import markdown
 from recovery import BUDGET, Fit, fitted
 from synthetic_cars import record, scattered
@@ -54,6 +54,7 @@ class Case:
 
     times: float
     car: int
+    active: int
     paths: list[str]
     moved: FloatArray
     prior: FloatArray
@@ -102,6 +103,7 @@ def case(times: float, car: int, plan: Plan, cache: Path) -> Case:
     return Case(
         times=times,
         car=car,
+        active=int(view["active"]),
         paths=fit.paths,
         moved=(np.array(fit.true) - start) / prior,
         prior=prior,
@@ -123,7 +125,12 @@ def _view(times: float, car: int) -> dict[str, object]:
     jacobian = SHARE * problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
     _, seen, rows = np.linalg.svd(jacobian * prior, full_matrices=False)
     visible = posterior(jacobian, prior).visible
-    return {"seen": seen.tolist(), "axes": rows.T.tolist(), "visible": visible.tolist()}
+    return {
+        "seen": seen.tolist(),
+        "axes": rows.T.tolist(),
+        "visible": visible.tolist(),
+        "active": int(problem.targets.active.sum()),
+    }
 
 
 def study(plan: Plan, cache: Path) -> list[Case]:
@@ -183,7 +190,8 @@ def main() -> None:
     (given.out / "recorrelation.md").write_text(text, encoding="utf-8")
     parameters.to_csv(given.out / "recorrelation_parameters.csv", index=False, float_format="%.4f")
     run_table(cases).to_csv(given.out / "recorrelation_runs.csv", index=False, float_format="%.4f")
-    save_png(recorrelation_figure(cases), given.out / "recorrelation")
+    save_png(recorrelation_figure(cases, SHARE), given.out / "recorrelation")
+    save_png(parameter_figure(parameters), given.out / "recorrelation_parameters")
     print(text)
     check(cases, plan)
 

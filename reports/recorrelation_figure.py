@@ -24,14 +24,18 @@ class Disturbed(Protocol):
     """What the pictures need of a case."""
 
     times: float
+    active: int
+    paths: list[str]
     moved: FloatArray
+    visible: FloatArray
     seen: FloatArray
     axes: FloatArray
     ego: list[Trace]
     newton: Trace
     fit: Fit
 
-    def left(self, point: Sequence[float]) -> FloatArray: ...
+    def left(self, point: Sequence[float]) -> FloatArray:
+        """(d,) estimate minus truth."""
 
 
 def recorrelation_figure(cases: Sequence[Disturbed], share: float) -> Figure:
@@ -53,7 +57,9 @@ def _convergence(ax: Axes, cases: Sequence[Disturbed]) -> None:
                 ax.plot(run.feasible_at, -run.best[run.feasible_at - 1], "o", ms=4, color=colour, mec="black")
     for k, run in enumerate(c.newton for c in cases):
         word = f"gauss_newton ({len(cases)} runs)" if k == 0 else None
-        ax.step(range(1, run.evaluations + 1), -np.array(run.best), where="post", color=NEWTON, lw=0.8, label=word)
+        ax.step(
+            range(1, run.evaluations + 1), -np.array(run.best), where="post", color=NEWTON, lw=0.8, label=word
+        )
     ax.plot([], [], "o", ms=4, color="white", mec="black", label="all constraints met from here")
     ax.set_yscale("log")
     label(ax, "true-solver evaluation (1 = nominal) [-]", "minus best rating so far [-]")
@@ -84,7 +90,11 @@ def _directions(ax: Axes, cases: Sequence[Disturbed], share: float) -> None:
     ax.annotate(" visible to the rig", (np.sqrt(3.0), 0.42), fontsize=7)
     ax.annotate("not visible ", (np.sqrt(3.0), 0.42), fontsize=7, ha="right")
     ax.set_xscale("log")
-    label(ax, "sensitivity of the records to a direction [noise sd per prior sd]", "share of the disturbance left [-]")
+    label(
+        ax,
+        "sensitivity of the records to a direction [noise sd per prior sd]",
+        "share of the disturbance left [-]",
+    )
     ax.set_title("Found again (0) or not (1), by direction in the space of variables")
     ax.legend(loc="upper right", frameon=True, framealpha=0.9)
 
@@ -112,6 +122,8 @@ def parameter_figure(table: pd.DataFrame) -> Figure:
     ax.set_ylim(0.0, None)
     ax.grid(axis="x", visible=False)
     label(ax, None, "rms left / rms disturbance [-]")
-    ax.set_title("0 = found again, 1 = as wrong as before; green: visible to the rig in at least half of the cars")
+    ax.set_title(
+        "0 = found again, 1 = as wrong as before; green: visible to the rig in at least half of the cars"
+    )
     ax.legend(loc="upper right", frameon=True, framealpha=0.9)
     return fig

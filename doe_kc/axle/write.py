@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, MutableMapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,17 +10,23 @@ import numpy as np
 import tomlkit
 
 from doe_kc import __version__
-from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS, Axle
+from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import parameter_value
+from doe_kc.axle.places import (
+    Place,
+    effect_id,
+    entry,
+    option_places,
+    own_place,
+    path_of,
+    put_entry,
+    restore_entry,
+)
 from doe_kc.axle.read import axle_from_document
-from doe_kc.axle.schema import AxleFile, Hardpoints
-from doe_kc.effects import EFFECTS
 from doe_kc.errors import InputError, RunError
 from doe_kc.files import read_bytes, read_toml
 from doe_kc.output import write_whole
 
-Place = tuple[str | int, ...]
-"""Keys and indices from the top of the file to one number."""
 HEADER = "# Written by doe_kc"
 ROUNDS = 4
 """Corrections of a place until the axle reads as wanted: what moves with a value follows in the next."""
@@ -60,13 +66,13 @@ def _set_effects(document: tomlkit.TOMLDocument, axle: Axle) -> None:
     """The axle's effects, no others; options of those that the file has stay as they are."""
     table = document.get("effects", {})
     for key in list(table):
-        ident = next((e.id for e in EFFECTS.values() if e.table == key), key)
+        ident = effect_id(key)
         if ident not in axle.effects:
             del table[key]
-    present = {next((e.id for e in EFFECTS.values() if e.table == key), key) for key in table}
+    present = {effect_id(key) for key in table}
     for ident, options in axle.effects.items():
         if ident not in present:
-            _put(document, ("effects", ident), dict(options))
+            put_entry(document, ("effects", ident), dict(options))
 
 
 def _read(document: tomlkit.TOMLDocument) -> Axle:
@@ -86,7 +92,7 @@ def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
         wrong = [n for n in _wrong(document, axle) if n not in drivers and own_place(n)]
         left = [n for n in wrong if not n.endswith("@R")]
         for name in left or wrong:
-            _put(document, own_place(name), parameter_value(axle, _path(name)))
+            put_entry(document, own_place(name), parameter_value(axle, path_of(name)))
     for name in _wrong(document, axle):
         places = [own_place(name), *drivers.get(name, [])]
         any(_solve(document, axle, name, place) for place in places if place)
@@ -109,7 +115,7 @@ def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: s
             del document["effects"][ident]
             _fit(document, axle)
             return
-    names = ", ".join(dict.fromkeys(_path(n) for n in _wrong(document, axle))) or "its topology"
+    names = ", ".join(dict.fromkeys(path_of(n) for n in _wrong(document, axle))) or "its topology"
     effects = ", ".join(axle.effects) or "none"
     raise RunError(
         f"{source}: {names} cannot be written beside the axle's effects ({effects}); "
@@ -117,78 +123,36 @@ def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: s
     )
 
 
-def own_place(name: str) -> Place:
-    """Where the file holds an internal value; empty when only an effect can give it."""
-    path = name.split("@")[0]
-    head, _, rest = path.partition(".")
-    if name.endswith("@R"):
-        return ("right", path)
-    if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
-        return ("hardpoints", head, "xyz".index(rest))
-    if head in BUSHINGS:
-        return ("bushings", head, *(["factor", rest] if rest in BUSHING_AXES else rest.split(".")))
-    return (head, rest) if rest in _keys(head) else (head,) if path in AxleFile.model_fields else ()
-
-
-def _keys(table: str) -> set[str]:
-    """Keys that the file may have in a table."""
-    field = AxleFile.model_fields.get(table)
-    return set(getattr(field.annotation, "model_fields", {})) if field is not None else set()
-
-
-def _path(name: str) -> str:
-    return f"right.{name[:-2]}" if name.endswith("@R") else name.removesuffix("@L")
-
-
 def _drivers(document: tomlkit.TOMLDocument) -> dict[str, list[Place]]:
     """Internal value -> options of effects that it moves with, found by changing each a little."""
     base = _read(document).values
     out: dict[str, list[Place]] = {}
-    for place, value in list(_options(document.unwrap().get("effects", {}))):
+    for place, value in list(option_places(document.unwrap().get("effects", {}))):
         trial = document.unwrap()
-        _put(trial, place, value * 1.0001 if value else 1e-4)
+        put_entry(trial, place, value * 1.0001 if value else 1e-4)
         for name, moved in axle_from_document(trial, source="axle").values.items():
             if moved != base[name]:
                 out.setdefault(name, []).append(place)
     return out
 
 
-def _options(effects: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[Place, float]]:
-    """Every number among the effects' options, defaults included."""
-    for key, given in effects.items():
-        ident = next((e.id for e in EFFECTS.values() if e.table == key), key)
-        defaults = {k: o.default for k, o in EFFECTS[ident].options.items()}
-        yield from _numbers(("effects", key), defaults | dict(given))
-
-
-def _numbers(place: Place, value: Any) -> Iterator[tuple[Place, float]]:
-    if isinstance(value, Mapping):
-        for key, inner in value.items():
-            yield from _numbers((*place, key), inner)
-    elif isinstance(value, list | tuple):
-        for i, inner in enumerate(value):
-            yield from _numbers((*place, i), inner)
-    elif isinstance(value, int | float) and not isinstance(value, bool):
-        yield place, float(value)
-
-
 def _solve(document: tomlkit.TOMLDocument, axle: Axle, name: str, place: Place) -> bool:
     """Change one number until the internal value reads as wanted; undone when it does not answer."""
-    path = _path(name)
-    want, before = parameter_value(axle, path), _get(document, place)
+    path = path_of(name)
+    want, before = parameter_value(axle, path), entry(document, place)
     readings: dict[float, float] = {}
     for trial in _secant(readings, want, before):
         readings[trial] = _reading(document, place, trial, path)
     best = min(readings, key=lambda t: abs(readings[t] - want))
     if len(set(readings.values())) < 2 or not np.isfinite(readings[best]):
-        _undo(document, place, before)
+        restore_entry(document, place, before)
         return False
     for trial in _neighbours(best):
         if readings[best] == want:
             break
         readings[trial] = _reading(document, place, trial, path)
         best = min((best, trial), key=lambda t: abs(readings[t] - want))
-    _put(document, place, best)
+    put_entry(document, place, best)
     return readings[best] == want
 
 
@@ -213,47 +177,8 @@ def _neighbours(value: float) -> Iterator[float]:
 
 def _reading(document: tomlkit.TOMLDocument, place: Place, value: float, path: str) -> float:
     """The chassis value of a path with one number of the document changed; nan when no axle has it."""
-    _put(document, place, value)
+    put_entry(document, place, value)
     try:
         return parameter_value(_read(document), path)
     except InputError:
         return np.nan
-
-
-def _get(document: Any, place: Place) -> Any:
-    """The entry at a place, None when there is none."""
-    for key in place:
-        if not isinstance(key, int) and key not in document:
-            return None
-        document = document[key]
-    return document
-
-
-def _put(document: MutableMapping[str, Any], place: Place, value: Any) -> None:
-    """Set one entry, making the tables on the way; comments beside it stay."""
-    *way, last = place
-    table: Any = document
-    for depth, key in enumerate(way):
-        if not isinstance(key, int) and key not in table:
-            table[key] = _new(place, depth)
-        table = table[key]
-    table[last] = value
-
-
-def _new(place: Place, depth: int) -> Any:
-    """An empty table as its place is written by hand: inline for what a bushing has per axis."""
-    if place[0] == "bushings" and depth == 2:
-        return tomlkit.inline_table()
-    if place[0] == "hardpoints":
-        return [float(v) for v in Hardpoints.model_fields[str(place[1])].default]
-    return tomlkit.table(is_super_table=place[0] == "effects" and depth == 0)
-
-
-def _undo(document: MutableMapping[str, Any], place: Place, before: Any) -> None:
-    if before is not None:
-        _put(document, place, before)
-        return
-    table = _get(document, place[:-1])
-    del table[place[-1]]
-    if not table and place[0] == "right":
-        del document["right"]

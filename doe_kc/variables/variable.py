@@ -49,7 +49,9 @@ class Variable:
         return replace(self, start=value, lower=self.lower + shift, upper=self.upper + shift)
 
     def value(self, u: float) -> float:
-        """Absolute value at u."""
+        """Absolute value at u; at the start's place exactly the start, so that the baseline is the axle."""
+        if u == self.place(self.start):
+            return self.start
         if self.logarithmic:
             return float(self.lower * (self.upper / self.lower) ** u)
         return float(self.lower + (self.upper - self.lower) * u)
