@@ -9,6 +9,7 @@ from correlation_runs import Trace
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
+from report_figures import legend, title
 
 from doe_kc.reporting.style import CYCLE, figure, label
 from doe_kc.typing import FloatArray
@@ -24,8 +25,8 @@ def convergence_figure(runs: Mapping[str, Sequence[Trace]], what: str) -> Figure
             _curve(ax, name, traces, CYCLE[k])
         ax.set_yscale("log")
         label(ax, "true-solver evaluation (1 = baseline) [-]", "minus best rating so far [-]")
-    axes[0, 0].set_title(f"Performance influence of {what}: median and range of {_most(runs)} seeds")
-    axes[0, 0].legend(loc="upper right", frameon=True, framealpha=0.9)
+    title(axes[0, 0], f"Performance influence of {what}: median and range of {_most(runs)} seeds")
+    legend(axes[0, 0], "upper right")
     _zoom(axes[0, 1], runs)
     return fig
 
@@ -64,4 +65,4 @@ def _zoom(ax: Axes, runs: Mapping[str, Sequence[Trace]]) -> None:
     ax.yaxis.set_minor_locator(NullLocator())
     ax.set_yticks(np.geomspace(low, high, 5))
     ax.yaxis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:.3g}"))
-    ax.set_title("second half")
+    title(ax, "second half")

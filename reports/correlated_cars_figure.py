@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from recovery import STATED, Fit
+from report_figures import legend, title
 from scipy.stats import norm
 
 from doe_kc.reporting.style import PALETTE, figure, label
@@ -40,8 +41,9 @@ def _beside_truth(ax: Axes, car: str, fit: Fit) -> None:
     reach = 1.05 * float(np.abs(x[known]).max())
     ax.plot([-reach, reach], [-reach, reach], color=PALETTE["black"], lw=0.8, label="estimate = truth")
     label(ax, "true change from nominal [prior sd]", f"estimate ± {STATED:g} stated sd [prior sd]")
-    ax.set_title(f"{car}: {fit.inside} of {fit.judged.sum()} visible within {STATED:g} sd")
-    ax.legend(loc="upper left", frameon=True, framealpha=0.9)
+    ax.set_ylim(-2.5, 3.4)
+    title(ax, f"{car}: {fit.inside} of {fit.judged.sum()} visible within {STATED:g} sd")
+    legend(ax, "upper left")
 
 
 def _errors(ax: Axes, synthetic: Sequence[Fit]) -> None:
@@ -53,6 +55,6 @@ def _errors(ax: Axes, synthetic: Sequence[Fit]) -> None:
     for limit in (-STATED, STATED):
         ax.axvline(limit, color=PALETTE["vermillion"], lw=0.9, ls="--")
     label(ax, "(estimate - truth) / stated sd [-]", "density [-]")
-    ax.set_title(f"{len(synthetic)} synthetic cars, visible parameters")
-    ax.set_ylim(0.0, 0.58)
-    ax.legend(loc="upper left", frameon=True, framealpha=0.9)
+    title(ax, f"{len(synthetic)} synthetic cars, visible parameters")
+    ax.set_ylim(0.0, 0.6)
+    legend(ax, "upper left")

@@ -12,14 +12,14 @@ from report_text import first_times, number, spread, table
 HEAD = """# Two measured cars correlated, their parameters known
 
 Two virtual cars (`tests/data/rig`: records with noise from another solver, and the parameters that made
-them) are correlated from the example's nominal axle with all {d} default variables. Made by
-`python reports/correlated_cars.py`, which also asserts what is stated here.
+them) are correlated from the example's nominal axle with all {d} default variables. Made by `python
+reports/correlated_cars.py`, which also asserts what is stated here.
 
 ## The rating: `ego`
 
-Default settings, budget {budget} evaluations, {seeds} seeds a car. Improvement: of the active characteristics
-that count (baseline more than three standard errors from its target), 100 % = target met. Median (worst to
-best). A run takes {seconds} s of one core.
+Default settings, budget {budget} evaluations, {seeds} seeds a car. Improvement: of the active
+characteristics that count (baseline more than three standard errors from its target), 100 % = target met.
+Median (worst to best). A run takes {seconds} s of one core.
 
 {ego}
 
@@ -27,23 +27,25 @@ best). A run takes {seconds} s of one core.
 
 ## The curves: `gauss_newton`
 
-Misfit: mean squared residual in units of the records' noise; 1 = fitted to noise level. Seconds of one core.
+Misfit: mean squared residual in units of the records' noise; 1 = fitted to noise level. Seconds of one
+core.
 
 {fits}
 
-Within two stated standard deviations of the truth: **{inside} of {judged}** visible parameters of the measured
-cars ({share:.1f} %). Visible: the measurement at least halves the prior standard deviation.
+Within two stated standard deviations of the truth: **{inside} of {judged}** visible parameters of the
+measured cars ({share:.1f} %). Visible: the measurement at least halves the prior standard deviation.
 
-**Calibration.** {n} synthetic cars: the nominal axle with production scatter (1 mm, bushings 20 %, rates 3 %,
-angles 0.1 deg, ride height and stop clearances 1 mm), solved, with noise drawn from the noise model of car_b's
-records. Of {synthetic_judged} visible parameters **{coverage:.1f} ± {error:.1f} %** lie within two stated
-standard deviations (Gaussian errors: 95.4 %; ± is the standard error from car to car); rms of
+**Calibration.** {n} synthetic cars: the nominal axle with production scatter (1 mm, bushings 20 %, rates 3
+%, angles 0.1 deg, ride height and stop clearances 1 mm), solved, with noise drawn from the noise model of
+car_b's records. Of {synthetic_judged} visible parameters **{coverage:.1f} ± {error:.1f} %** lie within two
+stated standard deviations (Gaussian errors: 95.4 %; ± is the standard error from car to car); rms of
 (estimate - truth) / sd is {rms:.2f}. Misfit {misfit}; {feasible} of {n} meet every constraint.
 
 ![recovery](correlated_cars.png)
 
-Left: each parameter's estimate beside the truth, both as change from nominal in prior standard deviations. What
-is not visible stays near nominal with a wide bar, and says so. Right: the errors of the synthetic cars.
+Left: each parameter's estimate beside the truth, both as change from nominal in prior standard deviations.
+What is not visible stays near nominal with a wide bar, and says so. Right: the errors of the synthetic
+cars.
 
 Visible in both measured cars: {visible}.
 """
@@ -101,7 +103,8 @@ def visible_in_all(fits: Sequence[Fit]) -> str:
 
 def _ego_table(ego: Mapping[str, list[Trace]]) -> str:
     head = (
-        "car", "constraints met", "mean improvement [%]", "evaluations to feasibility", "evaluations", "rating",
+        "car", "constraints met", "mean improvement [%]", "evaluations to feasibility",
+        "evaluations", "rating",
     )  # fmt: skip
     return table(head, [_ego_row(car, runs) for car, runs in ego.items()])
 
@@ -128,12 +131,16 @@ def _fit_table(fits: Mapping[str, Fit], synthetic: Sequence[Fit]) -> str:
         ]
         for c in cases
     ]
-    rows += [
-        ["visible parameters", *(f"{sum(f.visible)}" for f in fits.values()),
-         spread([sum(f.visible) for f in synthetic])],
-        ["visible within 2 sd", *(f"{f.inside} of {f.judged.sum()}" for f in fits.values()),
-         f"{sum(f.inside for f in synthetic)} of {sum(int(f.judged.sum()) for f in synthetic)}"],
-        ["evaluations", *(f"{f.evaluations}" for f in fits.values()), spread([f.evaluations for f in synthetic])],
-        ["seconds", *(number(f.seconds, 2) for f in fits.values()), spread([f.seconds for f in synthetic], 2)],
-    ]  # fmt: skip
+    judged = [int(f.judged.sum()) for f in synthetic]
+    rows.append(_line("visible parameters", fits, synthetic, lambda f: sum(f.visible)))
+    within = [f"{f.inside} of {f.judged.sum()}" for f in fits.values()]
+    rows.append(["visible within 2 sd", *within, f"{sum(f.inside for f in synthetic)} of {sum(judged)}"])
+    rows.append(_line("evaluations", fits, synthetic, lambda f: f.evaluations))
+    rows.append(_line("seconds", fits, synthetic, lambda f: f.seconds))
     return table(head, rows)
+
+
+def _line(
+    name: str, fits: Mapping[str, Fit], synthetic: Sequence[Fit], value: Callable[[Fit], float]
+) -> list[str]:
+    return [name, *(number(value(f), 2) for f in fits.values()), spread([value(f) for f in synthetic], 2)]

@@ -11,12 +11,15 @@ from correlation_runs import Trace
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from recovery import Fit
+from report_figures import legend, title
 
 from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.typing import FloatArray
 
 EGO, NEWTON = PALETTE["vermillion"], PALETTE["blue"]
 SIZES = (PALETTE["orange"], PALETTE["vermillion"], PALETTE["purple"])
+SEEN = 3.0**0.5
+"""Sensitivity from which records halve the prior sd of a direction."""
 EDGES = np.array([1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1000.0])
 
 
@@ -63,8 +66,8 @@ def _convergence(ax: Axes, cases: Sequence[Disturbed]) -> None:
     ax.plot([], [], "o", ms=4, color="white", mec="black", label="all constraints met from here")
     ax.set_yscale("log")
     label(ax, "true-solver evaluation (1 = nominal) [-]", "minus best rating so far [-]")
-    ax.set_title("Convergence: 0 would be the target exactly")
-    ax.legend(loc="upper right", frameon=True, framealpha=0.9)
+    title(ax, "Convergence: 0 would be the target exactly")
+    legend(ax, "upper right")
 
 
 def _directions(ax: Axes, cases: Sequence[Disturbed], share: float) -> None:
@@ -86,17 +89,17 @@ def _directions(ax: Axes, cases: Sequence[Disturbed], share: float) -> None:
         fine, 1.0 / (1.0 + (fine / share) ** 2), color=PALETTE["black"], lw=0.8, ls="--",
         label="linear theory of gauss_newton",
     )  # fmt: skip
-    ax.axvline(np.sqrt(3.0), color=PALETTE["grey"], lw=0.9)
-    ax.annotate(" visible to the rig", (np.sqrt(3.0), 0.42), fontsize=7)
-    ax.annotate("not visible ", (np.sqrt(3.0), 0.42), fontsize=7, ha="right")
+    ax.axvline(SEEN, color=PALETTE["grey"], lw=0.9)
+    ax.annotate(" visible to the rig", (SEEN, 0.5), fontsize=7)
+    ax.annotate("not visible ", (SEEN, 0.5), fontsize=7, ha="right")
     ax.set_xscale("log")
     label(
         ax,
         "sensitivity of the records to a direction [noise sd per prior sd]",
         "share of the disturbance left [-]",
     )
-    ax.set_title("Found again (0) or not (1), by direction in the space of variables")
-    ax.legend(loc="upper right", frameon=True, framealpha=0.9)
+    title(ax, "Found again (0) or not (1), by direction")
+    legend(ax, "upper right")
 
 
 def _binned(seen: FloatArray, left: FloatArray, moved: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -110,20 +113,18 @@ def _binned(seen: FloatArray, left: FloatArray, moved: FloatArray) -> tuple[Floa
 
 def parameter_figure(table: pd.DataFrame) -> Figure:
     """What is left of the disturbance of each parameter."""
-    fig, axes = figure(1, 1, size=(11.69, 3.6))
+    fig, axes = figure(1, 1, size=(11.69, 4.4))
     ax, x = axes[0, 0], np.arange(len(table))
+    ax.plot(x, table["moved"], "_", ms=8, mew=1.5, color=PALETTE["black"], label="disturbance")
     for name, colour in (("left_by_ego", EGO), ("left_by_gauss_newton", NEWTON)):
-        ax.plot(x, table[name] / table["moved"], "o", ms=4, color=colour, label=name.removeprefix("left_by_"))
+        ax.plot(x, table[name], "o", ms=4, color=colour, label=name.replace("left_by_", "left by "))
     for k in x[table["visible_share"] >= 0.5]:
         ax.axvspan(k - 0.5, k + 0.5, color="#EAF3EA", lw=0, zorder=0)
-    ax.axhline(1.0, color=PALETTE["black"], lw=0.8)
     ax.set_xticks(x, list(table["parameter"]), rotation=90)
     ax.set_xlim(-0.6, len(table) - 0.4)
-    ax.set_ylim(0.0, None)
     ax.grid(axis="x", visible=False)
-    label(ax, None, "rms left / rms disturbance [-]")
-    ax.set_title(
-        "0 = found again, 1 = as wrong as before; green: visible to the rig in at least half of the cars"
-    )
-    ax.legend(loc="upper right", frameon=True, framealpha=0.9)
+    label(ax, None, "rms over the cars [prior sd]")
+    title(ax, "Error left in each parameter; green: visible to the rig in at least half of the cars")
+    ax.set_ylim(0.0, 1.25 * float(table[["moved", "left_by_ego", "left_by_gauss_newton"]].to_numpy().max()))
+    legend(ax, "upper left", ncols=3)
     return fig

@@ -7,50 +7,58 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from correlation_runs import Trace
-from recorrelation_figure import Disturbed
+from recorrelation_figure import SEEN, Disturbed
 from report_text import first_times, number, spread, table
 
 HEAD = """# A disturbed model correlated back
 
-The study that the thesis cites as typical of an optimization "which has a solution that the model is able to
-fulfil without making trade-offs" (section 6.2): a model is tweaked and correlated to its own curves. The
+The study that the thesis cites as typical of an optimization "which has a solution that the model is able
+to fulfil without making trade-offs" (section 6.2): a model is tweaked and correlated to its own curves. The
 nominal axle of `examples/front_axle` is disturbed in all {d} variables by drawn changes of known size
-(production scatter: hardpoints 1 mm, bushings 20 %, rates 3 %, angles 0.1 deg, ride height and stop clearances
-1 mm; and {large} times as much), its noise-free curves are the targets, and the search starts from nominal with
-the default bounds. Made by `python reports/recorrelation.py`, which also asserts the figures.
+(production scatter: hardpoints 1 mm, bushings 20 %, rates 3 %, angles 0.1 deg, ride height and stop
+clearances 1 mm; and {large} times as much). Its noise-free curves are the targets, and the search starts
+from nominal with the default bounds. Made by `python reports/recorrelation.py`, which also asserts the
+figures.
 
 {runs}
 
-Deviation: mean of |value - target| / Norm over the {active} active characteristics. Mean improvement: over all of
-them, noise-free targets have no error that a small deviation could hide in. `gauss_newton` assumes errors of
-{share:g} times the rig's noise. Median (worst to best) over cars and seeds.
+Deviation: mean of |value - target| / Norm over the {active} active characteristics. Mean improvement: over
+all of them, since targets without noise leave no error that a small deviation could hide in. `gauss_newton`
+assumes {share:g} times the rig's noise. Median (lowest to highest) over cars and seeds.
 
 ![re-correlation](recorrelation.png)
+
+Left: every run. Right: what is left of the disturbance along the principal directions of the space of
+variables, from those that no record shows to those that any does.
 
 ## Are the parameters found again?
 
 {groups}
 
-rms over the parameters and cars in prior standard deviations; "left" is estimate minus truth. Visible: records
-with the rig's own noise would at least halve the prior standard deviation.
+rms over the parameters and cars in prior standard deviations; "left" is estimate minus truth. Visible:
+records with the rig's own noise would at least halve the prior standard deviation.
 
 ![parameters](recorrelation_parameters.png)
 
 {words}
 """
 
-WORDS = """- **The characteristics are found again, the parameters only where the curves see them.** Of {d} directions in
-  the space of variables, {many} are seen by records with the rig's noise (more than one standard deviation of
-  noise per prior standard deviation); along these `gauss_newton` leaves {seen:.1%} of the disturbance, along
-  the {few} others {unseen:.0%}. That is the null space: combinations of parameters that move no curve. No
-  method and no further evaluation finds them; another record, or fewer variables, would.
-- **`ego` leaves {ego_seen:.0%} of what is seen and {ego_unseen:.0%} of what is not.** It stops where the rating is
-  good: along weakly seen directions a large change of parameters costs the rating next to nothing.{more}
+WORDS = """- **The characteristics are found again, the parameters only where the curves see them.** Of {d} directions
+  in the space of variables, {many} are seen by records with the rig's noise (the prior standard deviation
+  at least halved). Along these `gauss_newton` leaves {seen:.1%} of the disturbance, along the {few} others
+  {unseen:.0%}. Those others are the null space: combinations of parameters that move the curves by less
+  than their noise. No method and no further evaluation finds them; another record, or fewer variables,
+  would.
+- **`ego` leaves {ego_seen:.0%} of what is seen and {ego_unseen:.0%} of what is not.** It works on {active}
+  characteristics and the curves with an objective, not on all curves, from {budget} evaluations, and stops
+  where the rating is good: along all but the strongest directions a change of parameters costs next to
+  nothing.{more}
 - **Found again best** (`gauss_newton`): {best}.
-- **Not found at all:** {worst}. Torsional and sub-frame stiffnesses act in series or in parallel with stiffer
-  or softer neighbours, and points such as `SFF` and `SFR` only carry them.
-- **Consequence.** A correlated model is right in what was measured. Its parameters are statements about the car
-  only where the report calls them visible.
+- **Not found at all** (at least 95 % left): {worst}. The torsional stiffness of a bushing carries next to
+  nothing beside the links that turn it, and a point of the sub-frame matters only by how its bushing
+  deflects.
+- **Consequence.** A correlated model is right in what was measured. Its parameters are statements about the
+  car only where the report of a correlation calls them visible.
 """
 
 
@@ -97,6 +105,8 @@ def _row(times: float, runs: Sequence[Trace]) -> list[str]:
     ]
 
 
+LOST = 0.95
+"""Share of the disturbance left from which a parameter counts as not found."""
 GROUPS = ("hardpoints", "bushings, F", "bushings, T", "others")
 
 
@@ -134,10 +144,11 @@ def _group_row(cases: Sequence[Disturbed], masks: Sequence[np.ndarray]) -> list[
 def _words(cases: Sequence[Disturbed], parameters: pd.DataFrame) -> str:
     share = parameters["left_by_gauss_newton"] / parameters["moved"]
     order = parameters["parameter"].to_numpy()[np.argsort(share.to_numpy())]
-    many = float(np.mean([np.sum(c.seen > 1.0) for c in cases]))
+    many = float(np.mean([np.sum(c.seen > SEEN) for c in cases]))
     seen = [left_along(cases, what, wanted=True) for what in ("fit", "ego")]
     unseen = [left_along(cases, what, wanted=False) for what in ("fit", "ego")]
-    more = " There it can end further from the truth than nominal was." if unseen[1] > 1.0 else ""
+    more = " Along unseen ones it ends further from the truth than nominal was." if unseen[1] > 1.0 else ""
+    lost = parameters["parameter"][share >= LOST]
     return WORDS.format(
         d=len(parameters),
         many=f"{many:.0f}",
@@ -148,7 +159,9 @@ def _words(cases: Sequence[Disturbed], parameters: pd.DataFrame) -> str:
         ego_unseen=unseen[1],
         more=more,
         best=", ".join(f"`{p}`" for p in order[:12]),
-        worst=", ".join(f"`{p}`" for p in order[::-1][:12]),
+        worst=", ".join(f"`{p}`" for p in lost),
+        active=cases[0].active,
+        budget=max(t.evaluations for c in cases for t in c.ego),
     )
 
 
@@ -157,7 +170,7 @@ def left_along(cases: Sequence[Disturbed], what: str, *, wanted: bool) -> float:
     left, moved = 0.0, 0.0
     for c in cases:
         points = [c.fit.estimate] if what == "fit" else [t.point for t in c.ego]
-        mask = (c.seen > 1.0) == wanted
+        mask = (c.seen > SEEN) == wanted
         moved += len(points) * float(np.sum((c.axes.T @ c.moved)[mask] ** 2))
         left += sum(float(np.sum((c.axes.T @ c.left(p))[mask] ** 2)) for p in points)
     return float(np.sqrt(left / moved))

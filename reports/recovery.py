@@ -21,8 +21,10 @@ STATED = 2.0
 
 @dataclass(frozen=True)
 class Fit:
-    """misfit: load case -> mean squared residual in units of the noise. (d,) lists: places u between the bounds,
-    nan where the key is silent; prior: prior sd of u. seconds: of one core."""
+    """Places u between the bounds, (d,) each; prior: their prior sd; true: nan where the key is silent.
+
+    misfit: load case -> mean squared residual in units of the noise. seconds: of one core.
+    """
 
     paths: list[str]
     misfit: dict[str, float]

@@ -14,7 +14,7 @@ from correlation_runs import measured, nominal
 
 from doe_kc.axle.parameters import Parameter, design_parameters, with_values
 from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
-from doe_kc.measurement import Measurement
+from doe_kc.measurement import Measurement, NoiseModel
 from doe_kc.measurement.gradients import characteristic_estimates
 from doe_kc.measurement.reduction import static_sd
 from doe_kc.solver.curve_set import curve_set
@@ -88,6 +88,22 @@ def _angles(solved: CurveSet, response: str, sd: float, noise: np.random.Generat
     if solved.static is None:
         raise ValueError("the solver gives static angles")
     return solved.static[response] + (0.0 if noise is None else sd * noise.standard_normal(2))
+
+
+def quieter(records: Measurement, share: float) -> Measurement:
+    """The records with `share` of the noise granted to each sensor; angles of the bench keep theirs."""
+    noise = {
+        case: {response: _quieter(model, share) for response, model in models.items()}
+        for case, models in records.noise.items()
+    }
+    return replace(records, noise=noise)
+
+
+def _quieter(model: NoiseModel, share: float) -> NoiseModel:
+    run = model.components
+    less = replace(run, offset=share * run.offset, gain=share * run.gain, smooth=share * run.smooth)
+    white, of_input = share * model.white, share * model.input_white
+    return replace(model, white=white, input_white=of_input, components=less)
 
 
 def drawn_error(covariance: FloatArray, rng: np.random.Generator) -> FloatArray:

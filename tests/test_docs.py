@@ -7,12 +7,16 @@ from pathlib import Path
 
 import pytest
 import typer
+from pydantic import BaseModel
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.cli import commands
 from doe_kc.cli._app import app
+from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.effects import EFFECTS
 from doe_kc.study import read_study
+from doe_kc.targets import CharacteristicOptions
+from doe_kc.variables import Change
 from tests.reference import EXAMPLE, nominal
 
 ROOT = Path(__file__).parents[1]
@@ -83,7 +87,10 @@ def known_commands() -> dict[str, set[str]]:
 
 def test_the_commands_named_exist_with_their_options() -> None:
     known = known_commands()
-    assert set(known) == {"init", "check", "simulate", "reduce", "influence", "run"}
+    assert set(known) == {
+        *("init", "check", "simulate", "reduce", "influence", "sample"),
+        *("surrogates", "correlate", "report", "run"),
+    }
     named = set()
     for page in PAGES:
         for command, rest in COMMAND.findall(page.read_text(encoding="utf-8")):
@@ -108,6 +115,30 @@ def test_the_readmes_shortest_study_is_one(tmp_path: Path) -> None:
         (tmp_path / "axle.toml").write_bytes((EXAMPLE / "axle.toml").read_bytes())
         (tmp_path / "study.toml").write_text(study, encoding="utf-8")
         assert read_study(tmp_path).measured() == tmp_path / "rig"
+
+
+def test_the_study_page_is_a_study(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "study.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "axle.toml").write_bytes((EXAMPLE / "axle.toml").read_bytes())
+    (tmp_path / "study.toml").write_text(block, encoding="utf-8")
+    study = read_study(tmp_path)
+    assert study.space.dimension == 71 and study.correlation.budget == 100
+
+
+@pytest.mark.parametrize(
+    ("head", "options"),
+    [
+        ("[correlation]", CorrelationOptions),
+        ("[[characteristics]] and [[curves]]", CharacteristicOptions),
+        ("[variables]", Change),
+    ],
+)
+def test_the_study_page_names_every_key(head: str, options: type[BaseModel]) -> None:
+    text = (ROOT / "docs" / "study.md").read_text(encoding="utf-8")
+    section = text.split(f"## {head}\n")[1].split("\n## ")[0]
+    for key in options.model_fields:
+        assert f"`{key}`" in section or key == "match", key
 
 
 def test_the_readmes_python_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -9,17 +9,17 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from optimizers.composed import Composed, outputs_of
+from optimizers.counting import CountingSolver
+from optimizers.peer import Peer
 
 from doe_kc.correlation.ego.opening import opening_sample, opening_size
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.targets import Targets
 from doe_kc.typing import FloatArray
-from optimizers.composed import Composed, outputs_of
-from optimizers.counting import CountingSolver
-from optimizers.peer import Peer
 
 SAMPLES, STARTS, RAW = 64, 4, 128
-NOISE = 1e-7
+NOISE = 1e-6
 """Of the standardised outputs: the solver has none."""
 FIRST_FIT, LATER_FITS = 150, 30
 """Iterations of the likelihood's maximization, later ones from the last kernel."""
@@ -122,12 +122,15 @@ def _proposed(
     from botorch.sampling import SobolQMCNormalSampler
 
     known = torch.as_tensor(best)[None]
-    goal = None if objective is None else GenericMCObjective(lambda y, X=None: objective(y))  # noqa: N803
+    goal = None if objective is None else GenericMCObjective(lambda y, X=None: objective(y))
     with torch.no_grad():
         mean = model.posterior(known).mean
         incumbent = mean.squeeze() if goal is None else goal(mean).squeeze()
     acquisition = qLogExpectedImprovement(
-        model, best_f=incumbent, sampler=SobolQMCNormalSampler(torch.Size([SAMPLES]), seed=seed), objective=goal
+        model,
+        best_f=incumbent,
+        sampler=SobolQMCNormalSampler(torch.Size([SAMPLES]), seed=seed),
+        objective=goal,
     )
     rng = np.random.default_rng(seed)
     spread = 10.0 ** rng.uniform(-2.0, 0.0, (RAW, 1)) * rng.uniform(-1.0, 1.0, (RAW, best.size))
@@ -149,8 +152,6 @@ def _proposed(
 
 
 PEERS = (
-    Peer(
-        "botorch_composite", "BoTorch composite", "outputs", composite, 100, needs="botorch", seeds=3
-    ),
+    Peer("botorch_composite", "BoTorch composite", "outputs", composite, 50, needs="botorch"),
     Peer("botorch_scalar", "BoTorch, GP of the rating", "rating", scalar, 150, needs="botorch", seeds=3),
 )

@@ -72,7 +72,9 @@ def outputs_of(targets: Targets, known: Sequence[Evaluated]) -> tuple[FloatArray
 
     composed = Composed(
         value=tensor([t.value for t in active]),
-        objective=tensor([0.0 if t.objective is None else t.objective.linear / t.objective.norm for t in active]),
+        objective=tensor(
+            [0.0 if t.objective is None else t.objective.linear / t.objective.norm for t in active]
+        ),
         low=tensor([-1e9 if c is None else c.low for c in limits]),
         high=tensor([1e9 if c is None else c.high for c in limits]),
         linear=tensor([0.0 if c is None else c.linear / c.norm for c in limits]),

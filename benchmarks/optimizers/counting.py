@@ -120,7 +120,7 @@ def residuals_of(targets: Targets, found: Evaluated) -> FloatArray:
 
 @dataclass(frozen=True)
 class WatchedProblem(Problem):
-    """Notes each exact sensitivity asked for: they are no evaluations but cost time, seconds each in `asked`."""
+    """Notes in `asked` the seconds of each exact sensitivity: they are no evaluations but cost time."""
 
     asked: list[float] = field(default_factory=list)
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
-from scipy import optimize
-
 from optimizers.counting import CountingSolver
 from optimizers.peer import Peer
+from scipy import optimize
 
 BUDGET = 300
 STEP = 1e-4

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import METHODS, Settings
 from optimizers.counting import CountingSolver
 from optimizers.peer import Peer, Search
+
+from doe_kc.correlation.loop import run_method
+from doe_kc.correlation.methods import METHODS, Settings
 
 BUDGET = 100
 
@@ -42,7 +43,5 @@ PEERS = (
     ),
     Peer("pareto", "pareto", "outputs", own("pareto"), BUDGET, ours=True, needs="pymoo"),
     Peer("hybrid", "hybrid", "outputs", own("hybrid"), BUDGET, ours=True),
-    Peer(
-        "smt_ego", "SMT EGO (KPLS)", "rating", own("smt_ego"), 300, needs="smt", seeds=1, seconds=600.0
-    ),
+    Peer("smt_ego", "SMT EGO (KPLS)", "rating", own("smt_ego"), 300, needs="smt", seeds=1, seconds=600.0),
 )

@@ -1,7 +1,11 @@
-"""Runs every peer with every seed once; each result is one JSON file, so an interrupted benchmark goes on."""
+"""Runs every peer with every seed once; each result is a JSON file, so an interrupted benchmark goes on.
+
+Files lie in a folder named by the fingerprint of the product's source: runs of different code never mix.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import sys
 import time
@@ -9,13 +13,28 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from doe_kc.correlation.problem import Problem
 from optimizers import bayesian, least_squares, ours, scalar
 from optimizers.counting import BudgetSpent, CountingSolver, watched
 from optimizers.peer import Peer
+
+import doe_kc
+from doe_kc.correlation.problem import Problem
 from tests.correlation import cases
 
 CAR = "car_b"
+
+
+def fingerprint() -> str:
+    """Of every source file of the imported package."""
+    root = Path(doe_kc.__file__).parent
+    found = hashlib.sha256()
+    for place in sorted(root.rglob("*.py")):
+        found.update(str(place.relative_to(root)).encode() + place.read_bytes())
+    return found.hexdigest()[:12]
+
+
+CODE = fingerprint()
+"""Taken before the first run: sources may change under a long benchmark."""
 PEERS: tuple[Peer, ...] = (*ours.PEERS, *bayesian.PEERS, *least_squares.PEERS, *scalar.PEERS)
 
 
@@ -44,9 +63,9 @@ def problem() -> Problem:
     return cases.problem(CAR)
 
 
-def run(peer: Peer, seed: int) -> Result:
+def run(peer: Peer, seed: int, on: Problem | None = None) -> Result:
     """One search."""
-    asked = watched(problem())
+    asked = watched(on or problem())
     cases.solver(asked.axle)([asked.space.values(asked.space.start)])  # compiles the kernels
     solver = CountingSolver(asked, cases.solver(asked.axle), peer.budget, seconds=peer.seconds)
     started = time.process_time()
@@ -71,12 +90,13 @@ def run(peer: Peer, seed: int) -> Result:
 
 def run_missing(out: Path, names: Sequence[str], most_seeds: int) -> None:
     """Every installed peer of `names` that has no result yet, seed by seed."""
-    out.mkdir(parents=True, exist_ok=True)
+    folder = out / CODE
+    folder.mkdir(parents=True, exist_ok=True)
     for peer in PEERS:
         if peer.id not in names or not peer.installed:
             continue
         for seed in range(1, min(peer.seeds, most_seeds) + 1):
-            place = out / f"{peer.id}_{seed}.json"
+            place = folder / f"{peer.id}_{seed}.json"
             if place.exists():
                 continue
             result = run(peer, seed)
@@ -89,7 +109,7 @@ def run_missing(out: Path, names: Sequence[str], most_seeds: int) -> None:
 
 
 def results(out: Path) -> Iterator[Result]:
-    """All results so far."""
+    """All results of this code so far."""
     for peer in PEERS:
-        for place in sorted(out.glob(f"{peer.id}_[0-9]*.json")):
+        for place in sorted((out / CODE).glob(f"{peer.id}_[0-9].json")):
             yield Result(**json.loads(place.read_text()))

@@ -5,15 +5,17 @@ from __future__ import annotations
 import warnings
 
 import numpy as np
+from optimizers.counting import FAILED, CountingSolver
+from optimizers.peer import Peer
 from scipy import optimize
 from scipy.stats import qmc
 
 from doe_kc.correlation.pareto.objectives import objectives
 from doe_kc.typing import FloatArray
-from optimizers.counting import FAILED, CountingSolver
-from optimizers.peer import Peer
 
 BUDGET = 300
+LONG = 1000
+"""Of the cheapest method that may get there in the end."""
 RADIUS = 0.1
 POPULATION = 30
 
@@ -75,7 +77,9 @@ def nsga2(solver: CountingSolver, seed: int) -> str:
 
     class ByLoadCase(ElementwiseProblem):  # type: ignore[misc]
         def __init__(self) -> None:
-            super().__init__(n_var=solver.problem.space.dimension, n_obj=names, n_ieq_constr=1, xl=0.0, xu=1.0)
+            super().__init__(
+                n_var=solver.problem.space.dimension, n_obj=names, n_ieq_constr=1, xl=0.0, xu=1.0
+            )
 
         def _evaluate(self, x: FloatArray, out: dict[str, object], *_: object, **__: object) -> None:
             found = solver.at(x)
@@ -136,12 +140,14 @@ def hypercube(solver: CountingSolver, seed: int) -> str:
 
 
 PEERS = (
-    Peer("cma", "CMA-ES", "rating", cma_es, BUDGET, needs="cma"),
+    Peer("cma", "CMA-ES", "rating", cma_es, LONG, needs="cma"),
     Peer("cobyqa", "COBYQA", "rating", cobyqa, BUDGET, needs="cobyqa", package="cobyqa", seeds=1),
     Peer("de", "differential evolution", "rating", differential_evolution, BUDGET, needs="scipy"),
     Peer("nsga2", "NSGA-II (pymoo)", "rating", nsga2, BUDGET, needs="pymoo"),
     Peer("tpe", "Optuna TPE", "rating", tpe, BUDGET, needs="optuna"),
-    Peer("optuna_gp", "Optuna GPSampler", "rating", gp_sampler, BUDGET, needs="optuna", seeds=1, seconds=240.0),
+    Peer(
+        "optuna_gp", "Optuna GPSampler", "rating", gp_sampler, BUDGET, needs="optuna", seeds=1, seconds=240.0
+    ),
     Peer("random", "random", "rating", uniform, BUDGET),
     Peer("lhs", "Latin hypercube", "rating", hypercube, BUDGET),
 )

@@ -32,8 +32,14 @@ def _group() -> None:
     pass
 
 
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+"""One thread for linear algebra, unless the user says otherwise: matrices are small, cores run solvers."""
+
+
 def main() -> NoReturn:
     """Run a command; exit code 0, 2 for bad input, 1 for a failed run, without a traceback."""
+    for name in THREADS:
+        os.environ.setdefault(name, "1")
     _on_interrupt(_leave)
     from doe_kc.cli import commands
 

@@ -72,4 +72,4 @@ def scaled_slopes(target: CurveTarget, curves: CurveGradients) -> FloatArray:
     """(2 n, d) slopes of one curve at the measured inputs, scaled as `Targets.scaled_curves`."""
     found = curves.cases[target.load_case][target.response]
     sides = [interpolated(target.input, curves.inputs[target.load_case], side) for side in found]
-    return np.vstack(sides) / (target.objective.norm * np.sqrt(target.curve.size))
+    return np.asarray(np.vstack(sides) / (target.objective.norm * np.sqrt(target.curve.size)))

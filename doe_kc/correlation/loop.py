@@ -30,11 +30,13 @@ def run_method(
     *,
     budget: int,
     known: Sequence[tuple[Candidate, Outcome]] = (),
+    until_feasible: bool = False,
     watch: Watch = lambda _: None,
 ) -> Run:
     """Run a method until it stops or `budget` designs (the baseline among them) are evaluated.
 
-    known: designs evaluated before, told to the method but not counted. watch: told of each round.
+    known: designs evaluated before, told to the method but not counted. until_feasible: stop at the first
+    design that meets every constraint. watch: told of each round.
     RunError when the baseline has no solution.
     """
     history: list[Evaluated] = []
@@ -55,6 +57,8 @@ def run_method(
     earlier = [problem.judged(-1 - i, c, o) for i, (c, o) in enumerate(known)]
     method.tell([*baseline, *earlier])
     while not method.stopped and len(history) < budget:
+        if until_feasible and any(e.rating is not None and e.rating.feasible for e in history):
+            return Run(tuple(history), method.best(history), "the first design that meets every constraint")
         candidates = list(method.ask())[: budget - len(history)]
         if not candidates:
             break

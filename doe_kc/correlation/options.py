@@ -15,6 +15,7 @@ SetFirst = Literal["ride_height", "static.toe", "static.camber"]
 class CorrelationOptions(Strict):
     """method: id of a registered method. budget: true-solver evaluations, the baseline among them.
 
+    until: "feasible" stops at the first design that meets every constraint.
     batch: candidates confirmed side by side in one round. first: designs of the opening sample, by
     default a third of the number of variables, at least 20. gradients: let `ego` start from the exact
     sensitivities of the baseline. data: curves that `gauss_newton` fits: all that were measured, or those
@@ -24,6 +25,7 @@ class CorrelationOptions(Strict):
 
     method: str = "ego"
     budget: Count = 100
+    until: Literal["converged", "feasible"] = "converged"
     batch: Count = 1
     first: Count | None = None
     gradients: bool = False

@@ -52,7 +52,8 @@ def grid(
     for r, values in enumerate(rows, start=start + 1):
         for c, value in enumerate(values, start=1):
             number = formats[c - 1] if c <= len(formats) and not isinstance(value, str) else None
-            put(ws, r, c, value, number=number or None, indent=int(isinstance(value, str)))
+            side = "left" if isinstance(value, str) else None
+            put(ws, r, c, value, number=number or None, horizontal=side, indent=int(side is not None))
     last = start + len(rows)
     frame(ws, range(start, last + 1), range(1, len(heads) + 1))
     ws.auto_filter.ref = f"A{start}:{get_column_letter(len(heads))}{max(last, start)}"

@@ -76,6 +76,7 @@ def correlate(
             ask(f"correlate:{chosen.id}"),
             budget=limit,
             known=sampled(campaign, problem) if options.sampled else (),
+            until_feasible=options.until == "feasible",
             watch=watch,
         )
     return Correlation(

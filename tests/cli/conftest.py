@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.workflow import compare, influence, measure
+from doe_kc.workflow import compare, handover, influence, measure
 
 
 @pytest.fixture(autouse=True)
@@ -23,3 +23,4 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measure, "write_rig_figures", nothing)
     monkeypatch.setattr(compare, "write_comparison_figures", nothing)
     monkeypatch.setattr(influence, "write_influence_figures", nothing)
+    monkeypatch.setattr(handover, "write_correlation_figures", nothing)

@@ -20,6 +20,14 @@ FEW = ("LLF.z", "llr.Fx", "strut.flexibility", "steer_arm.radius")
 """A hardpoint, a bushing, a parameter that can only be raised, and one that the rigid axle does not have."""
 
 
+SHORT = """
+[variables]
+use = ["LLF.z", "llr.Fx", "spring.rate"]
+[correlation]
+method = "gauss_newton"
+"""
+
+
 @dataclass(frozen=True)
 class Outcome:
     code: int
@@ -71,15 +79,19 @@ def write_study(
     records: Mapping[str, Sequence[str]] | None = None,
     parameters: Sequence[str] = FEW,
     extra: str = "",
+    tables: str = "",
 ) -> Path:
-    """A copy of the example with few parameters and the records named (none: no measurement)."""
+    """A copy of the example with few parameters and the records named (none: no measurement).
+
+    extra: further keys of the study; tables: further tables, such as `SHORT`, a correlation of a second.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     shutil.copy(AXLE, folder / "axle.toml")
     lines = ['axle = "axle.toml"', extra]
     if records is not None:
         write_rig(folder / "rig", records)
         lines.insert(1, 'measurement = "rig"')
-    lines += ["[influence]", f"parameters = {list(parameters)}"]
+    lines += ["[influence]", f"parameters = {list(parameters)}", tables]
     (folder / "study.toml").write_text("\n".join(lines) + "\n", encoding="utf-8")
     return folder
 

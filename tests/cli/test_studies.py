@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from doe_kc.solver.load_cases import CASE_ORDER
-from tests.cli.runner import FEW, fails, invoke, leftovers, succeeds, write_study
+from tests.cli.runner import FEW, SHORT, fails, invoke, leftovers, succeeds, write_study
 from tests.reference import EXAMPLE
 
 LATERAL = {"lateral": ("lateral.csv", "lateral_repeat1.csv")}
@@ -182,10 +182,10 @@ def check_influence(document: dict[str, Any], out: str) -> None:
 
 @pytest.mark.usefixtures("undrawn")
 def test_run_does_the_whole_chain(tmp_path: Path) -> None:
-    study = write_study(tmp_path, records=LATERAL)
+    study = write_study(tmp_path, records=LATERAL, tables=SHORT)
     outcome = succeeds("run", study, "--json", tmp_path / "r.json", "--workers", 1, "--seed", 3)
     document = json.loads((tmp_path / "r.json").read_text())
-    assert set(document) == {"simulate", "reduce", "compare", "influence", "seconds"}
+    assert set(document) == {"simulate", "reduce", "compare", "influence", "correlate", "seconds"}
     check_influence(document["influence"], outcome.out)
     assert len(document["simulate"]["characteristics"]) == 30
     files = {str(p.relative_to(study / "out")) for p in (study / "out").rglob("*") if p.is_file()}
@@ -195,9 +195,13 @@ def test_run_does_the_whole_chain(tmp_path: Path) -> None:
         "reduce/curves.csv",
         "compare/characteristics.csv",
         "influence/influence.xlsx",
+        "correlate/axle.toml",
+        "correlate/report.html",
+        "evaluations.sqlite",
     } <= files
     assert "outside their constraint interval" in outcome.out and "lateral.toe_change" in outcome.out
-    assert f"{len(files)} files under" in outcome.out and not leftovers(tmp_path)
+    unlisted = {"correlate/run.json", "evaluations.sqlite", "evaluations.sqlite.lock"}
+    assert f"{len(files - unlisted)} files under" in outcome.out and not leftovers(tmp_path)
 
 
 def test_another_measurement_takes_the_place_of_the_studys(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.options import MeasurementOption, OutOption, StudyArgument
+from doe_kc.correlation.methods import method_class
 from doe_kc.study import read_study
 from doe_kc.workflow.measure import check_measurement
 
@@ -20,6 +21,8 @@ def check(study: StudyArgument, measurement: MeasurementOption = None, out: OutO
     typer.echo(f"load cases   {', '.join(axle.load_cases)}")
     typer.echo(f"effects      {', '.join(axle.effects) or 'none'}")
     typer.echo(f"parameters   {len(found.parameters)} selected")
+    typer.echo(f"variables    {found.space.dimension}, method {found.correlation.method}")
+    method_class(found.correlation.method, source=f"{found.source}: correlation.method")
     if found.measurement is None:
         typer.echo("measurement  none named")
     else:

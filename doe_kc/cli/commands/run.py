@@ -7,12 +7,14 @@ import time
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.commands.correlate import correlated
 from doe_kc.cli.commands.influence import influence_lines
 from doe_kc.cli.commands.reduce import ride_height_line
 from doe_kc.cli.options import (
     JsonOption,
     MeasurementOption,
     OutOption,
+    SchedulerOption,
     SeedOption,
     StudyArgument,
     WorkersOption,
@@ -29,6 +31,7 @@ from doe_kc.workflow.compare import (
     comparison_lines,
     write_comparison,
 )
+from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.influence import (
     influence_document,
     influence_runs,
@@ -36,6 +39,7 @@ from doe_kc.workflow.influence import (
     write_influence,
 )
 from doe_kc.workflow.measure import reduce_records, reduced_document, write_reduced
+from doe_kc.workflow.recall import write_run
 
 
 @app.command()
@@ -46,8 +50,9 @@ def run(
     json: JsonOption = None,
     seed: SeedOption = None,
     workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
 ) -> None:
-    """The whole chain: simulate, reduce the records, compare, influence matrix; everything under out."""
+    """The whole chain: simulate, reduce, compare, influence matrix, correlate; everything under out."""
     started = time.perf_counter()
     found = read_study(study, measurement=measurement, out=out, seed=seed)
     found.measured()
@@ -67,6 +72,11 @@ def run(
         influence = study_influence(found, reduced.measurement, workers=workers, progress=advance)
     written += write_influence(found, influence, found.out / "influence", workers=workers)
 
+    correlation = correlated(found, reduced, workers=workers, scheduler=scheduler)
+    folder = found.out / "correlate"
+    write_run(correlation, folder)
+    written += write_correlation(found, correlation, reduced.measurement, folder, workers=workers)
+
     if json is not None:
         write_json(
             json,
@@ -75,10 +85,12 @@ def run(
                 "reduce": reduced_document(reduced),
                 "compare": comparison_document(comparison),
                 "influence": influence_document(influence.matrix),
+                "correlate": correlation_document(correlation, folder / "axle.toml"),
                 "seconds": time.perf_counter() - started,
             },
         )
-    for line in [*comparison_lines(comparison), "", *influence_lines(influence.matrix)]:
+    blocks = [comparison_lines(comparison), influence_lines(influence.matrix), correlation_lines(correlation)]
+    for line in [*blocks[0], "", *blocks[1], "", *blocks[2]]:
         typer.echo(line)
     if reduced.ride_height is not None:
         typer.echo(ride_height_line(reduced.ride_height))

@@ -12,6 +12,7 @@ from doe_kc.cli.options import (
     JsonOption,
     MeasurementOption,
     OutOption,
+    SchedulerOption,
     SeedOption,
     StudyArgument,
     WorkersOption,
@@ -34,9 +35,7 @@ def sample(
     json: JsonOption = None,
     seed: SeedOption = None,
     workers: WorkersOption = None,
-    scheduler: Annotated[
-        str | None, typer.Option(help="Address of a Dask scheduler, such as tcp://host:8786.")
-    ] = None,
+    scheduler: SchedulerOption = None,
     export: Annotated[
         str | None, typer.Option(help="Also export the whole store, curves included: csv or parquet.")
     ] = None,

@@ -1,0 +1,78 @@
+"""The words of the report on configurations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import pandas as pd
+from configurations_findings import HERE, THESIS
+from report_text import first_times, number, spread, table
+
+Entries = tuple[str, tuple[tuple[str, str], ...]]
+
+HEAD = """# How the set-up of a correlation bears on its convergence
+
+Figures 5 to 9 of E. Wendeberg, *Using optimization to auto-correlate suspension characteristics to K&C
+measurements*, Chalmers 2013, repeated on `examples/front_axle`: the records of car_a, which the model
+cannot match fully. Budget {budget} evaluations (the baseline among them), {seeds} seeds a configuration;
+everything that a figure does not vary is the default: `ego`, all variables, standard bounds, 101 levels,
+uniform. Targets, objectives and constraints are the same throughout, so ratings compare. Made by `python
+reports/configurations.py`, which also asserts what is stated.
+
+Rating: equation 2.2, best so far, median of the seeds (lowest to highest at the end). 0 is the target, the
+baseline's is {baseline}. The three constraints on lateral camber, which the model cannot meet within
+standard bounds, make up most of it.
+
+{rows}
+
+Missed: constraints that the final designs miss, of {constraints}. At a bound: variables of the final
+design.
+"""
+
+
+def markdown(runs: pd.DataFrame, figures: Mapping[int, Entries], constraints: int) -> str:
+    """The report."""
+    first = runs.iloc[0]
+    head = HEAD.format(
+        budget=int(runs["evaluations"].max()),
+        seeds=int(runs["seed"].max()),
+        baseline=number(first["rating_1"], 4),
+        rows=_table(runs, figures),
+        constraints=constraints,
+    )
+    return head + "".join(_section(k, *figures[k]) for k in figures)
+
+
+def _section(k: int, what: str, _: Sequence[tuple[str, str]]) -> str:
+    picture = f"configurations_{k}_{what}.png"
+    return f"\n## Figure {k}: {what}\n\n**Thesis.** {THESIS[k]}\n\n**Here.** {HERE[k]}\n\n![Figure {k}]({picture})\n"
+
+
+def _table(runs: pd.DataFrame, figures: Mapping[int, Entries]) -> str:
+    head = (
+        "figure", "configuration", "variables", "rating at 25", "at 50", "at 100", "constraints met",
+        "evaluations to feasibility", "missed", "at a bound", "mean improvement [%]", "seconds",
+    )  # fmt: skip
+    rows = []
+    for k, (_, entries) in figures.items():
+        for name, label in entries:
+            own = runs[runs["configuration"] == name]
+            if len(own):
+                rows.append([str(k), label.format(n=own["variables"].iloc[0]), *_row(own)])
+    return table(head, rows)
+
+
+def _row(own: pd.DataFrame) -> list[str]:
+    first = [None if pd.isna(v) else int(v) for v in own["feasible_at"]]
+    return [
+        str(own["variables"].iloc[0]),
+        number(own["rating_25"].median()),
+        number(own["rating_50"].median()),
+        spread(own["rating_100"].tolist()),
+        f"{sum(v is not None for v in first)} of {len(own)}",
+        first_times(first),
+        number(own["constraints_missed"].median()),
+        number(own["at_bound"].median()),
+        number(own["mean_improvement_percent"].median()),
+        number(own["seconds"].median(), 2),
+    ]
