@@ -45,7 +45,8 @@ def markdown(runs: pd.DataFrame, figures: Mapping[int, Entries], constraints: in
 
 def _section(k: int, what: str, _: Sequence[tuple[str, str]]) -> str:
     picture = f"configurations_{k}_{what}.png"
-    return f"\n## Figure {k}: {what}\n\n**Thesis.** {THESIS[k]}\n\n**Here.** {HERE[k]}\n\n![Figure {k}]({picture})\n"
+    words = f"**Thesis.** {THESIS[k]}\n\n**Here.** {HERE[k]}"
+    return f"\n## Figure {k}: {what}\n\n{words}\n\n![Figure {k}]({picture})\n"
 
 
 def _table(runs: pd.DataFrame, figures: Mapping[int, Entries]) -> str:

@@ -6,14 +6,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from correlation_runs import Trace
-from recovery import Fit
+from recovery import BUDGET, Fit, far_off
 from report_text import first_times, number, spread, table
 
 HEAD = """# Two measured cars correlated, their parameters known
 
 Two virtual cars (`tests/data/rig`: records with noise from another solver, and the parameters that made
-them) are correlated from the example's nominal axle with all {d} default variables. Made by `python
-reports/correlated_cars.py`, which also asserts what is stated here.
+them) are correlated from the example's nominal axle with all {d} default variables. Made by
+`python reports/correlated_cars.py`, which also asserts what is stated here.
 
 ## The rating: `ego`
 
@@ -35,11 +35,19 @@ core.
 Within two stated standard deviations of the truth: **{inside} of {judged}** visible parameters of the
 measured cars ({share:.1f} %). Visible: the measurement at least halves the prior standard deviation.
 
-**Calibration.** {n} synthetic cars: the nominal axle with production scatter (1 mm, bushings 20 %, rates 3
-%, angles 0.1 deg, ride height and stop clearances 1 mm), solved, with noise drawn from the noise model of
+**Calibration.** {n} synthetic cars: the nominal axle with production scatter (1 mm, bushings 20 %, rates 3 %,
+angles 0.1 deg, ride height and stop clearances 1 mm), solved, with noise drawn from the noise model of
 car_b's records. Of {synthetic_judged} visible parameters **{coverage:.1f} ± {error:.1f} %** lie within two
-stated standard deviations (Gaussian errors: 95.4 %; ± is the standard error from car to car); rms of
-(estimate - truth) / sd is {rms:.2f}. Misfit {misfit}; {feasible} of {n} meet every constraint.
+stated standard deviations (± is the standard error from car to car). Gaussian errors would give 95.4 %; the
+stated ones are a little cautious, because the prior (uniform between the bounds) is wider than the scatter
+that the cars were drawn with. rms of (estimate - truth) / sd without the stops' clearances: {rms:.2f}.
+Misfit {misfit}; {feasible} of {n} meet every constraint (the fit knows of none; a target within noise of
+its interval can fall outside).
+
+**Where it does not hold.** Farther than three stated standard deviations: {far}. A stop that the record
+touches with its last point, or just not, is a corner: beyond it the clearance changes nothing, so that the
+error is one-sided and the linear standard deviation says too little. {stuck} of {n} fits ended at such a
+corner without the word "converged", at noise level all the same (budget {fit_budget}).
 
 ![recovery](correlated_cars.png)
 
@@ -61,6 +69,8 @@ def markdown(
     runs = [t for each in ego.values() for t in each]
     own, own_error = coverage(list(synthetic))
     z = np.concatenate([f.z[f.judged] for f in synthetic])
+    plain = np.concatenate([f.z[f.judged & ["stop" not in p for p in f.paths]] for f in synthetic])
+    far = ", ".join(f"`{path}` ({value:+.1f})" for path, value in far_off(synthetic)) or "none"
     first = next(iter(fits.values()))
     return HEAD.format(
         d=len(first.paths),
@@ -77,7 +87,10 @@ def markdown(
         synthetic_judged=z.size,
         coverage=100.0 * own,
         error=100.0 * own_error,
-        rms=float(np.sqrt(np.mean(z**2))),
+        rms=float(np.sqrt(np.mean(plain**2))),
+        far=far,
+        stuck=sum(not f.stopped.startswith("converged") for f in synthetic),
+        fit_budget=BUDGET,
         misfit=spread([f.misfit["all"] for f in synthetic]),
         feasible=sum(f.feasible for f in synthetic),
         visible=visible_in_all(list(fits.values())),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,6 +80,17 @@ def fitted(problem: Problem, known: Mapping[str, float]) -> Fit:
         seconds=seconds,
         stopped=run.stopped,
     )
+
+
+def far_off(fits: Sequence[Fit], beyond: float = 3.0) -> list[tuple[str, float]]:
+    """Judged parameters more than so many stated sd from the truth, the farthest first: path and z."""
+    found = [
+        (path, float(z))
+        for f in fits
+        for path, z, judged in zip(f.paths, f.z, f.judged, strict=True)
+        if judged and abs(z) > beyond
+    ]
+    return sorted(found, key=lambda entry: -abs(entry[1]))
 
 
 def misfit_by_case(data: Likelihood, residual: FloatArray) -> dict[str, float]:

@@ -40,8 +40,8 @@ def line(out: Path) -> str:
     proposals = len(runs.rating) - 1 - opening_size(_wide().space, None, gradients=False)
     return (
         f"`ego` with {VARIABLES} side-wise variables and {outputs} outputs: {runs.own_cpu / proposals:.2f} "
-        f"own CPU s a proposal (mean of {proposals}), {runs.own_cpu / len(runs.rating):.2f} an evaluation, the "
-        "opening sample included (goal: below 1 s)."
+        f"own CPU s a proposal (mean of {proposals}), {runs.own_cpu / len(runs.rating):.2f} an evaluation "
+        "with the opening sample (goal: below 1 s)."
     )
 
 

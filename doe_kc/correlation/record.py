@@ -71,6 +71,7 @@ class RunRecord(Strict):
     best: int
     seconds: float
     steps: list[str]
+    notes: list[str]
     variables: list[VariableRecord]
     ties: list[TieRecord]
     fixed: dict[str, float]
@@ -88,6 +89,7 @@ def run_document(found: Correlation) -> dict[str, Any]:
         best=found.run.best,
         seconds=found.seconds,
         steps=list(found.steps),
+        notes=list(found.notes),
         variables=[
             VariableRecord(
                 path=v.path,
@@ -186,6 +188,7 @@ def recalled(record: RunRecord, problem: Problem, store: Store, source: str) -> 
         tuple(record.steps),
         after,
         record.seconds,
+        tuple(record.notes),
     )
 
 

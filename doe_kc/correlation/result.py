@@ -27,6 +27,7 @@ class Correlation:
     steps: tuple[str, ...]
     posterior: Posterior | None
     seconds: float
+    notes: tuple[str, ...] = ()
 
     @property
     def baseline(self) -> Evaluated:

@@ -141,12 +141,12 @@ def parameter_frame(found: Correlation) -> pd.DataFrame:
     )
 
 
-def bound_sentences(found: Correlation) -> list[str]:
-    """What to think of variables at their bounds and of those that the measurements cannot see."""
+def remark_sentences(found: Correlation) -> list[str]:
+    """Targets out of reach, constraints in conflict, variables at their bounds, variables not visible."""
     rows = [r for r in parameter_rows(found) if r.role == "variable"]
     bound = [f"{r.path} ({r.at_bound})" for r in rows if r.at_bound]
     unseen = [r.path for r in rows if r.visible is False]
-    out = []
+    out = list(found.notes)
     if bound:
         out.append(
             f"{len(bound)} of {len(rows)} variables end at a bound: {', '.join(bound)}. Widen the bound if "

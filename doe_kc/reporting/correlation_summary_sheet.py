@@ -8,7 +8,7 @@ from openpyxl.workbook import Workbook
 
 from doe_kc import __version__
 from doe_kc.correlation.result import Correlation
-from doe_kc.reporting.correlation_parameters import bound_sentences
+from doe_kc.reporting.correlation_parameters import remark_sentences
 from doe_kc.reporting.correlation_rating_sheet import FINAL_RATING
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.workbook_cells import FLAGGED, frame, page, put, title, widths
@@ -23,7 +23,7 @@ def summary_sheet(
     """Outcome, what to think of bounds and unseen variables, and where it came from."""
     ws = book.create_sheet("Summary")
     title(ws, f"Correlation: {study}", "What the correlation reached, and what to know before using it.")
-    remarks = {f"Note {i}": text for i, text in enumerate(bound_sentences(found), start=1)}
+    remarks = {f"Note {i}": text for i, text in enumerate(remark_sentences(found), start=1)}
     made = {"Study": study, "Date": date, "Program": f"doe_kc {__version__}", **notes}
     lines = {**summary(found), **remarks, **made}
     for row, (key, text) in enumerate(lines.items(), start=4):

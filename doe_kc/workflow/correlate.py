@@ -7,8 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from doe_kc.campaign.runner import Campaign
+from doe_kc.correlation.advice import conflict_sentences, reach_sentences
 from doe_kc.correlation.likelihood import build_likelihood
-from doe_kc.correlation.loop import Evaluate, run_method
+from doe_kc.correlation.linearization import Linearization
+from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import Settings, method_class
 from doe_kc.correlation.posterior import Posterior, posterior
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
@@ -79,12 +81,14 @@ def correlate(
             until_feasible=options.until == "feasible",
             watch=watch,
         )
+    at_best = expansion_at(problem, run.evaluated[run.best])
     return Correlation(
         method=chosen.id,
         problem=problem,
         run=run,
         steps=steps,
-        posterior=posterior_at(problem, run.evaluated[run.best]),
+        notes=notes_on(problem, run, at_best),
+        posterior=posterior_at(problem, at_best),
         seconds=time.perf_counter() - started,
     )
 
@@ -146,13 +150,30 @@ def inside(space: Space, values: Mapping[str, float]) -> Candidate | None:
     return Candidate(point, "sample") if bool(((point >= 0.0) & (point <= 1.0)).all()) else None
 
 
-def posterior_at(problem: Problem, design: Evaluated) -> Posterior | None:
-    """What the data say of each variable at a design; None without exact sensitivities."""
+def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
+    """Exact first-order expansion at a design; None where there is none."""
     if not problem.exact:
         return None
     try:
-        expansion = problem.linearize(design.point)
+        return problem.linearize(design.point)
     except NotConverged:
+        return None
+
+
+def posterior_at(problem: Problem, expansion: Linearization | None) -> Posterior | None:
+    """What the data say of each variable; None without exact sensitivities."""
+    if expansion is None:
         return None
     jacobian = problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
     return posterior(jacobian, problem.space.prior_sd)
+
+
+def notes_on(problem: Problem, run: Run, at_best: Linearization | None) -> tuple[str, ...]:
+    """Targets out of reach and constraints in conflict, in sentences."""
+    best, at_start = run.evaluated[run.best], expansion_at(problem, run.evaluated[0])
+    if at_best is None or at_start is None:
+        return ()
+    return (
+        *reach_sentences(problem, run.evaluated[0], at_start),
+        *conflict_sentences(problem, best, at_best),
+    )

@@ -15,7 +15,7 @@ from doe_kc.output import write_csv
 from doe_kc.reporting.correlation_characteristics import characteristic_frame, characteristic_rows
 from doe_kc.reporting.correlation_evaluations import evaluation_frame
 from doe_kc.reporting.correlation_figures import write_correlation_figures
-from doe_kc.reporting.correlation_parameters import bound_sentences, parameter_frame, parameter_rows
+from doe_kc.reporting.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.correlation_terms import curve_frame, term_frame
 from doe_kc.reporting.correlation_workbook import write_correlation_workbook
@@ -93,6 +93,7 @@ def correlation_document(found: Correlation, axle_path: Path) -> dict[str, Any]:
         "seconds": found.seconds,
         "stopped": found.run.stopped,
         "steps": list(found.steps),
+        "notes": list(found.notes),
     }
 
 
@@ -108,7 +109,7 @@ def correlation_lines(found: Correlation) -> list[str]:
             f"{r.id:34}{e.target.value:>11.4g}{e.baseline:>11.4g}{e.final:>11.4g}{percent:>10} {mark}{r.unit}"
         )
     lines += [f"{key}: {text}" for key, text in summary(found).items()]
-    return lines + bound_sentences(found)
+    return lines + remark_sentences(found)
 
 
 def rerated(found: Correlation, targets: Targets) -> Correlation:

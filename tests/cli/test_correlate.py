@@ -295,3 +295,21 @@ def _rows(store: Path) -> int:
             return int(connection.execute("SELECT count(*) FROM evaluations").fetchone()[0])
     except sqlite3.OperationalError:
         return 0
+
+
+def test_a_target_out_of_reach_is_named(tmp_path: Path) -> None:
+    extra = '[[characteristics]]\nmatch = "brake.brake_steer"\ntarget = 40.0\n'
+    study = study_in(tmp_path, budget=8, extra=extra)
+    outcome = succeeds("correlate", study, "--workers", 1)
+    assert "brake.brake_steer: the target 40 deg/kN is out of reach" in outcome.out
+    assert "No design within the bounds meets" in outcome.out
+
+
+def test_constraints_in_conflict_are_named(tmp_path: Path) -> None:
+    extra = (
+        '[[characteristics]]\nmatch = "lateral.wc_lateral_disp"\ntarget = 0.30\n'
+        '[[characteristics]]\nmatch = "lateral_offset.wc_lateral_disp"\ntarget = 0.05\n'
+    )
+    study = study_in(tmp_path, budget=8, extra=extra)
+    outcome = succeeds("correlate", study, "--workers", 1)
+    assert "No design within the bounds meets" in outcome.out

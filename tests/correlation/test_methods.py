@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -171,3 +172,10 @@ def test_knows_designs_of_before(name: str) -> None:
     sample = [(e.candidate, e.outcome) for e in answered(name, [Candidate(p, "sample") for p in drawn])]
     found = run_method(case(name), method, solver(case(name)), budget=3, known=sample)
     assert all(e.candidate.origin != "opening sample" for e in found.evaluated)
+
+
+@everyone
+def test_is_on_the_page(name: str) -> None:
+    page = (Path(__file__).parents[2] / "docs" / "methods.md").read_text(encoding="utf-8")
+    assert page.count(f"\n| `{name}` |") == 2
+    assert f"\n## {name}\n" in page

@@ -10,7 +10,7 @@ from doe_kc.axle import parameter_value
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.correlation_characteristics import characteristic_frame, characteristic_rows
 from doe_kc.reporting.correlation_evaluations import evaluation_frame, history
-from doe_kc.reporting.correlation_parameters import bound_sentences, parameter_frame, parameter_rows
+from doe_kc.reporting.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.correlation_terms import curve_frame, term_frame
 from doe_kc.targets import CharacteristicOptions, build_targets
@@ -59,7 +59,7 @@ def test_bounds_ties_and_fixed_ones_are_marked() -> None:
     assert rows["sfr.Fy"]["final"] == rows["sff.Fy"]["final"]
     assert rows["sfr.Fy"]["sd"] == rows["sff.Fy"]["sd"]
     assert (rows["ride_height"]["role"], rows["ride_height"]["final"]) == ("fixed", 1.5)
-    text = " ".join(bound_sentences(odd()))
+    text = " ".join(remark_sentences(odd()))
     assert "2 of 18 variables end at a bound: llf.Fy (lower), llr.Fy (upper)" in text
     assert "LLF.x" in text.split("not visible")[1]
 
@@ -67,7 +67,7 @@ def test_bounds_ties_and_fixed_ones_are_marked() -> None:
 def test_without_posterior_nothing_is_said_of_visibility() -> None:
     frame = parameter_frame(typed())
     assert frame["sd"].isna().all() and (frame["not_visible"] == "").all()
-    assert "No standard deviations" in bound_sentences(typed())[-1]
+    assert "No standard deviations" in remark_sentences(typed())[-1]
 
 
 def test_improvement_is_appendix_d(found: Correlation) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
 from doe_kc.output import write_whole
-from doe_kc.reporting.correlation_parameters import bound_sentences
+from doe_kc.reporting.correlation_parameters import remark_sentences
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.page.characteristics import characteristics_section
 from doe_kc.reporting.page.convergence import convergence_section
@@ -50,7 +50,7 @@ def _summary(found: Correlation, notes: Mapping[str, str]) -> Section:
         mean=found.mean_improvement,
         rating=found.rating,
         evaluations=len(found.run.evaluated),
-        remarks=bound_sentences(found),
+        remarks=remark_sentences(found),
         notes=notes,
     )
     return Section("Summary", html)

@@ -1,0 +1,113 @@
+"""Composite efficient global optimization: its parts, and a real car with exact slopes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doe_kc.correlation.ego.archive import build_archive
+from doe_kc.correlation.ego.improvement import ExpectedImprovement
+from doe_kc.correlation.ego.opening import HALF_WIDTH, opening_sample, opening_size
+from doe_kc.correlation.ego.proposal import Box, Pull, gauss_newton
+from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE, RESTARTS, Strategy
+from doe_kc.correlation.ego.trust import Trust
+from doe_kc.correlation.loop import run_method
+from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.problem import Candidate, Evaluated, Prediction
+from doe_kc.surrogates.models.gp import GaussianProcess
+from doe_kc.targets import Score, improvements, mean_improvement
+from doe_kc.true_solver.outcome import Outcome
+from tests.correlation.cases import problem, solver
+from tests.correlation.test_composite import designs
+
+
+def test_expected_improvement_has_exact_slopes() -> None:
+    archive = build_archive(problem("car_b").targets, designs())
+    model = GaussianProcess().fit(archive.points, archive.outputs)
+    failed = archive.points[:1] + 0.03
+    search = ExpectedImprovement(model, archive.composite, archive.best.merit, failed, seed=1)
+    rng = np.random.default_rng(2)
+    point = archive.best.point + rng.uniform(-0.02, 0.02, archive.best.point.size)
+    _, found = search.log(point)
+    for i in rng.choice(point.size, 12, replace=False):
+        h = 1e-6
+        up, down = point.copy(), point.copy()
+        up[i] += h
+        down[i] -= h
+        known = (search.log(up)[0] - search.log(down)[0]) / (2.0 * h)
+        assert found[i] == pytest.approx(known, rel=1e-3, abs=1e-4 * np.abs(found).max())
+
+
+def test_gauss_newton_raises_the_expected_rating_and_stays_in_its_box() -> None:
+    case = problem("car_b")
+    archive = build_archive(case.targets, designs())
+    model = GaussianProcess().fit(archive.points, archive.outputs)
+    start = archive.best.point
+    box = Box.around(start, 0.05)
+    found = gauss_newton(model, archive.composite, box, start, Pull.towards(start, case.space.prior_sd))
+
+    def expected(x: np.ndarray) -> float:
+        return float(archive.composite.expected(model.predict(x[None]), model.variance(x[None])[0])[0])
+
+    assert expected(found) > expected(start)
+    assert np.all((found >= box.lower) & (found <= box.upper))
+
+
+def test_opening_sample_lies_near_the_start_on_the_levels() -> None:
+    space = problem("car_b").space
+    found = opening_sample(space, 24, seed=1)
+    np.testing.assert_array_equal(found, space.snapped(found))
+    assert np.abs(found - space.start).max() <= HALF_WIDTH + 0.005
+    assert not np.array_equal(found, opening_sample(space, 24, seed=2))
+
+
+def test_opening_size() -> None:
+    space = problem("car_b").space
+    assert opening_size(space, None, gradients=False) == 24
+    assert opening_size(space, None, gradients=True) == 4
+    assert opening_size(space, 7, gradients=False) == 7
+
+
+def test_strategy_keeps_what_gains_and_turns_from_what_does_not() -> None:
+    first = Strategy()
+    bolder = first.after(gain=10.0, best=-100.0)
+    assert bolder.kind == "Gauss-Newton" and bolder.aversion < first.aversion
+    other = bolder.after(gain=0.0, best=-90.0)
+    assert other.kind == CYCLE[1] and other.aversion > bolder.aversion and other.idle == 1
+
+
+def test_strategy_restarts_elsewhere_and_ends() -> None:
+    state, restarts = Strategy(), 0
+    for _ in range((RESTARTS + 1) * (PATIENCE + 1)):
+        if state.stopped:
+            break
+        state = state.after(gain=0.0, best=-1.0)
+        restarts += state.kind == "restart"
+    assert restarts == RESTARTS and "gained less than" in state.stopped
+
+
+def answer(error: float, sd: float) -> Evaluated:
+    predicted = Prediction(np.zeros(4), np.full(4, sd), 0.0, 0.0)
+    return Evaluated(
+        1, Candidate(np.zeros(2), "x", predicted), Outcome(None, np.zeros(30), "", 0.0),
+        Score(np.full(4, error), np.zeros(0)), None, np.zeros(0),
+    )  # fmt: skip
+
+
+def test_trust_follows_the_errors_seen() -> None:
+    trust = Trust()
+    for _ in range(8):
+        sd = 0.1 * np.sqrt(trust.factor)  # what a method states carries the factor
+        trust.learn([answer(0.2, float(sd))])
+    assert trust.factor == pytest.approx(4.0, rel=1e-6)
+
+
+def test_with_exact_slopes_a_car_is_correlated_in_a_dozen_runs() -> None:
+    case = problem("car_b")
+    method = METHODS["ego"](case, Settings(seed=1, budget=12, gradients=True))
+    run = run_method(case, method, solver(case.axle), budget=12)
+    best = run.evaluated[run.best]
+    assert best.rating is not None and best.rating.feasible
+    before, after = run.evaluated[0].score, best.score
+    assert before is not None and after is not None
+    assert mean_improvement(improvements(case.targets, before, after)) > 95.0
