@@ -30,7 +30,7 @@ design.
 """
 
 
-def markdown(runs: pd.DataFrame, figures: Mapping[int, Entries], constraints: int) -> str:
+def markdown(runs: pd.DataFrame, figures: Mapping[str, Entries], constraints: int) -> str:
     """The report."""
     first = runs.iloc[0]
     head = HEAD.format(
@@ -40,16 +40,20 @@ def markdown(runs: pd.DataFrame, figures: Mapping[int, Entries], constraints: in
         rows=_table(runs, figures),
         constraints=constraints,
     )
-    return head + "".join(_section(k, *figures[k]) for k in figures)
+    return head + "".join(
+        _section(k, *figures[k])
+        for k in figures
+        if set(runs["configuration"]) & {n for n, _ in figures[k][1]}
+    )
 
 
-def _section(k: int, what: str, _: Sequence[tuple[str, str]]) -> str:
+def _section(k: str, what: str, _: Sequence[tuple[str, str]]) -> str:
     picture = f"configurations_{k}_{what}.png"
     words = f"**Thesis.** {THESIS[k]}\n\n**Here.** {HERE[k]}"
     return f"\n## Figure {k}: {what}\n\n{words}\n\n![Figure {k}]({picture})\n"
 
 
-def _table(runs: pd.DataFrame, figures: Mapping[int, Entries]) -> str:
+def _table(runs: pd.DataFrame, figures: Mapping[str, Entries]) -> str:
     head = (
         "figure", "configuration", "variables", "rating at 25", "at 50", "at 100", "constraints met",
         "evaluations to feasibility", "missed", "at a bound", "mean improvement [%]", "seconds",
@@ -59,7 +63,7 @@ def _table(runs: pd.DataFrame, figures: Mapping[int, Entries]) -> str:
         for name, label in entries:
             own = runs[runs["configuration"] == name]
             if len(own):
-                rows.append([str(k), label.format(n=own["variables"].iloc[0]), *_row(own)])
+                rows.append([k, label.format(n=own["variables"].iloc[0]), *_row(own)])
     return table(head, rows)
 
 

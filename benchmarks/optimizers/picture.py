@@ -19,7 +19,7 @@ from doe_kc.typing import FloatArray
 LOOKS = {
     "ego": ("black", "-"),
     "ego_gradients": ("grey", "-"),
-    "gauss_newton": ("grey", ":"),
+    "gauss_newton": ("purple", "-"),
     "botorch_composite": ("vermillion", "-"),
     "dfols": ("blue", "-"),
     "hybrid": ("green", "-"),
@@ -29,7 +29,7 @@ LOOKS = {
     "cobyqa": ("purple", "--"),
     "botorch_scalar": ("vermillion", "--"),
     "de": ("sky", "--"),
-    "random": ("yellow", "--"),
+    "random": ("grey", "-."),
 }
 """Whole lines see the outputs, broken ones the rating alone or are variants of the same colour."""
 
@@ -60,5 +60,6 @@ def _band(axes: Axes, label: str, name: str, curves: Sequence[FloatArray]) -> No
     held = np.array([np.pad(c, (0, length - len(c)), mode="edge") for c in curves])
     colour, line = LOOKS[name]
     n = np.arange(1, length + 1)
-    axes.plot(n, np.median(held, axis=0), line, color=PALETTE[colour], lw=1.5, label=label)
+    marker = "o" if length < 10 else ""  # a search that stops at once is seen
+    axes.plot(n, np.median(held, axis=0), line + marker, ms=3, color=PALETTE[colour], lw=1.5, label=label)
     axes.fill_between(n, held.min(axis=0), held.max(axis=0), color=PALETTE[colour], alpha=0.12, lw=0)

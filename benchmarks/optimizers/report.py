@@ -16,7 +16,6 @@ from optimizers.text import CONDITIONS, reading
 from optimizers.truth import true_car
 
 PACKAGES = ("numpy", "scipy", "torch", "botorch", "optuna", "cma", "DFO-LS", "cobyqa", "pymoo", "smt")
-GOAL = 10.0
 HEAD = (
     "| method | sees | seeds | 10 % | 1 % | 0.1 % | feasible | as the true car | rating at 100 | "
     "rating at 300 | own CPU s / evaluation |"
@@ -50,7 +49,7 @@ def report(found: Sequence[Result], overhead: str, command: str) -> list[str]:
         "",
         f"- {overhead}" if overhead else "",
         *_slopes(runs),
-        *reading(runs),
+        *reading(PEERS, runs),
         "",
         "![Best deviation and best rating so far](optimizers.png)",
     ]

@@ -16,7 +16,8 @@ def reach_sentences(problem: Problem, baseline: Evaluated, expansion: Linearizat
     missed = {t.entry.id for t in unreachable(targets.characteristics, span)}
     return [
         f"{t.entry.id}: the target {t.value:.4g} {t.entry.unit} is out of reach, within the bounds the model "
-        f"goes from about {low:.4g} to {high:.4g}; check sign and unit, widen bounds or free more variables."
+        f"goes from about {low:.4g} to {high:.4g}; check sign and unit, widen bounds, or leave it out until "
+        "the effect is found that the model lacks."
         for t, (low, high) in zip(targets.characteristics, span, strict=True)
         if t.entry.id in missed
     ]

@@ -18,6 +18,8 @@ from doe_kc.typing import FloatArray
 SIZE = (11.69, 5.4)
 MOST = 300
 """Designs drawn, best ratings first: more lines hide each other."""
+NARROW = 0.05
+"""Share of the widest range below which an objective is in no conflict worth a picture."""
 OTHERS, BEST, KNEE = PALETTE["grey"], PALETTE["blue"], PALETTE["vermillion"]
 
 
@@ -78,7 +80,7 @@ def _marked(front: Front) -> list[tuple[int, str, str, str]]:
 def most_in_conflict(values: FloatArray) -> tuple[int, int, float]:
     """Places of the two objectives (f, g) of least rank correlation, and that; nan for fewer than 3 designs.
 
-    Objectives that hardly differ over the front, below a hundredth of the widest range, count last.
+    Objectives that hardly differ over the front, below NARROW, count last.
     """
     if len(values) < 3:
         return 0, 1, float("nan")
@@ -86,7 +88,7 @@ def most_in_conflict(values: FloatArray) -> tuple[int, int, float]:
     centred = ranks - ranks.mean(axis=0)
     size = np.linalg.norm(centred, axis=0)
     rho = centred.T @ centred / np.maximum(np.outer(size, size), 1e-12)
-    narrow = np.ptp(values, axis=0) < 0.01 * np.ptp(values, axis=0).max()
+    narrow = np.ptp(values, axis=0) < NARROW * np.ptp(values, axis=0).max()
     judged = np.where(np.triu(np.ones_like(rho), 1) > 0, rho + 2.0 * (narrow[:, None] | narrow), np.inf)
     i, j = np.unravel_index(int(np.argmin(judged)), rho.shape)
     return int(i), int(j), float(rho[i, j])

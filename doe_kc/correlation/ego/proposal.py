@@ -50,6 +50,10 @@ class Pull:
         """RIDGE per squared prior sd."""
         return cls(home, RIDGE * prior**-2.0)
 
+    def cost(self, points: FloatArray) -> FloatArray:
+        """(...,) rating given away at points (..., d)."""
+        return np.asarray(0.5 * (points - self.home) ** 2 @ self.weight)
+
 
 def gauss_newton(
     model: Fitted, composite: Composite, box: Box, first: FloatArray, pull: Pull, *, doubt: float = 1.0
@@ -58,12 +62,12 @@ def gauss_newton(
 
     doubt: factor of the predicted variances; 0 = the predictions are taken for true.
     """
-    point, weight, home = box.clip(first), pull.weight, pull.home
+    point, weight = box.clip(first), pull.weight
 
     def merit(x: FloatArray) -> float:
         variance = doubt * model.variance(x[None])[0] if doubt else np.zeros(model.outputs)
         expected = composite.expected(model.predict(x[None]), variance)
-        return float(expected[0] - 0.5 * weight @ (x - home) ** 2)
+        return float(expected[0] - pull.cost(x))
 
     value = merit(point)
     for _ in range(STEPS):
@@ -72,7 +76,7 @@ def gauss_newton(
         jacobian = known.gradient[0]
         hessian = jacobian.T @ near.hessian @ jacobian + np.diag(weight)
         gradient = jacobian.T @ near.gradient + doubt * known.variance_gradient[0].T @ near.variance
-        gradient += weight * (point - home)
+        gradient += weight * (point - pull.home)
         step = bounded_step(hessian, gradient, box.lower - point, box.upper - point, iterations=ROUGH)
         point, gained = _line_search(merit, point, step, value)
         if gained <= SETTLED * max(1.0, abs(value)):

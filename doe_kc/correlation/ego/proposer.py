@@ -111,7 +111,9 @@ class Proposer:
 
     def _levelled(self, point: FloatArray, doubt: float) -> FloatArray:
         best = self.space.snapped(self.archive.best.point)
-        return on_levels(self.model, self.archive.composite, point, self.steps, best[None], doubt=doubt)
+        return on_levels(
+            self.model, self.archive.composite, point, self.steps, best[None], self._pull, doubt=doubt
+        )
 
     @property
     def _pull(self) -> Pull:

@@ -42,7 +42,7 @@ def best_predicted(
     pull = Pull.towards(space.start, space.prior_sd)
     point = gauss_newton(model, composite, box, first, pull, doubt=doubt)
     starts = space.snapped(first)[None]
-    return space.snapped(on_levels(model, composite, point, level_steps(space), starts, doubt=doubt))
+    return space.snapped(on_levels(model, composite, point, level_steps(space), starts, pull, doubt=doubt))
 
 
 def prediction(problem: Problem, archive: Archive, model: Fitted, point: FloatArray) -> Prediction:
