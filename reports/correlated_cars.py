@@ -26,30 +26,36 @@ CARS = ("car_b", "car_e")
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is run: seeds of `ego` and its budget on each car, and synthetic cars."""
+    """How much is run: seeds of `ego` and its budget on each car; synthetic cars of each scatter."""
 
     cars: tuple[str, ...] = CARS
     seeds: int = 10
     budget: int = 100
     synthetic: int = 40
+    times: tuple[float, ...] = (1.0, 2.0)
 
 
-QUICK = Plan(cars=("car_b",), seeds=1, budget=28, synthetic=2)
+QUICK = Plan(cars=("car_b",), seeds=1, budget=28, synthetic=2, times=(1.0,))
 
 
 @dataclass(frozen=True)
 class Found:
-    """ego: car -> runs. fits: car -> Gauss-Newton fit. synthetic: fits of the cars made for the purpose."""
+    """ego: car -> runs. fits: car -> Gauss-Newton fit. synthetic: multiple of the scatter -> fits of cars made so."""
 
     plan: Plan
     ego: Mapping[str, list[Trace]]
     fits: Mapping[str, Fit]
-    synthetic: list[Fit]
+    synthetic: Mapping[float, list[Fit]]
 
     @property
     def runs(self) -> list[Trace]:
         """All runs of `ego`."""
         return [t for runs in self.ego.values() for t in runs]
+
+    @property
+    def made(self) -> list[Fit]:
+        """Fits of all synthetic cars."""
+        return [f for fits in self.synthetic.values() for f in fits]
 
 
 def study(plan: Plan, cache: Path) -> Found:
@@ -58,7 +64,7 @@ def study(plan: Plan, cache: Path) -> Found:
         plan,
         {car: _ego(car, plan, cache) for car in plan.cars},
         {car: _fit(car, cache) for car in plan.cars},
-        [_synthetic(seed, cache) for seed in range(1, plan.synthetic + 1)],
+        {t: [_synthetic(s, t, cache) for s in range(1, plan.synthetic + 1)] for t in plan.times},
     )
 
 
@@ -71,13 +77,13 @@ def _fit(car: str, cache: Path) -> Fit:
     return Fit(**cached(cache, f"{car}-fit", lambda: asdict(fitted(problem_of(measured(car)), truth(car)))))
 
 
-def _synthetic(seed: int, cache: Path) -> Fit:
+def _synthetic(seed: int, times: float, cache: Path) -> Fit:
     def make() -> dict[str, object]:
-        known = scattered(problem_of(measured("car_b")).space, seed)
+        known = scattered(problem_of(measured("car_b")).space, seed, times=times)
         records = record(known, noise=np.random.default_rng([9, seed]))
         return asdict(fitted(problem_of(records), known))
 
-    return Fit(**cached(cache, f"synthetic-{seed}-fit", make))
+    return Fit(**cached(cache, f"synthetic-{times:g}-{seed}-fit", make))
 
 
 def coverage(fits: list[Fit]) -> tuple[float, float]:
@@ -135,15 +141,16 @@ def check(found: Found) -> None:
     for fit in found.fits.values():
         assert fit.stopped.startswith("converged"), fit.stopped
         assert fit.feasible
-    for fit in [*found.fits.values(), *found.synthetic]:
+    for fit in [*found.fits.values(), *found.made]:
         assert fit.seconds < 10.0, fit.seconds
         assert 0.9 < fit.misfit["all"] < 1.1, fit.misfit
     assert coverage(list(found.fits.values()))[0] >= 0.9
     assert all(t.rating > 10.0 * t.best[0] / 100.0 for t in found.runs)
     if found.plan == Plan():
-        assert 0.945 < coverage(found.synthetic)[0] < 0.985
-        assert sum(f.feasible for f in found.synthetic) >= 0.9 * len(found.synthetic)
-        assert all("stop" in path for path, z in far_off(found.synthetic) if abs(z) > 4.0)
+        assert 0.945 < coverage(found.synthetic[1.0])[0] < 0.985
+        assert coverage(found.synthetic[2.0])[0] > 0.9
+        assert sum(f.feasible for f in found.made) >= 0.9 * len(found.made)
+        assert all("stop" in path for path, z in far_off(found.synthetic[1.0]) if abs(z) > 4.0)
         assert all(t.feasible for t in found.runs)
         assert min(t.improvement for t in found.runs) >= 95.0
 

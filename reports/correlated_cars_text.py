@@ -11,15 +11,15 @@ from report_text import first_times, number, spread, table
 
 HEAD = """# Two measured cars correlated, their parameters known
 
-Two virtual cars (`tests/data/rig`: records with noise from another solver, and the parameters that made
-them) are correlated from the example's nominal axle with all {d} default variables. Made by
+Two virtual cars (`tests/data/rig`: records with noise, and the key of the parameters that made them) are
+correlated from the example's nominal axle with all {d} default variables. Made by
 `python reports/correlated_cars.py`, which also asserts what is stated here.
 
 ## The rating: `ego`
 
 Default settings, budget {budget} evaluations, {seeds} seeds a car. Improvement: of the active
 characteristics that count (baseline more than three standard errors from its target), 100 % = target met.
-Median (worst to best). A run takes {seconds} s of one core.
+Median (lowest to highest). A run takes {seconds} s of one core.
 
 {ego}
 
@@ -33,7 +33,8 @@ core.
 {fits}
 
 Within two stated standard deviations of the truth: **{inside} of {judged}** visible parameters of the
-measured cars ({share:.1f} %). Visible: the measurement at least halves the prior standard deviation.
+measured cars ({share:.1f} %). Visible: the measurement at least halves the prior standard deviation;
+counted are those that the key states.
 
 **Calibration.** {n} synthetic cars: the nominal axle with production scatter (1 mm, bushings 20 %, rates 3 %,
 angles 0.1 deg, ride height and stop clearances 1 mm), solved, with noise drawn from the noise model of
@@ -41,8 +42,8 @@ car_b's records. Of {synthetic_judged} visible parameters **{coverage:.1f} ± {e
 stated standard deviations (± is the standard error from car to car). Gaussian errors would give 95.4 %; the
 stated ones are a little cautious, because the prior (uniform between the bounds) is wider than the scatter
 that the cars were drawn with. rms of (estimate - truth) / sd without the stops' clearances: {rms:.2f}.
-Misfit {misfit}; {feasible} of {n} meet every constraint (the fit knows of none; a target within noise of
-its interval can fall outside).
+Misfit {misfit}: below 1 by the fitted parameters and the allowance for corners of curves; {feasible} of {n}
+meet every constraint (the fit knows of none; a target within noise of its interval can fall outside).
 
 **Where it does not hold.** Farther than three stated standard deviations: {far}. A stop that the record
 touches with its last point, or just not, is a corner: beyond it the clearance changes nothing, so that the

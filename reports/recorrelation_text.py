@@ -43,12 +43,12 @@ records with the rig's own noise would at least halve the prior standard deviati
 {words}
 """
 
-WORDS = """- **The characteristics are found again, the parameters only where the curves see them.** Of {d}
-  directions in the space of variables, {many} are seen by records with the rig's noise (the prior standard
-  deviation at least halved). Along these `gauss_newton` leaves {seen:.1%} of the disturbance, along the
-  {few} others {unseen:.0%}. Those others are the null space: combinations of parameters that move the
-  curves by less than their noise. No method and no further evaluation finds them; another record, or fewer
-  variables, would.
+WORDS = """- **The characteristics are found again, the parameters only where the curves see them.** Of {d} directions
+  in the space of variables, {many} are seen by records with the rig's noise (the prior standard deviation
+  at least halved). Along these `gauss_newton` leaves {seen:.1%} of the disturbance, along the {few} others
+  {unseen:.0%}. Those others are the null space: combinations of parameters that move the curves by less
+  than their noise. No method and no further evaluation finds them; another record, or fewer variables,
+  would.
 - **`ego` leaves {ego_seen:.0%} of what is seen and {ego_unseen:.0%} of what is not.** It works on {active}
   characteristics and the curves with an objective, not on all curves, from {budget} evaluations, and stops
   where the rating is good: along all but the strongest directions a change of parameters costs next to
