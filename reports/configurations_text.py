@@ -16,8 +16,8 @@ Figures 5 to 9 of E. Wendeberg, *Using optimization to auto-correlate suspension
 measurements*, Chalmers 2013, repeated on `examples/front_axle`: the records of car_a, which the model
 cannot match fully. Budget {budget} evaluations (the baseline among them), {seeds} seeds a configuration;
 everything that a figure does not vary is the default: `ego`, all variables, standard bounds, 101 levels,
-uniform. Targets, objectives and constraints are the same throughout, so ratings compare. Made by `python
-reports/configurations.py`, which also asserts what is stated.
+uniform. Targets, objectives and constraints are the same throughout, so ratings compare. Made by
+`python reports/configurations.py`, which also asserts what is stated.
 
 Rating: equation 2.2, best so far, median of the seeds (lowest to highest at the end). 0 is the target, the
 baseline's is {baseline}. The three constraints on lateral camber, which the model cannot meet within

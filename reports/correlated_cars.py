@@ -40,7 +40,10 @@ QUICK = Plan(cars=("car_b",), seeds=1, budget=28, synthetic=2, times=(1.0,))
 
 @dataclass(frozen=True)
 class Found:
-    """ego: car -> runs. fits: car -> Gauss-Newton fit. synthetic: multiple of the scatter -> fits of cars made so."""
+    """ego: car -> runs. fits: car -> Gauss-Newton fit.
+
+    synthetic: multiple of the production scatter -> fits of the cars made with it.
+    """
 
     plan: Plan
     ego: Mapping[str, list[Trace]]

@@ -16,7 +16,7 @@ from doe_kc.reporting.style import PALETTE, figure, label
 SEEN, UNSEEN = PALETTE["blue"], PALETTE["grey"]
 
 
-def recovery_figure(fits: Mapping[str, Fit], synthetic: Sequence[Fit]) -> Figure:
+def recovery_figure(fits: Mapping[str, Fit], synthetic: Mapping[float, Sequence[Fit]]) -> Figure:
     """One panel a car, and the errors of the synthetic cars in stated standard deviations."""
     fig, axes = figure(1, len(fits) + 1, size=(3.9 * (len(fits) + 1), 4.3), share_x=False)
     for ax, (car, fit) in zip(axes[0], fits.items(), strict=False):
@@ -46,15 +46,17 @@ def _beside_truth(ax: Axes, car: str, fit: Fit) -> None:
     legend(ax, "upper left")
 
 
-def _errors(ax: Axes, synthetic: Sequence[Fit]) -> None:
-    z = np.concatenate([f.z[f.judged] for f in synthetic])
+def _errors(ax: Axes, synthetic: Mapping[float, Sequence[Fit]]) -> None:
     edges = np.linspace(-4.0, 4.0, 33)
-    ax.hist(np.clip(z, -4.0, 4.0), edges, density=True, color=PALETTE["sky"], label=f"{z.size} parameters")
+    for (times, fits), colour in zip(synthetic.items(), (SEEN, PALETTE["orange"]), strict=False):
+        z = np.concatenate([f.z[f.judged] for f in fits])
+        word = f"{times:g} × scatter: {z.size} parameters"
+        ax.hist(np.clip(z, -4.0, 4.0), edges, density=True, histtype="step", lw=1.4, color=colour, label=word)
     x = np.linspace(-4.0, 4.0, 161)
     ax.plot(x, norm.pdf(x), color=PALETTE["black"], label="as stated: N(0, 1)")
     for limit in (-STATED, STATED):
         ax.axvline(limit, color=PALETTE["vermillion"], lw=0.9, ls="--")
     label(ax, "(estimate - truth) / stated sd [-]", "density [-]")
-    title(ax, f"{len(synthetic)} synthetic cars, visible parameters")
-    ax.set_ylim(0.0, 0.6)
+    title(ax, f"{sum(map(len, synthetic.values()))} synthetic cars, visible parameters")
+    ax.set_ylim(0.0, 0.68)
     legend(ax, "upper left")

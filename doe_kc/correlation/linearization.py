@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.axle.model import Axle
+from doe_kc.axle.model import NEARLY_RIGID, Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients, interpolated
@@ -17,8 +17,6 @@ from doe_kc.targets import CurveTarget
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-NEARLY_RIGID = 1e-3
-"""Flexibility at which the sensitivity of a rigid strut is taken: its stiffness is infinite at zero."""
 FLEXIBILITY = "strut.flexibility"
 
 

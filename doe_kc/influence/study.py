@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from doe_kc.axle.model import Axle
+from doe_kc.axle.model import NEARLY_RIGID, Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, with_values
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
@@ -19,9 +19,6 @@ from doe_kc.solver.suite import solve
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.typing import FloatArray
-
-NEARLY_RIGID = 1e-3
-"""Flexibility at which the sensitivity of a rigid strut is taken: its stiffness is infinite at zero."""
 
 
 def influence_study(

@@ -112,6 +112,29 @@ def test_another_seed_samples_elsewhere(tmp_path: Path) -> None:
     assert document_of(study)["rating"] != document_of(study, "--seed", 7, "--out", tmp_path / "b")["rating"]
 
 
+def test_sampled_designs_are_known_and_not_counted(tmp_path: Path) -> None:
+    study = study_in(tmp_path, budget=3)
+    succeeds("sample", study, "--n", 12, "--workers", 1)
+    count = stored(study)
+    found = document_of(study)
+    assert found["evaluations"] == 3 and stored(study) == count + 3
+    alone = document_of(study_in(tmp_path / "alone", budget=3))
+    assert found["rating"] > alone["rating"]
+
+
+def test_variables_by_the_advice_of_the_influence_study(tmp_path: Path) -> None:
+    tables = '[variables]\nuse = "selection"\n[correlation]\nmethod = "gauss_newton"\n'
+    found = document_of(write_study(tmp_path, records=RECORDS, parameters=["LLF.?", "llr.F?"], tables=tables))
+    assert set(found["parameters"]) < {"LLF.x", "LLF.y", "LLF.z", "llr.Fx", "llr.Fy", "llr.Fz"}
+    assert found["parameters"]
+    fails(2, 'use = "selection" needs a measurement', "correlate", unmeasured(tmp_path / "b", tables))
+
+
+def unmeasured(folder: Path, tables: str) -> Path:
+    extra = '[[characteristics]]\nmatch = "vertical.bump_steer"\ntarget = -5.0\n'
+    return write_study(folder, tables=tables + extra)
+
+
 def test_report_rates_anew_without_a_run(tmp_path: Path) -> None:
     study = study_in(tmp_path)
     first = document_of(study)

@@ -35,6 +35,12 @@ def test_the_shortest_manifest_has_defaults(tmp_path: Path) -> None:
     assert manifest.sensor_resolution.angle_deg == 0.003
 
 
+def test_the_benchs_accuracy_can_be_stated(tmp_path: Path) -> None:
+    manifest = load_manifest(manifest_with(tmp_path, GOOD + "[alignment]\nsd = { toe_deg = 0.05 }\n"))
+    assert manifest.alignment is not None
+    assert (manifest.alignment.sd.toe_deg, manifest.alignment.sd.caster_deg) == (0.05, 0.02)
+
+
 def test_further_setup_keys_are_kept_as_notes(tmp_path: Path) -> None:
     manifest = load_manifest(manifest_with(tmp_path, GOOD + "[setup]\nroom_temperature_C = 21.5\n"))
     assert manifest.setup.model_extra == {"room_temperature_C": 21.5}

@@ -31,7 +31,8 @@ def test_characteristics_are_those_of_the_common_reduction(car_a: Measurement) -
     for ident, value in reduce_all(car_a.curves).items():
         np.testing.assert_equal(car_a.characteristics[ident].value, value)
     assert car_a.characteristics["static.camber"].value == -0.495
-    assert car_a.characteristics["static.camber"].sd == 0.003
+    assert car_a.characteristics["static.camber"].sd == 0.01
+    assert car_a.characteristics["static.caster"].sd == 0.02
 
 
 def test_trends_follow_the_curves_but_ring_at_the_bump_stop(car_a: Measurement) -> None:

@@ -72,7 +72,7 @@ def test_the_document_has_the_agreed_shape(name: str, tmp_path: Path) -> None:
     document = json.loads(path.read_text(encoding="utf-8"))
     assert set(document) == {
         "method", "evaluations", "rating", "feasible", "mean_improvement_percent", "characteristics",
-        "parameters", "axle", "seconds", "stopped", "steps",
+        "parameters", "axle", "seconds", "stopped", "steps", "notes",
     }  # fmt: skip
     assert all(set(c) == KEYS for c in document["characteristics"])
     assert all(c["low"] < c["high"] for c in document["characteristics"])
