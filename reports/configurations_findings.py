@@ -1,4 +1,4 @@
-"""What the thesis found of each configuration, and what is found here; `check` asserts the latter."""
+"""What the thesis found of each configuration, and what is found here; `hold` asserts the latter."""
 
 from __future__ import annotations
 
@@ -7,17 +7,62 @@ from collections.abc import Mapping
 import pandas as pd
 
 THESIS: Mapping[str, str] = {
-    "5": "Uniform converges faster and ends higher than Gaussian: many parameters went almost to their "
+    "5": "Uniform converges faster and ends higher than Gaussian: many parameters went almost to their\n"
     "bounds, which a Gaussian distribution seldom tries.",
     "6": "21 levels rise faster at first; 101 are needed to become feasible.",
     "7": "Fewer variables, those without influence left out, converge and rise clearly faster.",
     "8": "Wider bounds rise more slowly at first and end alike or higher.",
     "9": "SHERPA rises faster, MO-SHERPA ends higher once objectives counteract each other.",
-    "9b": "As Figure 9.",
+    "9b": "As Figure 9; and (7.2) when constraints cannot be met, the algorithm strives for them even if that\n"
+    "makes many other characteristics wrong.",
 }
-HERE: Mapping[str, str] = dict.fromkeys(THESIS, "")
+HERE: Mapping[str, str] = {
+    "5": "No difference that three seeds show. `ego` draws only its opening sample by the distribution; its\n"
+    "proposals go wherever the surrogates point. And the best designs of this axle lie between the bounds, hardly\n"
+    "a variable at one, so that the reason the thesis gives for uniform does not apply.",
+    "6": "21 levels are worse from the first proposal on, not faster: a step is then 5 % of the range, 0.3 mm or\n"
+    "7 % of a stiffness, too coarse for predictions that are exact to far less. SHERPA scans, for which a coarse\n"
+    "grid is quick; a surrogate needs no grid. As in the thesis 101 suffice: continuous variables gain little.",
+    "7": "As in the thesis fewer variables rise faster, most of all because the opening sample is smaller (20 in\n"
+    "place of 24 designs) and misses less. But they end lower: the fewer, the less. Those with little influence\n"
+    "together take up what counteracting objectives leave. With 100 cheap evaluations all variables are worth\n"
+    "having; with 25 dear ones the selection is.",
+    "8": "Wide bounds rise more slowly, as in the thesis, but have not caught up after 100 evaluations; narrow ones\n"
+    "do no harm. Opening sample and trust region are shares of the bounds, so wide ones make both coarser, and the\n"
+    "best designs lie within half the standard bounds in nearly all variables. Widen where a variable ends at\n"
+    "its bound, not throughout.",
+    "9": "`ego` rises fastest and ends highest; `pareto` and `hybrid` follow. The advantage of MO-SHERPA is not\n"
+    "seen: `ego` has a model of every objective, as `pareto` has, and spends no evaluations on the rest of the\n"
+    "front. What `pareto` gives beyond the rating is the front itself. `gauss_newton` fits curves within their\n"
+    "noise, not the rating: given all curves it follows the lateral camber that the model cannot show and\n"
+    "spoils others; given the curves with an objective it needs a handful of evaluations, and its rating is\n"
+    "limited by constraints that it knows nothing of.",
+    "9b": "No algorithm meets all constraints. All of them push variables to their bounds for the three on lateral\n"
+    "camber and leave the other characteristics far worse than the baseline (mean improvement below zero): what\n"
+    "the thesis warns of. The order of the algorithms is that of Figure 9. More evaluations are no remedy; leaving\n"
+    "the targets out, or adding the missing effect, is.",
+}
 
 
 def hold(runs: pd.DataFrame) -> None:
     """AssertionError when what is said of the figures does not hold for the medians of the runs."""
-    assert len(runs)
+    loss = -runs.groupby("configuration")[["rating_25", "rating_50", "rating_100"]].median()
+    middle = runs.groupby("configuration")[
+        ["constraints_missed", "at_bound", "mean_improvement_percent"]
+    ].median()
+    end, half, early = loss["rating_100"], loss["rating_50"], loss["rating_25"]
+    assert abs(end["gaussian"] / end["standard"] - 1.0) < 0.15, end
+    assert end["levels_21"] > 1.4 * end["standard"], end
+    assert half["levels_21"] > 1.4 * half["standard"], half
+    assert 0.8 < end["continuous"] / end["standard"] < 1.02, end
+    assert max(early["selection"], early["dozen"]) < 0.5 * early["standard"], early
+    assert end["standard"] < end["selection"] < end["dozen"], end
+    assert end["wide"] > end["standard"], end
+    assert half["wide"] > half["standard"], half
+    assert end["narrow"] < 1.02 * end["standard"], end
+    assert middle["at_bound"][["standard", "gaussian", "narrow", "wide"]].max() <= 5, middle
+    assert max(end["standard"], half["standard"] / 2) < min(end["pareto"], end["hybrid"]), end
+    everything = ["ego_all", "pareto_all", "hybrid_all"]
+    assert (middle["constraints_missed"][everything] > 3).all(), middle
+    assert (middle["mean_improvement_percent"][everything] < 0.0).all(), middle
+    assert end["ego_all"] < min(end["pareto_all"], end["hybrid_all"]), end

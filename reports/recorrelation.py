@@ -13,7 +13,8 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from correlation_runs import Trace, arguments, cached, cached_trace, nominal, problem_of
+from correlation_runs import arguments, cached, cached_trace, nominal, problem_of
+from recorrelation_case import Case
 from recorrelation_figure import parameter_figure, recorrelation_figure
 from recorrelation_text import markdown
 from recovery import BUDGET, Fit, fitted
@@ -23,7 +24,6 @@ from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Problem
 from doe_kc.reporting.style import save_png
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space, VariableOptions, build_space
 
 SHARE = 0.1
@@ -41,33 +41,6 @@ class Plan:
 
 
 QUICK = Plan(times=(1.0,), cars=1, seeds=1, budget=28)
-
-
-@dataclass(frozen=True)
-class Case:
-    """One disturbed car. All (d,) in prior sd about nominal: moved, the truth; points of the runs `ego`.
-
-    seen: singular values of the whitened Jacobian at the truth, rig noise, in prior sd, falling; axes:
-    (d, d) their directions in columns. visible: what records of that noise would see.
-    """
-
-    times: float
-    car: int
-    active: int
-    paths: list[str]
-    moved: FloatArray
-    prior: FloatArray
-    start: FloatArray
-    seen: FloatArray
-    axes: FloatArray
-    visible: FloatArray
-    ego: list[Trace]
-    newton: Trace
-    fit: Fit
-
-    def left(self, point: Sequence[float]) -> FloatArray:
-        """(d,) estimate minus truth of a run's final point, in prior sd."""
-        return (np.array(point) - self.start) / self.prior - self.moved
 
 
 def space() -> Space:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 import numpy as np
 import pandas as pd
-from correlation_runs import Trace
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from recovery import Fit
+from recorrelation_case import Case
 from report_figures import legend, title
 
 from doe_kc.reporting.style import PALETTE, figure, label
@@ -23,25 +21,7 @@ SEEN = 3.0**0.5
 EDGES = np.array([1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1000.0])
 
 
-class Disturbed(Protocol):
-    """What the pictures need of a case."""
-
-    times: float
-    active: int
-    paths: list[str]
-    moved: FloatArray
-    visible: FloatArray
-    seen: FloatArray
-    axes: FloatArray
-    ego: list[Trace]
-    newton: Trace
-    fit: Fit
-
-    def left(self, point: Sequence[float]) -> FloatArray:
-        """(d,) estimate minus truth."""
-
-
-def recorrelation_figure(cases: Sequence[Disturbed], share: float) -> Figure:
+def recorrelation_figure(cases: Sequence[Case], share: float) -> Figure:
     """Convergence, and what is left of the disturbance over how well the records see it."""
     fig, axes = figure(1, 2, size=(10.5, 4.3), share_x=False)
     _convergence(axes[0, 0], cases)
@@ -49,7 +29,7 @@ def recorrelation_figure(cases: Sequence[Disturbed], share: float) -> Figure:
     return fig
 
 
-def _convergence(ax: Axes, cases: Sequence[Disturbed]) -> None:
+def _convergence(ax: Axes, cases: Sequence[Case]) -> None:
     for colour, times in zip(SIZES, sorted({c.times for c in cases}), strict=False):
         runs = [t for c in cases if c.times == times for t in c.ego]
         for k, run in enumerate(runs):
@@ -70,7 +50,7 @@ def _convergence(ax: Axes, cases: Sequence[Disturbed]) -> None:
     legend(ax, "upper right")
 
 
-def _directions(ax: Axes, cases: Sequence[Disturbed], share: float) -> None:
+def _directions(ax: Axes, cases: Sequence[Case], share: float) -> None:
     seen = np.concatenate([c.seen for c in cases])
     moved = np.concatenate([c.axes.T @ c.moved for c in cases])
     by_fit = np.concatenate([c.axes.T @ c.left(c.fit.estimate) for c in cases])
@@ -98,6 +78,7 @@ def _directions(ax: Axes, cases: Sequence[Disturbed], share: float) -> None:
         "sensitivity of the records to a direction [noise sd per prior sd]",
         "share of the disturbance left [-]",
     )
+    ax.set_ylim(-0.05, 1.3 * ax.get_ylim()[1])
     title(ax, "Found again (0) or not (1), by direction")
     legend(ax, "upper right")
 

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from correlation_runs import Trace
-from recorrelation_figure import SEEN, Disturbed
+from recorrelation_case import Case
+from recorrelation_figure import SEEN
 from report_text import first_times, number, spread, table
 
 HEAD = """# A disturbed model correlated back
@@ -23,9 +24,9 @@ figures.
 {runs}
 
 Deviation: mean of |value - target| / Norm over the {active} active characteristics. Mean improvement: over
-all of them, including those that nominal misses by almost nothing, since targets without noise have no error
-that a small deviation could hide in. `gauss_newton` assumes {share:g} times the rig's noise. Median (lowest
-to highest) over cars and seeds.
+all of them, including those that nominal misses by almost nothing, since targets without noise have no
+error that a small deviation could hide in. `gauss_newton` assumes {share:g} times the rig's noise. Median
+(lowest to highest) over cars and seeds.
 
 ![re-correlation](recorrelation.png)
 
@@ -56,14 +57,14 @@ WORDS = """- **The characteristics are found again, the parameters only where th
   nothing.{more}
 - **Found again best** (`gauss_newton`): {best}.
 - **Not found at all** (at least 95 % left): {worst}. The torsional stiffness of a bushing carries next to
-  nothing beside the links that turn it, and a point of the sub-frame matters only by how its bushing
-  deflects.
+  nothing beside the links that turn it, a point of the sub-frame matters only by how its bushing deflects,
+  and `LWD.z` moves along the damper's axis, nearly.
 - **Consequence.** A correlated model is right in what was measured. Its parameters are statements about the
   car only where the report of a correlation calls them visible.
 """
 
 
-def markdown(cases: Sequence[Disturbed], parameters: pd.DataFrame, share: float) -> str:
+def markdown(cases: Sequence[Case], parameters: pd.DataFrame, share: float) -> str:
     """The report."""
     return HEAD.format(
         d=len(parameters),
@@ -76,10 +77,11 @@ def markdown(cases: Sequence[Disturbed], parameters: pd.DataFrame, share: float)
     )
 
 
-def _runs(cases: Sequence[Disturbed]) -> str:
+def _runs(cases: Sequence[Case]) -> str:
     head = (
         "disturbance", "method", "runs", "rating at nominal", "rating found", "constraints met",
-        "evaluations to feasibility", "deviation before [%]", "deviation left [%]", "deviation removed [%]", "mean improvement [%]",
+        "evaluations to feasibility", "deviation before [%]", "deviation left [%]", "deviation removed [%]",
+        "mean improvement [%]",
         "evaluations",
     )  # fmt: skip
     rows = []
@@ -122,7 +124,7 @@ def group_of(path: str) -> str:
     return GROUPS[3]
 
 
-def _groups(cases: Sequence[Disturbed]) -> str:
+def _groups(cases: Sequence[Case]) -> str:
     head = ("parameters", "", "number a car", "disturbance", "left by `ego`", "left by `gauss_newton`")
     kinds = np.array([group_of(p) for p in cases[0].paths])
     rows = []
@@ -134,7 +136,7 @@ def _groups(cases: Sequence[Disturbed]) -> str:
     return table(head, rows)
 
 
-def _group_row(cases: Sequence[Disturbed], masks: Sequence[np.ndarray]) -> list[str]:
+def _group_row(cases: Sequence[Case], masks: Sequence[np.ndarray]) -> list[str]:
     pairs = list(zip(cases, masks, strict=True))
     moved = np.concatenate([c.moved[m] for c, m in pairs])
     by_ego = np.concatenate([c.left(t.point)[m] for c, m in pairs for t in c.ego])
@@ -143,7 +145,7 @@ def _group_row(cases: Sequence[Disturbed], masks: Sequence[np.ndarray]) -> list[
     return [number(float(np.mean([m.sum() for m in masks]))), *rms]
 
 
-def _words(cases: Sequence[Disturbed], parameters: pd.DataFrame) -> str:
+def _words(cases: Sequence[Case], parameters: pd.DataFrame) -> str:
     share = parameters["left_by_gauss_newton"] / parameters["moved"]
     order = parameters["parameter"].to_numpy()[np.argsort(share.to_numpy())]
     many = float(np.mean([np.sum(c.seen > SEEN) for c in cases]))
@@ -167,7 +169,7 @@ def _words(cases: Sequence[Disturbed], parameters: pd.DataFrame) -> str:
     )
 
 
-def left_along(cases: Sequence[Disturbed], what: str, *, wanted: bool) -> float:
+def left_along(cases: Sequence[Case], what: str, *, wanted: bool) -> float:
     """rms left over rms disturbance along the directions that the rig sees, or does not."""
     left, moved = 0.0, 0.0
     for c in cases:

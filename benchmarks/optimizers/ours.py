@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from optimizers.counting import CountingSolver
 from optimizers.peer import Peer, Search
 
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.problem import Problem
 
 BUDGET = 100
 
 
-def own(name: str, *, gradients: bool = False) -> Search:
-    """A registered method with its default settings."""
+def own(name: str, *, gradients: bool = False, continuous: bool = False) -> Search:
+    """A registered method with its default settings; continuous: without the variables' levels."""
 
     def search(solver: CountingSolver, seed: int) -> str:
         settings = Settings(seed=seed, budget=solver.budget, gradients=gradients)
-        method = METHODS[name](solver.problem, settings)
-        return run_method(solver.problem, method, solver.evaluate, budget=solver.budget).stopped
+        problem = _without_levels(solver.problem) if continuous else solver.problem
+        method = METHODS[name](problem, settings)
+        return run_method(problem, method, solver.evaluate, budget=solver.budget).stopped
 
     return search
+
+
+def _without_levels(problem: Problem) -> Problem:
+    free = tuple(replace(v, levels=None) for v in problem.space.variables)
+    return replace(problem, space=replace(problem.space, variables=free))
 
 
 PEERS = (
@@ -40,6 +49,15 @@ PEERS = (
         BUDGET,
         ours=True,
         seeds=1,
+    ),
+    Peer(
+        "ego_continuous",
+        "ego, continuous variables",
+        "outputs",
+        own("ego", continuous=True),
+        50,
+        ours=True,
+        seeds=3,
     ),
     Peer("pareto", "pareto", "outputs", own("pareto"), BUDGET, ours=True, needs="pymoo"),
     Peer("hybrid", "hybrid", "outputs", own("hybrid"), BUDGET, ours=True),

@@ -17,10 +17,10 @@ from optimizers.truth import true_car
 
 PACKAGES = ("numpy", "scipy", "torch", "botorch", "optuna", "cma", "DFO-LS", "cobyqa", "pymoo", "smt")
 HEAD = (
-    "| method | sees | seeds | 10 % | 1 % | 0.1 % | feasible | as the true car | rating at 100 | "
-    "rating at 300 | own CPU s / evaluation |"
+    "| method | sees | seeds | 10 % | 1 % | 0.1 % | feasible | as the true car | "
+    "rating at 50 | at 100 | at 300 | budget used | own CPU s / evaluation |"
 )
-RULE = "|---|---|---|---|---|---|---|---|---|---|---|"
+RULE = "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 
 
 def report(found: Sequence[Result], overhead: str, command: str) -> list[str]:
@@ -62,9 +62,16 @@ def _row(peer: Peer, runs: Sequence[Result], true_rating: float) -> str:
     cpu = np.median([r.own_cpu / len(r.rating) for r in runs])
     name = f"**{peer.label}**" if peer.ours else peer.label
     return (
-        f"| {name} | {peer.sees} | {len(runs)} | {cells} | {best_rating(runs, 100):.3g} | "
-        f"{best_rating(runs, 300):.3g} ({spent} run) | {cpu:.2g} |"
+        f"| {name} | {peer.sees} | {len(runs)} | {cells} | "
+        + " | ".join(_rating(runs, within) for within in (50, 100, 300))
+        + f" | {spent} | {cpu:.2g} |"
     )
+
+
+def _rating(runs: Sequence[Result], within: int) -> str:
+    """Median best rating; a dash where a budget ended before that many."""
+    full = all(len(r.rating) >= within or not r.stopped.endswith("used up") for r in runs)
+    return f"{best_rating(runs, within):.3g}" if full else "–"
 
 
 def _cell(runs: Sequence[Result], figure: Callable[[Result], float]) -> str:

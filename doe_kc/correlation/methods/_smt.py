@@ -36,7 +36,7 @@ def check_installed() -> None:
 def propose(points: FloatArray, losses: FloatArray, *, number: int, seed: int) -> list[Proposal]:
     """Next designs that EGO.optimize would run after `points` (n, d) with `losses` (n,) to be minimized.
 
-    EGO as it is: KPLS and expected improvement with their defaults, several at once by the Kriging believer.
+    EGO as it is: KPLS and expected improvement with their defaults, also of several at once.
     One of its iterations is run on a function that only notes what it is asked for. Empty when its inner
     search fails. RunError when the surrogate cannot be trained.
     """
@@ -56,7 +56,6 @@ def propose(points: FloatArray, losses: FloatArray, *, number: int, seed: int) -
         n_iter=1,
         criterion="EI",
         n_parallel=number,
-        qEI="KB",
         xdoe=points.copy(),
         ydoe=losses[:, None].copy(),
         surrogate=surrogate,

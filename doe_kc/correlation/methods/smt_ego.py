@@ -1,8 +1,8 @@
 """`smt_ego`: efficient global optimization of the rating as one number, by SMT, offered for comparison.
 
 SMT's own EGO with its KPLS surrogate: expected improvement, SLSQP with finite differences from 20 starts.
-It sees the rating alone, not the outputs that it is made of, and constraints only as their penalty. In 60
-variables one proposal takes about half a minute on one core.
+It sees the rating alone, not the outputs that it is made of, and constraints only as their penalty. In 60 to
+70 variables one proposal takes half a minute to one and a half on one core.
 References: M. A. Bouhlel et al., Structural and Multidisciplinary Optimization 53(5), 2016; P. Saves et al.,
 SMT 2.0, Advances in Engineering Software 188, 2024; D. R. Jones et al., J. Global Optim. 13, 1998.
 """
