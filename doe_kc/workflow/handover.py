@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.axle.write import write_axle
+from doe_kc.correlation.pareto.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
 from doe_kc.output import write_csv
@@ -20,6 +21,7 @@ from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.correlation_terms import curve_frame, term_frame
 from doe_kc.reporting.correlation_workbook import write_correlation_workbook
 from doe_kc.reporting.page import write_correlation_page
+from doe_kc.reporting.pareto_figure import write_pareto_figure
 from doe_kc.study import Study
 from doe_kc.targets import Targets
 
@@ -60,7 +62,15 @@ def write_correlation(
         write_correlation_workbook(folder / "correlation.xlsx", found, **words),
         write_correlation_page(folder / "report.html", found, measurement, **words),
         *write_correlation_figures(found, measurement, folder, study=study.name, workers=workers),
+        *(_write_front(found, folder, study.name) if found.method == "pareto" else ()),
     ]
+
+
+def _write_front(found: Correlation, folder: Path, study: str) -> list[Path]:
+    """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
+    front = front_of(found.problem.targets, found.run.evaluated)
+    table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
+    return [table, *write_pareto_figure(front, folder, study=study)]
 
 
 def correlation_document(found: Correlation, axle_path: Path) -> dict[str, Any]:

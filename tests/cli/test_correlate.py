@@ -164,6 +164,15 @@ def test_typed_targets_need_no_measurement(tmp_path: Path) -> None:
     assert finals["vertical.ride_rate"] == pytest.approx(27.0, rel=0.02)
 
 
+def test_pareto_hands_over_its_front(tmp_path: Path) -> None:
+    study = study_in(tmp_path, method="pareto", budget=12)
+    document_of(study)
+    front = (study / "out" / "correlate" / "pareto_front.csv").read_text().splitlines()
+    assert front[0].startswith("design,") and front[0].endswith("rating,knee")
+    assert sum(line.endswith("True") for line in front[1:]) == 1
+    assert (study / "out" / "correlate" / "pareto_front.png").exists()
+
+
 def test_set_first_is_reported_and_kept(tmp_path: Path) -> None:
     tables = TABLES.format(method="ego", budget=6).replace('"static.toe", "static.camber", ', "")
     study = write_study(

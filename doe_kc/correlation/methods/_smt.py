@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.errors import InputError, RunError
+from doe_kc.errors import RunError
 from doe_kc.typing import FloatArray
 
 
@@ -21,16 +21,6 @@ class Proposal:
     point: FloatArray
     loss: float
     loss_sd: float
-
-
-def check_installed() -> None:
-    """InputError with the remedy when SMT is missing."""
-    try:
-        import smt  # noqa: F401
-    except ImportError:
-        raise InputError(
-            'method smt_ego needs SMT, which is not installed; run: pip install "doe-kc[smt]".'
-        ) from None
 
 
 def propose(points: FloatArray, losses: FloatArray, *, number: int, seed: int) -> list[Proposal]:

@@ -17,7 +17,7 @@ import numpy as np
 from doe_kc.correlation.hybrid.opening import opening_sample
 from doe_kc.correlation.hybrid.record import Record
 from doe_kc.correlation.methods._base import Method, Settings, register
-from doe_kc.correlation.methods._smt import Proposal, check_installed, propose
+from doe_kc.correlation.methods._smt import Proposal, propose
 from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
 from doe_kc.errors import RunError
 
@@ -34,8 +34,6 @@ class SmtEgo(Method):
     label: ClassVar[str] = "Scalar EGO of SMT (KPLS), for comparison"
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        """InputError without smt."""
-        check_installed()
         self._problem, self._settings = problem, settings
         self._evaluated: list[Evaluated] = []
         self._opened = False
