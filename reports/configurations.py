@@ -14,7 +14,7 @@ import pandas as pd
 from configurations_cases import FIGURES, STANDARD, method_of, problem_of
 from configurations_figure import convergence_figure
 from configurations_findings import hold
-from configurations_text import markdown
+from configurations_text import file_name, markdown
 from correlation_runs import Trace, arguments, cached_trace
 
 from doe_kc.correlation.posterior import AT_BOUND
@@ -90,7 +90,7 @@ def main() -> None:
         shown = {label.format(n=len(runs[n][0].point)): runs[n] for n, label in entries if n in runs}
         if not shown:
             continue
-        save_png(convergence_figure(shown, what, plan.budget), given.out / f"configurations_{number}_{what}")
+        save_png(convergence_figure(shown, what, plan.budget), given.out / file_name(number, what))
     table = run_table(runs)
     table.to_csv(given.out / "configurations.csv", index=False, float_format="%.4f")
     constraints = sum(t.constraint is not None for t in problem_of(STANDARD).targets.characteristics)

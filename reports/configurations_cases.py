@@ -36,7 +36,10 @@ FIGURES: Mapping[str, tuple[str, tuple[tuple[str, str], ...]]] = {
             ("gauss_newton_targets", "gauss_newton, curves with an objective"),
         ),
     ),
-    "9b": ("algorithm_all", (("ego_all", "ego"), ("pareto_all", "pareto"), ("hybrid_all", "hybrid"))),
+    "9b": (
+        "algorithm, all targets",
+        (("ego_all", "ego"), ("pareto_all", "pareto"), ("hybrid_all", "hybrid")),
+    ),
 }
 """The thesis's figure -> what varies, and its configurations with their names in the figure."""
 

@@ -13,34 +13,39 @@ THESIS: Mapping[str, str] = {
     "7": "Fewer variables, those without influence left out, converge and rise clearly faster.",
     "8": "Wider bounds rise more slowly at first and end alike or higher.",
     "9": "SHERPA rises faster, MO-SHERPA ends higher once objectives counteract each other.",
-    "9b": "As Figure 9; and (7.2) when constraints cannot be met, the algorithm strives for them even if that\n"
-    "makes many other characteristics wrong.",
+    "9b": "As Figure 9; and (7.2) when constraints cannot be met, the algorithm strives for them even if\n"
+    "that makes many other characteristics wrong.",
 }
 HERE: Mapping[str, str] = {
-    "5": "No difference that three seeds show. `ego` draws only its opening sample by the distribution; its\n"
-    "proposals go wherever the surrogates point. And the best designs of this axle lie between the bounds, hardly\n"
-    "a variable at one, so that the reason the thesis gives for uniform does not apply.",
-    "6": "21 levels are worse from the first proposal on, not faster: a step is then 5 % of the range, 0.3 mm or\n"
-    "7 % of a stiffness, too coarse for predictions that are exact to far less. SHERPA scans, for which a coarse\n"
-    "grid is quick; a surrogate needs no grid. As in the thesis 101 suffice: continuous variables gain little.",
-    "7": "As in the thesis fewer variables rise faster, most of all because the opening sample is smaller (20 in\n"
-    "place of 24 designs) and misses less. But they end lower: the fewer, the less. Those with little influence\n"
-    "together take up what counteracting objectives leave. With 100 cheap evaluations all variables are worth\n"
-    "having; with 25 dear ones the selection is.",
-    "8": "Wide bounds rise more slowly, as in the thesis, but have not caught up after 100 evaluations; narrow ones\n"
-    "do no harm. Opening sample and trust region are shares of the bounds, so wide ones make both coarser, and the\n"
-    "best designs lie within half the standard bounds in nearly all variables. Widen where a variable ends at\n"
-    "its bound, not throughout.",
-    "9": "`ego` rises fastest and ends highest; `pareto` and `hybrid` follow. The advantage of MO-SHERPA is not\n"
-    "seen: `ego` has a model of every objective, as `pareto` has, and spends no evaluations on the rest of the\n"
-    "front. What `pareto` gives beyond the rating is the front itself. `gauss_newton` fits curves within their\n"
-    "noise, not the rating: given all curves it follows the lateral camber that the model cannot show and\n"
-    "spoils others; given the curves with an objective it needs a handful of evaluations, and its rating is\n"
-    "limited by constraints that it knows nothing of.",
-    "9b": "No algorithm meets all constraints. All of them push variables to their bounds for the three on lateral\n"
-    "camber and leave the other characteristics far worse than the baseline (mean improvement below zero): what\n"
-    "the thesis warns of. The order of the algorithms is that of Figure 9. More evaluations are no remedy; leaving\n"
-    "the targets out, or adding the missing effect, is.",
+    "5": "No difference at the end. For `ego` the distribution shapes the opening sample, nearer to\n"
+    "nominal and so a little better with Gaussian variables, and a weak pull towards nominal; its\n"
+    "proposals go wherever the surrogates point. And the best designs of this axle lie between the\n"
+    "bounds, hardly a variable at one, so that the reason the thesis gives for uniform does not\n"
+    "apply.",
+    "6": "21 levels are worse from the first proposal on, not faster: a step is then 5 % of the range, 0.3\n"
+    "mm or 7 % of a stiffness, too coarse for predictions that are exact to far less. SHERPA scans,\n"
+    "for which a coarse grid is quick; a surrogate needs no grid. As in the thesis 101 suffice:\n"
+    "continuous variables gain little.",
+    "7": "As in the thesis fewer variables rise faster, most of all because the opening sample is smaller\n"
+    "(20 in place of 24 designs) and the proposals begin earlier. But they end lower, the dozen\n"
+    "lowest, though the selection has the bounds that the influence study advises, some of them\n"
+    "wider: variables of little influence together take up what counteracting objectives leave. With\n"
+    "100 cheap evaluations all variables are worth having; with 25 dear ones the selection is.",
+    "8": "Wide bounds rise more slowly, as in the thesis, but have not caught up after 100 evaluations;\n"
+    "narrow ones do no harm. Opening sample and trust region are shares of the bounds, so wide ones\n"
+    "make both coarser, and the best designs lie within half the standard bounds in nearly all\n"
+    "variables. Widen where a variable ends at its bound, not throughout.",
+    "9": "`ego` rises fastest and ends highest; `pareto` and `hybrid` follow. The advantage of MO-SHERPA\n"
+    "is not seen: `ego` has a model of every objective, as `pareto` has, and spends no evaluations on\n"
+    "the rest of the front. What `pareto` gives beyond the rating is the front itself. `gauss_newton`\n"
+    "fits curves within their noise, not the rating: given all curves it follows the lateral camber\n"
+    "that the model cannot show and spoils others; given the curves with an objective it needs a\n"
+    "handful of evaluations, and its rating is limited by constraints that it knows nothing of.",
+    "9b": "No algorithm meets all constraints. All of them push variables to their bounds for the three on\n"
+    "lateral camber and leave the other characteristics far worse than the baseline (mean improvement\n"
+    "below zero): what the thesis warns of. The ratings differ by a few percent, again with `ego`\n"
+    "highest. More evaluations are no remedy; leaving the targets out, or adding the missing effect,\n"
+    "is.",
 }
 
 
@@ -61,7 +66,8 @@ def hold(runs: pd.DataFrame) -> None:
     assert half["wide"] > half["standard"], half
     assert end["narrow"] < 1.02 * end["standard"], end
     assert middle["at_bound"][["standard", "gaussian", "narrow", "wide"]].max() <= 5, middle
-    assert max(end["standard"], half["standard"] / 2) < min(end["pareto"], end["hybrid"]), end
+    for loss_at in (half, end):
+        assert loss_at["standard"] < min(loss_at["pareto"], loss_at["hybrid"]), loss_at
     everything = ["ego_all", "pareto_all", "hybrid_all"]
     assert (middle["constraints_missed"][everything] > 3).all(), middle
     assert (middle["mean_improvement_percent"][everything] < 0.0).all(), middle

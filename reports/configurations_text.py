@@ -51,8 +51,13 @@ def markdown(runs: pd.DataFrame, figures: Mapping[str, Entries], constraints: in
     )
 
 
+def file_name(k: str, what: str) -> str:
+    """Of a figure, without its suffix."""
+    return f"configurations_{k}_{what.replace(', ', '_').replace(' ', '_')}"
+
+
 def _section(k: str, what: str, _: Sequence[tuple[str, str]]) -> str:
-    picture = f"configurations_{k}_{what}.png"
+    picture = f"{file_name(k, what)}.png"
     words = f"**Thesis.** {THESIS[k]}\n\n**Here.** {HERE[k]}"
     return f"\n## Figure {k}: {what}\n\n{words}\n\n![Figure {k}]({picture})\n"
 
