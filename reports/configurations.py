@@ -30,6 +30,8 @@ class Plan:
     left_out: tuple[str, ...] = ()
 
 
+OPENING = 20
+"""Designs of the opening sample, at least, and a third of the variables: the same for every method."""
 QUICK_ONES = (STANDARD, "gaussian", "wide", "gauss_newton_targets")
 NAMES = tuple(dict.fromkeys(name for _, entries in FIGURES.values() for name, _ in entries))
 """All that any figure shows, each once."""
@@ -47,7 +49,9 @@ def study(plan: Plan, cache: Path) -> dict[str, list[Trace]]:
 
 
 def _run(name: str, seed: int, budget: int, cache: Path) -> Trace:
-    return cached_trace(cache, f"car_a-{name}", lambda: problem_of(name), method_of(name), seed, budget)
+    run = (method_of(name), seed, budget)
+    first = max(OPENING, problem_of(name).space.dimension // 3)
+    return cached_trace(cache, f"car_a-{name}", lambda: problem_of(name), *run, first=first)
 
 
 def run_table(runs: Mapping[str, list[Trace]]) -> pd.DataFrame:
@@ -88,9 +92,10 @@ def main() -> None:
     given.out.mkdir(parents=True, exist_ok=True)
     for number, (what, entries) in FIGURES.items():
         shown = {label.format(n=len(runs[n][0].point)): runs[n] for n, label in entries if n in runs}
-        if not shown:
-            continue
-        save_png(convergence_figure(shown, what, plan.budget), given.out / file_name(number, what))
+        if shown:
+            standard = next((k for k, traces in shown.items() if traces is runs[STANDARD]), "")
+            picture = convergence_figure(shown, what, plan.budget, standard)
+            save_png(picture, given.out / file_name(number, what))
     table = run_table(runs)
     table.to_csv(given.out / "configurations.csv", index=False, float_format="%.4f")
     constraints = sum(t.constraint is not None for t in problem_of(STANDARD).targets.characteristics)

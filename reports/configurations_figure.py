@@ -8,23 +8,24 @@ import numpy as np
 from correlation_runs import Trace
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from report_figures import legend, title
 
-from doe_kc.reporting.style import CYCLE, figure, label
+from doe_kc.reporting.style import CYCLE, PALETTE, figure, label
 from doe_kc.typing import FloatArray
 
 Runs = Mapping[str, Sequence[Trace]]
 PLAIN = FuncFormatter(lambda v, _: f"{v:,.0f}" if v >= 100.0 else f"{v:.3g}")
 
 
-def convergence_figure(runs: Runs, what: str, budget: int) -> Figure:
-    """Left: the whole search, right: its second half, where the scale shows who ends best."""
+def convergence_figure(runs: Runs, what: str, budget: int, standard: str) -> Figure:
+    """Left: the whole search, right: its second half. standard: the one that is black in every figure."""
     fig, axes = figure(1, 2, size=(9.5, 3.7), share_x=False, width_ratios=(1.4, 1.0))
     left, right = axes[0]
     for ax in (left, right):
-        for k, (name, traces) in enumerate(runs.items()):
-            _curve(ax, name, traces, CYCLE[k], budget)
+        colours = iter(CYCLE)
+        for name, traces in runs.items():
+            _curve(ax, name, traces, PALETTE["black"] if name == standard else next(colours), budget)
         ax.set_yscale("log")
         ax.yaxis.set_major_formatter(PLAIN)
         label(ax, "true-solver evaluation (1 = baseline) [-]", "minus best rating so far [-]")
@@ -60,4 +61,7 @@ def _zoom(ax: Axes, tails: Sequence[FloatArray], budget: int) -> None:
     ax.set_xlim(budget // 2, budget)
     ax.set_ylim(low / 1.05, min(high, 6.0 * best) * 1.05)
     ax.yaxis.set_minor_locator(NullLocator())
-    ax.set_yticks(np.geomspace(*ax.get_ylim(), 7)[1:-1])
+    bottom, top = ax.get_ylim()
+    ticks = MaxNLocator(7, steps=[1, 2, 5, 10]).tick_values(bottom, top)
+    ax.set_yticks([t for t in ticks if bottom < t < top])
+    ax.set_ylim(bottom, top)

@@ -96,17 +96,17 @@ def problem_of(measurement: Measurement, options: VariableOptions | None = None)
     )
 
 
-def solve_run(problem: Problem, method: str, seed: int, budget: int) -> Run:
-    """One run of a method, every design solved in this process."""
+def solve_run(problem: Problem, method: str, seed: int, budget: int, first: int | None = None) -> Run:
+    """One run of a method, every design solved in this process. first: designs of the opening sample."""
     solver = AxleSolver(problem.axle, problem.windows).prepare([])
-    made = METHODS[method](problem, Settings(seed=seed, budget=budget))
+    made = METHODS[method](problem, Settings(seed=seed, budget=budget, first=first))
     return run_method(problem, made, lambda designs: [solver.evaluate(d) for d in designs], budget=budget)
 
 
-def traced(problem: Problem, method: str, seed: int, budget: int) -> Trace:
+def traced(problem: Problem, method: str, seed: int, budget: int, first: int | None = None) -> Trace:
     """One run in figures."""
     started = time.process_time()
-    run = solve_run(problem, method, seed, budget)
+    run = solve_run(problem, method, seed, budget, first)
     return trace_of(problem, run, method, seed, time.process_time() - started)
 
 
@@ -156,10 +156,12 @@ def cached(folder: Path, name: str, make: Callable[[], dict[str, Any]]) -> dict[
     return document
 
 
-def cached_trace(folder: Path, name: str, problem: Callable[[], Problem], *run: Any) -> Trace:
-    """`traced(problem(), *run)` through the cache; run: method, seed, budget."""
+def cached_trace(
+    folder: Path, name: str, problem: Callable[[], Problem], *run: Any, first: int | None = None
+) -> Trace:
+    """`traced(problem(), *run, first)` through the cache; run: method, seed, budget."""
     label = "-".join(map(str, (name, *run)))
-    return Trace(**cached(folder, label, lambda: asdict(traced(problem(), *run))))
+    return Trace(**cached(folder, label, lambda: asdict(traced(problem(), *run, first))))
 
 
 def truth(car: str) -> dict[str, float]:

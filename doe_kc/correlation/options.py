@@ -17,7 +17,7 @@ class CorrelationOptions(Strict):
 
     until: "feasible" stops at the first design that meets every constraint.
     batch: candidates confirmed side by side in one round. first: designs of the opening sample, by
-    default a third of the number of variables, at least 20. gradients: let `ego` start from the exact
+    default the method's own. gradients: let `ego` start from the exact
     sensitivities of the baseline. data: curves that `gauss_newton` fits: all that were measured, or those
     with an objective. set_first: parameters set from the records before the correlation. sampled: let
     designs of an earlier `sample` campaign count as known.

@@ -63,7 +63,7 @@ def test_opening_sample_lies_near_the_start_on_the_levels() -> None:
 
 def test_opening_size() -> None:
     space = problem("car_b").space
-    assert opening_size(space, None, gradients=False) == 24
+    assert opening_size(space, None, gradients=False) == 8
     assert opening_size(space, None, gradients=True) == 4
     assert opening_size(space, 7, gradients=False) == 7
 

@@ -8,16 +8,16 @@ from scipy.stats import qmc
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-FEWEST = 20
+FEWEST = 8
 WITH_GRADIENTS = 4
-SHARE = 3
-"""Variables per design of the opening sample."""
+SHARE = 9
+"""Variables per design of the opening sample: the proposals teach more than further samples would."""
 HALF_WIDTH = 0.1
 """About the start, share of the bounds: near enough for the first slopes to hold where the search goes."""
 
 
 def opening_size(space: Space, first: int | None, *, gradients: bool) -> int:
-    """Designs of the opening sample: `first`, or a third of the variables, at least 20; 4 with gradients."""
+    """Designs of the opening sample: `first`, or a ninth of the variables, at least 8; 4 with gradients."""
     if first is not None:
         return first
     return WITH_GRADIENTS if gradients else max(FEWEST, space.dimension // SHARE)
