@@ -26,11 +26,11 @@ HERE: Mapping[str, str] = {
     "mm or 7 % of a stiffness, too coarse for predictions that are exact to far less. SHERPA scans,\n"
     "for which a coarse grid is quick; a surrogate needs no grid. As in the thesis 101 suffice:\n"
     "continuous variables gain little.",
-    "7": "As in the thesis fewer variables rise faster, most of all because the opening sample is smaller\n"
-    "(20 in place of 24 designs) and the proposals begin earlier. But they end lower, the dozen\n"
-    "lowest, though the selection has the bounds that the influence study advises, some of them\n"
-    "wider: variables of little influence together take up what counteracting objectives leave. With\n"
-    "100 cheap evaluations all variables are worth having; with 25 dear ones the selection is.",
+    "7": "As in the thesis fewer variables rise faster: fewer are learnt from fewer designs, the opening\n"
+    "sample among them. But they end lower, the dozen lowest, though the selection has the bounds\n"
+    "that the influence study advises, some of them wider: variables of little influence together\n"
+    "take up what counteracting objectives leave. With 100 cheap evaluations all variables are worth\n"
+    "having; with 25 dear ones the selection is.",
     "8": "Wide bounds rise more slowly, as in the thesis, but have not caught up after 100 evaluations;\n"
     "narrow ones do no harm. Opening sample and trust region are shares of the bounds, so wide ones\n"
     "make both coarser, and the best designs lie within half the standard bounds in nearly all\n"
