@@ -71,20 +71,26 @@ class Processes(Executor):
 
 
 def _begin() -> None:
-    """In a new worker: Ctrl-C is the parent's business, SIGTERM ends the task, one thread is enough."""
+    """In a new worker: Ctrl-C is the parent's business, SIGTERM ends it, one thread is enough."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _leave)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     for name in THREADS:
         os.environ.setdefault(name, "1")
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _guarded(fn: Callable[..., T], *args: Any, **kwargs: Any) -> T:
-    """The task; a worker told to end in its middle ends, where a pool would go on with the next task."""
+    """The task; a worker told to end in its middle ends, and so does a command that it waits for.
+
+    Only then: outside a task the exception would be reported as an error of the pool.
+    """
     try:
+        signal.signal(signal.SIGTERM, _leave)
         return fn(*args, **kwargs)
     except SystemExit:
         os._exit(1)
+    finally:
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
 def _leave(_signal: int, _frame: object) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-
 import numpy as np
 import pytest
 
@@ -12,7 +10,7 @@ from doe_kc.correlation.methods._base import Settings
 from doe_kc.correlation.methods._smt import propose
 from doe_kc.correlation.methods.smt_ego import SmtEgo
 from doe_kc.correlation.problem import Candidate
-from doe_kc.errors import InputError, RunError
+from doe_kc.errors import RunError
 from tests.correlation.synthetic import answer, synthetic
 
 
@@ -53,9 +51,3 @@ def test_a_training_failure_ends_the_search_and_keeps_the_run(monkeypatch: pytes
     while method.ask():
         method.tell([])
     assert method.stopped == "SMT's EGO could not be trained."
-
-
-def test_says_how_to_get_smt(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "smt", None)
-    with pytest.raises(InputError, match=r"pip install .doe-kc\[smt\]"):
-        SmtEgo(synthetic(3), Settings(seed=1, budget=10))
