@@ -99,7 +99,7 @@ class Campaign:
         few = self.solver.quick and len(missing) <= FEW
         executor = self._here if few else self.executor
         interrupts = Interrupts()
-        flight = Flight(executor, task_for(self.solver, executor), missing, interrupts)
+        flight = Flight(executor, task_for(self.solver), missing, interrupts)
         try:
             with interrupts:
                 for key, packed in flight.results():

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable
-from concurrent.futures import Executor
-from functools import lru_cache, partial
+from functools import partial
 
-from doe_kc.campaign.in_process import InProcess
 from doe_kc.campaign.record import Packed, packed_outcome
 from doe_kc.errors import DoeKcError
 from doe_kc.solver.result import NotConverged
@@ -30,20 +27,6 @@ def run_one(solver: TrueSolver, values: Values) -> Packed:
     return packed_outcome(outcome)
 
 
-def run_sent(solver: bytes, values: Values) -> Packed:
-    """The same with a solver as it is sent to another process."""
-    return run_one(_received(solver), values)
-
-
-@lru_cache(maxsize=2)
-def _received(solver: bytes) -> TrueSolver:
-    """Cached: a pure function, and the next hundred designs come with the same solver."""
-    found: TrueSolver = pickle.loads(solver)
-    return found
-
-
-def task_for(solver: TrueSolver, executor: Executor) -> Task:
+def task_for(solver: TrueSolver) -> Task:
     """What to submit to an executor for each design."""
-    if isinstance(executor, InProcess):
-        return partial(run_one, solver)
-    return partial(run_sent, pickle.dumps(solver))
+    return partial(run_one, solver)
