@@ -13,7 +13,7 @@ from optimizers.composed import Composed, outputs_of
 from optimizers.counting import CountingSolver
 from optimizers.peer import Peer
 
-from doe_kc.correlation.ego.opening import opening_sample, opening_size
+from doe_kc.correlation.methods.ego import OPENING
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.targets import Targets
 from doe_kc.typing import FloatArray
@@ -59,8 +59,8 @@ def _search(solver: CountingSolver, seed: int, *, composed: bool) -> str:
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     space = solver.problem.space
-    sample = opening_sample(space, opening_size(space, None, gradients=False), seed)
-    known = [solver.baseline, *(solver.at(p) for p in sample)]
+    sample = OPENING.sample(space, OPENING.size(space), seed)
+    known = [solver.baseline, *(solver.at(c.point) for c in sample)]
     region, state = Region(), None
     while True:
         best = max(known, key=lambda e: e.merit)

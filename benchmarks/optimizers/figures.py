@@ -11,6 +11,11 @@ from optimizers.running import Result
 from doe_kc.typing import FloatArray
 
 LEVELS = (0.1, 0.01, 0.001)
+OURS = {
+    "ego": "`ego` as shipped, which also sees the exact slopes of the solver",
+    "ego_values": "`ego` with `gradients = false`, which sees what its peers see",
+}
+"""Rows that the peers are held against, with what to know of them."""
 
 
 def best_so_far(result: Result) -> FloatArray:

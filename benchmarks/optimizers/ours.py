@@ -9,12 +9,13 @@ from optimizers.peer import Peer, Search
 
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Problem
 
 BUDGET = 100
 
 
-def own(name: str, *, gradients: bool = False, continuous: bool = False) -> Search:
+def own(name: str, *, gradients: Gradients = "auto", continuous: bool = False) -> Search:
     """A registered method with its default settings; continuous: without the variables' levels."""
 
     def search(solver: CountingSolver, seed: int) -> str:
@@ -32,12 +33,12 @@ def _without_levels(problem: Problem) -> Problem:
 
 
 PEERS = (
-    Peer("ego", "ego", "outputs", own("ego"), BUDGET, ours=True),
+    Peer("ego", "ego", "outputs and slopes", own("ego"), BUDGET, ours=True),
     Peer(
-        "ego_gradients",
-        "ego, gradients=True",
-        "outputs and slopes",
-        own("ego", gradients=True),
+        "ego_values",
+        "ego, gradients=false",
+        "outputs",
+        own("ego", gradients=False),
         BUDGET,
         ours=True,
     ),
@@ -52,9 +53,9 @@ PEERS = (
     ),
     Peer(
         "ego_continuous",
-        "ego, continuous variables",
+        "ego, gradients=false, continuous variables",
         "outputs",
-        own("ego", continuous=True),
+        own("ego", gradients=False, continuous=True),
         50,
         ours=True,
         seeds=3,

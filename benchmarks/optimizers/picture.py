@@ -18,7 +18,7 @@ from doe_kc.typing import FloatArray
 
 LOOKS = {
     "ego": ("black", "-"),
-    "ego_gradients": ("grey", "-"),
+    "ego_values": ("grey", "-"),
     "gauss_newton": ("purple", "-"),
     "botorch_composite": ("vermillion", "-"),
     "dfols": ("blue", "-"),

@@ -9,7 +9,17 @@ from datetime import UTC, datetime
 
 import numpy as np
 from _common import machine
-from optimizers.figures import LEVELS, best_rating, median, to_feasible, to_level, to_rating, used, worst
+from optimizers.figures import (
+    LEVELS,
+    OURS,
+    best_rating,
+    median,
+    to_feasible,
+    to_level,
+    to_rating,
+    used,
+    worst,
+)
 from optimizers.peer import Peer
 from optimizers.running import CODE, PEERS, Result, problem
 from optimizers.text import CONDITIONS, reading
@@ -43,10 +53,7 @@ def report(found: Sequence[Result], overhead: str, command: str) -> list[str]:
         *(_row(p, runs[p.id], rating) for p in there),
         "",
         *_absent(runs),
-        "## Ratios to ego",
-        "",
-        *_ratios(there, runs),
-        "",
+        *(line for name in OURS for line in _ratios(there, runs, name)),
         f"- {overhead}" if overhead else "",
         *_slopes(runs),
         *reading(PEERS, runs),
@@ -82,19 +89,24 @@ def _cell(runs: Sequence[Result], figure: Callable[[Result], float]) -> str:
     return f"{middle:.0f} ({last:.0f})" if math.isfinite(last) else f"{middle:.0f} (not in {used(runs)})"
 
 
-def _ratios(there: Sequence[Peer], runs: dict[str, list[Result]]) -> list[str]:
-    """Median evaluations of each peer over those of ego; where it never gets there a lower bound."""
-    lines = ["| peer | sees | 10 % | 1 % | 0.1 % | feasible |", "|---|---|---|---|---|---|"]
-    if not runs["ego"]:
+def _ratios(there: Sequence[Peer], runs: dict[str, list[Result]], to: str) -> list[str]:
+    """Median evaluations of each peer over those of a row of ours; a lower bound where it never arrives."""
+    if not runs[to]:
         return []
+    lines = [
+        f"## Ratios to {OURS[to]}",
+        "",
+        "| peer | sees | 10 % | 1 % | 0.1 % | feasible |",
+        "|---|---|---|---|---|---|",
+    ]
     for peer in (p for p in there if not p.ours):
-        cells = [_ratio(runs[peer.id], runs["ego"], f) for f in [*map(to_level, LEVELS), to_feasible]]
+        cells = [_ratio(runs[peer.id], runs[to], f) for f in [*map(to_level, LEVELS), to_feasible]]
         lines.append(f"| {peer.label} | {peer.sees} | {' | '.join(cells)} |")
-    return lines
+    return [*lines, ""]
 
 
-def _ratio(runs: Sequence[Result], ego: Sequence[Result], figure: Callable[[Result], float]) -> str:
-    ours, theirs = median(ego, figure), median(runs, figure)
+def _ratio(runs: Sequence[Result], own: Sequence[Result], figure: Callable[[Result], float]) -> str:
+    ours, theirs = median(own, figure), median(runs, figure)
     if not math.isfinite(ours):
         return "–"
     return f"{theirs / ours:.1f}" if math.isfinite(theirs) else f"> {used(runs) / ours:.1f} (not reached)"
@@ -109,7 +121,7 @@ def _absent(runs: dict[str, list[Result]]) -> list[str]:
 
 def _slopes(runs: dict[str, list[Result]]) -> list[str]:
     lines = []
-    for name in ("ego_gradients", "gauss_newton"):
+    for name in ("ego", "gauss_newton"):
         if found := runs[name]:
             number = np.median([r.expansions for r in found])
             cost = np.median([r.expansion_cpu for r in found])

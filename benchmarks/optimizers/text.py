@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from optimizers.figures import LEVELS, best_rating, median, to_feasible, to_level, used
+from optimizers.figures import LEVELS, OURS, best_rating, median, to_feasible, to_level, used
 from optimizers.peer import Peer
 from optimizers.running import Result
 
@@ -25,6 +25,9 @@ met; as the true car: until the rating of the car that the records were made of 
 
 - The true car's own deviation is {share:.1f} % of the start's: measurement noise. The levels 1 % and \
 0.1 % lie below it and measure how fast a search is, not how true its axle is.
+- `ego` as shipped and `gauss_newton` also take exact sensitivities of the product's own solver, which no \
+peer sees and which are not counted as evaluations; what they cost stands below the tables. `ego` with \
+`gradients = false` is what an outside solver gets, and the row to hold against the peers.
 - `gauss_newton` fits the whole curves by their errors and stops when they ask for no more; it works \
 neither on the deviation nor on the rating, and its answer is the most probable axle.
 - DFO-LS and least_squares minimize a sum of squares (objectives' e / Norm, violations by sqrt(QuadWt) / \
@@ -32,8 +35,8 @@ Norm, scaled curves), not the rating; BoTorch composite maximizes the rating its
 - The others see the rating (2.2) alone; NSGA-II its sums by load case; BoTorch's GP of the rating models \
 -log(-rating), as the rating spans three decades.
 - First steps: 0.1 of the bounds for DFO-LS, COBYQA and CMA-ES, as the half-width of the opening sample \
-of `ego`; both BoTorch searches are given that very sample. No peer's settings were searched for; the \
-defaults of `ego` may have been chosen on this car, which favours it.
+of `ego`; both BoTorch searches are given the very sample that it opens with without slopes. No \
+peer's settings were searched for; the defaults of `ego` may have been chosen on this car, which favours it.
 - `ego`, `pareto`, `hybrid` and SMT EGO as run here keep to the variables' levels (101); `gauss_newton` and \
 the other peers are continuous.
 - Peers with fewer seeds than five: see the column. CMA-ES may use 1000 evaluations, BoTorch composite 50, \
@@ -41,14 +44,19 @@ BoTorch's GP of the rating 150, SMT EGO ten minutes; others 300."""
 
 
 def reading(peers: Sequence[Peer], runs: Mapping[str, Sequence[Result]]) -> list[str]:
-    """Whether ego reaches its goals, level by level."""
-    ego = runs["ego"]
+    """Whether ego reaches its goals, level by level, with slopes and without."""
     there = [p for p in peers if not p.ours and runs[p.id]]
-    if not ego:
-        return []
-    lines = ["## Goals", ""]
+    lines: list[str] = []
+    for name, words in OURS.items():
+        if runs[name]:
+            lines += [f"## Goals of {words}", "", *_goals(runs[name], there, runs), ""]
+    return [*lines, *_levels(runs)]
+
+
+def _goals(own: Sequence[Result], there: Sequence[Peer], runs: Mapping[str, Sequence[Result]]) -> list[str]:
+    lines: list[str] = []
     for mark, figure in MARKS.items():
-        ours = median(ego, figure)
+        ours = median(own, figure)
         scalar = [p for p in there if p.sees == "rating"]
         verdict = "; ".join(filter(None, (_short(p, runs[p.id], figure, ours) for p in scalar)))
         never = sum(not math.isfinite(median(runs[p.id], figure)) for p in scalar)
@@ -57,12 +65,12 @@ def reading(peers: Sequence[Peer], runs: Mapping[str, Sequence[Result]]) -> list
             f"{'not so for ' + verdict if verdict else 'met'}.",
             f"- {mark}, no more than the best residual-aware peer: {_best(there, runs, figure, ours)}.",
         ]
-    return [*lines, *_levels(runs)]
+    return lines
 
 
 def _levels(runs: Mapping[str, Sequence[Result]]) -> list[str]:
     """What the levels of the variables cost ego against its strongest, continuous peer."""
-    names = ("ego", "ego_continuous", "botorch_composite")
+    names = ("ego_values", "ego_continuous", "botorch_composite")
     if not all(runs[n] for n in names):
         return []
     ratings = [best_rating(runs[n], 50) for n in names]
@@ -71,10 +79,9 @@ def _levels(runs: Mapping[str, Sequence[Result]]) -> list[str]:
         "the levels explain its lead there" if ratings[1] > ratings[2] > ratings[0] else "compare the rows"
     )
     return [
-        "",
-        f"Best rating after 50 evaluations: ego {ego}, ego with continuous variables {free}, BoTorch "
-        f"composite, continuous too, {peer}: {cause}. The row without levels was added to learn why, after "
-        "that peer was seen to lead; the marks above are of ego as it is by default.",
+        f"Best rating after 50 evaluations, none with slopes: ego {ego}, ego with continuous variables "
+        f"{free}, BoTorch composite, continuous too, {peer}: {cause}. The row without levels was added to "
+        "learn why, after that peer was seen to lead; the goals are of ego on its levels.",
     ]
 
 

@@ -86,7 +86,13 @@ KINDS: Mapping[str, _Kind] = _kinds()
 POSITIVE = {
     *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
     *("kx", "ky", "kz", "krx", "kry", "krz"),
-    *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "gap", "force", "presliding"),
+    *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
+    *("gap", "contact", "reference"),
+}
+
+NOT_BELOW_ZERO = {
+    *("strut.flexibility", "arb.rate", "damper.gas_force"),
+    *("tie_rod.flexibility", "arb.link_flexibility", "power_assist.gain"),
 }
 
 
@@ -209,7 +215,7 @@ def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[s
 
 
 def _not_below_zero(name: str) -> bool:
-    return name in {"strut.flexibility", "arb.rate", "damper.gas_force"} or ".cubic." in name
+    return name in NOT_BELOW_ZERO or ".cubic." in name
 
 
 def check_value(path: str, value: float, source: str) -> None:

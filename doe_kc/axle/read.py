@@ -31,7 +31,7 @@ def read_axle(path: Path) -> Axle:
 def axle_from_document(document: Mapping[str, Any], *, source: str) -> Axle:
     """Axle from the parsed file; `source` names it in messages."""
     from doe_kc.axle.parameters import with_values
-    from doe_kc.effects import apply_effect
+    from doe_kc.effects import apply_effect, refuse_on_rig
 
     file = validate(AxleFile, document, source)
     axle = Axle(
@@ -44,6 +44,7 @@ def axle_from_document(document: Mapping[str, Any], *, source: str) -> Axle:
     if file.right:
         axle = with_values(axle, {f"right.{path}": v for path, v in file.right.items()}, source=source)
     for ident, options in file.effects.items():
+        refuse_on_rig(ident, source)
         axle = apply_effect(axle, ident, options, source=source)
     check_geometry(axle, source)
     return axle
@@ -80,11 +81,13 @@ def _values(file: AxleFile) -> dict[str, float]:
     out |= both("steer_arm.radius", file.steer_arm.radius)
     out |= both("strut.flexibility", file.strut.flexibility)
     out |= both("strut.bending", STRUT_BENDING) | both("strut.torsion", STRUT_TORSION)
+    out |= both("tie_rod.flexibility", 0.0)
     out |= {
         "tyre.static_load": file.tyre.static_load,
         "arb.rate": file.arb.rate,
         "arb.radius": file.arb.radius,
         "arb.nominal_radius": file.arb.nominal_radius,
+        "arb.link_flexibility": 0.0,
         "steering.column": file.steering.column,
         "steering.rack_mm_per_rev": file.steering.rack_mm_per_rev,
         "scb.Tz": file.scb.Tz,

@@ -10,11 +10,11 @@ import numpy as np
 import tomlkit
 
 from doe_kc import __version__
+from doe_kc.axle.effect_tables import set_effects
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.axle.places import (
     Place,
-    effect_id,
     entry,
     option_places,
     own_place,
@@ -46,7 +46,7 @@ def write_axle(axle: Axle, original: Path, path: Path, *, note: str = "") -> Pat
     read_toml(original)  # its messages name line and remedy
     text = read_bytes(original, "TOML file").decode("utf-8")
     document = tomlkit.parse(text)
-    _set_effects(document, axle)
+    set_effects(document, axle)
     if not _fit(document, axle):
         _fit_without_an_effect(document, axle, str(path))
     content = _with_header(tomlkit.dumps(document), original, note)
@@ -59,20 +59,8 @@ def _with_header(text: str, original: Path, note: str) -> str:
     end = "\r\n" if "\r\n" in text else "\n"
     if text.startswith(HEADER):
         text = text.partition("\n")[2]
-    return f"{line}{end}{text}"
-
-
-def _set_effects(document: tomlkit.TOMLDocument, axle: Axle) -> None:
-    """The axle's effects, no others; options of those that the file has stay as they are."""
-    table = document.get("effects", {})
-    for key in list(table):
-        ident = effect_id(key)
-        if ident not in axle.effects:
-            del table[key]
-    present = {effect_id(key) for key in table}
-    for ident, options in axle.effects.items():
-        if ident not in present:
-            put_entry(document, ("effects", ident), dict(options))
+    # Tables that were added end their lines with \n in a file of any kind.
+    return f"{line}\n{text}".replace("\r\n", "\n").replace("\n", end)
 
 
 def _read(document: tomlkit.TOMLDocument) -> Axle:

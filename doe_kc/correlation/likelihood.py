@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
@@ -20,13 +22,20 @@ from doe_kc.typing import FloatArray
 
 SOLVER_FLOOR = 1e-3
 """Share of the white-noise variance added to every point: rounding of files and solver."""
+CALIBRATION = 0.002
+"""Share of a sensor's reading that its calibration leaves open: repeats cannot show it, as it is in all."""
+RIG_HYSTERESIS = 0.3
+"""Share of a sensor's white noise that the rig's own friction and backlash may open a loop by."""
 EXACT_SHARE = 0.05
 """Of Norm: standard deviation taken for a typed target that states none, a third of its interval."""
 
 
+Branches = Literal["mean", "half_width"]
+
+
 @dataclass(frozen=True)
 class CurveData:
-    """One measured mean curve of one side.
+    """One measured curve of one side: the mean of both branches of its loop, or their half-width.
 
     input, value: (n,). root: (n, n) lower Cholesky factor of its error covariance.
     """
@@ -37,6 +46,7 @@ class CurveData:
     input: FloatArray
     value: FloatArray
     root: FloatArray
+    branches: Branches = "mean"
 
     @property
     def size(self) -> int:
@@ -50,7 +60,12 @@ class CurveData:
 
     def whitened(self, rows: FloatArray) -> FloatArray:
         """L^-1 rows for (n,) or (n, p)."""
-        return np.asarray(solve_triangular(self.root, rows, lower=True, check_finite=False))
+        return np.asarray(self._inverse @ rows)
+
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        """L^-1, kept: curves are whitened hundreds of times."""
+        return np.asarray(solve_triangular(self.root, np.eye(self.size), lower=True, check_finite=False))
 
 
 @dataclass(frozen=True)
@@ -103,13 +118,22 @@ class Likelihood:
             start += curve.size
 
 
+def record_likelihood(axle: Axle, measurement: Measurement) -> Likelihood:
+    """All that the records say, within the sweeps of the model: both branches of every loop, and statics.
+
+    Errors are those of the repeats and of the sensors' calibration.
+    """
+    curves = (*_measured(axle, measurement, CALIBRATION), *_half_widths(axle, measurement))
+    return Likelihood(curves, tuple(_static(measurement)))
+
+
 def build_likelihood(
     axle: Axle, measurement: Measurement | None, targets: Targets, *, only_targets: bool = False
 ) -> Likelihood:
     """Data of the records, within the sweeps of the model, and the targets that were typed in.
 
-    only_targets: curves that are objectives only. A typed target replaces the curve that its
-    characteristic is read off.
+    The mean curves of the loops. only_targets: curves that are objectives only. A typed target replaces
+    the curve that its characteristic is read off.
     """
     measured = {} if measurement is None else measurement.characteristics
     typed = [
@@ -140,7 +164,7 @@ def _exact_sd(value: float) -> float:
     return EXACT_SHARE * float(np.sqrt(value**2 + 0.005))
 
 
-def _measured(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
+def _measured(axle: Axle, measurement: Measurement, calibration: float = 0.0) -> Iterator[CurveData]:
     for case in measurement.curves.cases.values():
         inside = reached(axle, case)
         for response in RIG_RESPONSES:
@@ -151,11 +175,35 @@ def _measured(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
             for side in (0, 1):
                 value = case.mean[response][side]
                 extra = SOLVER_FLOOR * noise.white**2 + corner_error(value, noise.white) ** 2
-                covariance = noise.covariance(side=side) + np.diag(np.broadcast_to(extra, value.shape))
+                covariance = noise.covariance(side=side)
+                if calibration:
+                    signal = calibration * noise.signal[side]
+                    covariance = covariance + np.outer(signal, signal)
+                covariance += np.diag(np.broadcast_to(extra, value.shape))
                 root = cholesky(covariance[np.ix_(keep, keep)], lower=True)
                 yield CurveData(
                     case.load_case, response, side, case.input[keep], np.asarray(value[keep]), root
                 )
+
+
+def _half_widths(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
+    """Inside the ends of the loops, where both branches meet."""
+    for case in measurement.curves.cases.values():
+        keep = reached(axle, case)
+        keep[np.flatnonzero(keep)[[0, -1]]] = False
+        for response in RIG_RESPONSES:
+            noise = measurement.noise[case.load_case][response]
+            floor = SOLVER_FLOOR * noise.white**2 * np.eye(int(keep.sum()))
+            for side in (0, 1):
+                value = np.asarray(case.half_width[response][side])
+                gain = np.hypot(CALIBRATION, noise.components.gain / np.sqrt(noise.runs)) * value
+                covariance = noise.half_width_covariance(side=side) + np.outer(gain, gain)
+                covariance += np.diag(corner_error(value, noise.white) ** 2)
+                own = RIG_HYSTERESIS * noise.white * (1.0 - (case.input / np.abs(case.input).max()) ** 2)
+                covariance += np.outer(own, own)
+                root = cholesky(covariance[np.ix_(keep, keep)] + floor, lower=True)
+                value = value[keep]
+                yield CurveData(case.load_case, response, side, case.input[keep], value, root, "half_width")
 
 
 def corner_error(curve: FloatArray, white: float) -> FloatArray:
@@ -181,11 +229,15 @@ def _static(measurement: Measurement) -> Iterator[Figure]:
 
 def _model(data: CurveData, curves: CurveSet) -> FloatArray:
     case = curves.cases[data.load_case]
-    return np.asarray(np.interp(data.input, case.input, case.mean[data.response][data.side]))
+    found = case.mean if data.branches == "mean" else case.half_width
+    return np.asarray(np.interp(data.input, case.input, found[data.response][data.side]))
 
 
 def _rows(data: CurveData, gradients: CurveGradients) -> FloatArray:
-    values = gradients.cases[data.load_case][data.response][data.side]
+    if data.branches == "half_width" and data.load_case not in gradients.half_width:
+        return np.zeros((data.size, len(gradients.paths)))
+    found = gradients.cases if data.branches == "mean" else gradients.half_width
+    values = found[data.load_case][data.response][data.side]
     return interpolated(data.input, gradients.inputs[data.load_case], values)
 
 

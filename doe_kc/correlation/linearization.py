@@ -58,11 +58,15 @@ def _chain(space: Space, point: FloatArray) -> FloatArray:
 
 
 def _chained(gradients: CurveGradients, chain: FloatArray, space: Space) -> CurveGradients:
+    def chained(cases: Mapping[str, Mapping[str, FloatArray]]) -> dict[str, dict[str, FloatArray]]:
+        return {case: {r: g @ chain for r, g in responses.items()} for case, responses in cases.items()}
+
     return replace(
         gradients,
         paths=space.paths,
-        cases={c: {r: g @ chain for r, g in responses.items()} for c, responses in gradients.cases.items()},
+        cases=chained(gradients.cases),
         static={r: g @ chain for r, g in gradients.static.items()},
+        half_width=chained(gradients.half_width),
     )
 
 

@@ -9,6 +9,7 @@ from pydantic import Field
 from doe_kc.axle.schema import Strict
 
 Count = Annotated[int, Field(ge=1)]
+Gradients = Literal["auto"] | bool
 SetFirst = Literal["ride_height", "static.toe", "static.camber"]
 
 
@@ -17,10 +18,10 @@ class CorrelationOptions(Strict):
 
     until: "feasible" stops at the first design that meets every constraint.
     batch: candidates confirmed side by side in one round. first: designs of the opening sample, by
-    default the method's own. gradients: let `ego` start from the exact
-    sensitivities of the baseline. data: curves that `gauss_newton` fits: all that were measured, or those
-    with an objective. set_first: parameters set from the records before the correlation. sampled: let
-    designs of an earlier `sample` campaign count as known.
+    default the method's own. gradients: whether `ego` learns the exact sensitivities of its best designs:
+    "auto" where the solver gives them, true insists on it, false learns values alone. data: curves that
+    `gauss_newton` fits: all that were measured, or those with an objective. set_first: parameters set from
+    the records before the correlation. sampled: let designs of an earlier `sample` campaign count as known.
     """
 
     method: str = "ego"
@@ -28,7 +29,7 @@ class CorrelationOptions(Strict):
     until: Literal["converged", "feasible"] = "converged"
     batch: Count = 1
     first: Count | None = None
-    gradients: bool = False
+    gradients: Gradients = "auto"
     data: Literal["all", "targets"] = "all"
     set_first: list[SetFirst] = Field(default=[])
     sampled: bool = True

@@ -24,7 +24,7 @@ from doe_kc.variables.options import Distribution
 
 
 class VariableRecord(Strict):
-    """A variable as it was in the run; absolute values."""
+    """A variable as it was in the run; absolute values. Its fields are those of `Variable`."""
 
     path: str
     lower: float
@@ -91,15 +91,7 @@ def run_document(found: Correlation) -> dict[str, Any]:
         steps=list(found.steps),
         notes=list(found.notes),
         variables=[
-            VariableRecord(
-                path=v.path,
-                lower=v.lower,
-                upper=v.upper,
-                start=v.start,
-                levels=v.levels,
-                distribution=v.distribution,
-                logarithmic=v.logarithmic,
-            )
+            VariableRecord(**{name: getattr(v, name) for name in VariableRecord.model_fields})
             for v in space.variables
         ],
         ties=[TieRecord(**vars(t)) for t in space.ties],
@@ -138,15 +130,7 @@ def recorded_space(record: RunRecord, axle: Axle) -> Space:
     """The space of the run."""
     known = {p.path: p for p in design_parameters(axle)}
     variables = tuple(
-        Variable(
-            parameter=known.get(v.path) or _plain(axle, v.path),
-            lower=v.lower,
-            upper=v.upper,
-            start=v.start,
-            levels=v.levels,
-            distribution=v.distribution,
-            logarithmic=v.logarithmic,
-        )
+        Variable(parameter=known.get(v.path) or _plain(axle, v.path), **v.model_dump(exclude={"path"}))
         for v in record.variables
     )
     return Space(variables, tuple(Tie(**t.model_dump()) for t in record.ties), record.fixed)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import sys
 
-from doe_kc.effects._base import EFFECTS, Effect, Option, apply_effect, effect
+from doe_kc.effects._base import EFFECTS, Effect, Option, apply_effect, effect, observed, refuse_on_rig
 from doe_kc.registry import import_members
 
 import_members(sys.modules[__name__])
 
-__all__ = ["EFFECTS", "Effect", "Option", "apply_effect", "effect"]
+__all__ = ["EFFECTS", "Effect", "Option", "apply_effect", "effect", "observed", "refuse_on_rig"]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
+from doe_kc.curves import CurveSet
+from doe_kc.effects._tables import checked_number
+from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.errors import InputError, nearest
 
 
@@ -30,6 +32,36 @@ class Effect(ABC):
     options: ClassVar[Mapping[str, Option]] = {}
     table: ClassVar[str] = ""
     """Other name under which files give the effect."""
+    physics: ClassVar[str]
+    """One sentence: what happens in the car."""
+    mistaken_for: ClassVar[tuple[str, ...]] = ()
+    """Ids of effects, or paths of parameters, that look alike on a rig."""
+    shown_by: ClassVar[str]
+    """The component test or extra load case that would show it by itself."""
+    sizes: ClassVar[tuple[Size, ...]] = ()
+    """Numbers by which the effect grows, where it has one place only."""
+    replaces: ClassVar[tuple[str, ...]] = ()
+    """Parameter paths that are this effect in other words: held while it is looked for."""
+    on_rig: ClassVar[bool] = False
+    """True for a fault of the measurement: the axle stays as it is, `observe` changes what is read (and
+    `extend` at most how a load case is run). Axle files do not hold such effects."""
+
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        """The places and sizes in which the effect is looked for."""
+        return (Hypothesis(self.id, None, self.sizes),)
+
+    def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
+        """What the rig reads of an axle's curves; the curves themselves unless `on_rig`."""
+        del options
+        return curves
+
+    def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
+        """Options that give at once what the effect gave twice. axle: with both.
+
+        By default the later ones replace the earlier.
+        """
+        del before, axle
+        return dict(after)
 
     def apply(self, axle: Axle, given: Mapping[str, Any], source: str) -> Axle:
         """The axle with this effect; InputError for an unknown key or a value out of range."""
@@ -61,19 +93,6 @@ class Effect(ABC):
         """The changed axle, from checked options."""
 
 
-def checked_number(value: Any, name: str, *, positive: bool = False) -> float:
-    """The value as a float; InputError unless it is a finite (positive) number."""
-    try:
-        number = math.nan if isinstance(value, bool) or not isinstance(value, int | float) else float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise InputError(f"{name}, expected a finite number.")
-    if positive and number <= 0:
-        raise InputError(f"{name}, expected a number > 0.")
-    return number
-
-
 EFFECTS: dict[str, Effect] = {}
 
 
@@ -83,6 +102,15 @@ def effect(cls: type[Effect]) -> type[Effect]:
     return cls
 
 
+def observed(axle: Axle, curves: CurveSet) -> CurveSet:
+    """What the rig reads of the axle's own curves, with the faults that it has among its effects."""
+    for ident, options in axle.effects.items():
+        found = EFFECTS[ident]
+        if found.on_rig:
+            curves = found.observe(curves, found.read(options, axle.name))
+    return curves
+
+
 def apply_effect(axle: Axle, ident: str, options: Mapping[str, Any], *, source: str) -> Axle:
     """The axle with the effect `ident`; InputError when there is none of that name."""
     ident = next((e.id for e in EFFECTS.values() if ident and e.table == ident), ident)
@@ -90,22 +118,18 @@ def apply_effect(axle: Axle, ident: str, options: Mapping[str, Any], *, source: 
         raise InputError(
             f"{source}: unknown effect {ident!r}; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
         )
-    changed = EFFECTS[ident].apply(axle, options, source)
-    return replace(changed, effects={**axle.effects, ident: dict(options)})
+    found = EFFECTS[ident]
+    changed = found.apply(axle, options, source)
+    before = axle.effects.get(ident)
+    all_options = dict(options) if before is None else found.combined(before, options, changed)
+    return replace(changed, effects={**axle.effects, ident: all_options})
 
 
-def per_bushing(
-    given: Mapping[str, Any], known: Mapping[str, str], length: int, source: str
-) -> dict[str, list[float]]:
-    """Options of the form LLR = [x, y, z], keyed by the lower-case bushing name."""
-    out = {}
-    for key, value in given.items():
-        if key.lower() not in known:
-            raise InputError(
-                f"{source}: {key!r} is not a bushing; known are {', '.join(k.upper() for k in known)}."
-                f"{nearest(key.lower(), known)}"
-            )
-        if not isinstance(value, list | tuple) or len(value) != length:
-            raise InputError(f"{source}: {key} = {value!r}, expected a list of {length} numbers.")
-        out[key.lower()] = [checked_number(v, f"{source}: {key} = {value!r}") for v in value]
-    return out
+def refuse_on_rig(ident: str, source: str) -> None:
+    """InputError for a fault of the measurement in an axle file."""
+    found = EFFECTS.get(ident)
+    if found is not None and found.on_rig:
+        raise InputError(
+            f"{source}: [effects.{ident}] is a fault of the measurement, but an axle file describes an axle; "
+            "expected an effect in the car. Remove the table and correct the records instead."
+        )

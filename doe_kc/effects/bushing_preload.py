@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import ClassVar
 
-from doe_kc.axle.model import BUSHINGS, Axle, both
-from doe_kc.effects._base import Effect, effect, per_bushing
+from doe_kc.axle.model import BUSHINGS
+from doe_kc.effects._base import effect
+from doe_kc.effects._bushing_values import BushingValues
 
 
 @effect
-class BushingPreload(Effect):
+class BushingPreload(BushingValues):
     """Bushing preload."""
 
     id: ClassVar[str] = "bushing_preload"
     label: ClassVar[str] = "Bushing preload"
+    quantity: ClassVar[str] = "preload"
+    unit: ClassVar[str] = "N"
+    signed: ClassVar[bool] = True
+    typical: ClassVar[Mapping[str, float]] = dict.fromkeys(BUSHINGS, 600.0)
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        return per_bushing(given or {"LLR": [0.0, 600.0, 0.0]}, BUSHINGS, 3, source)
+    physics: ClassVar[str] = (
+        "A bushing was clamped or swaged off its free position and pushes on the arm at ride height."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("ride_height_offset", "bushing_progression", "static.toe")
+    shown_by: ClassVar[str] = "loosen and re-torque the bushing at ride height, then repeat the alignment"
 
-    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        values: dict[str, float] = {}
-        for bushing, force in options.items():
-            for axis, value in zip(("Fx", "Fy", "Fz"), force, strict=True):
-                values |= both(f"{bushing}.preload.{axis}", value)
-        return axle.changed(values)
+    def default(self) -> dict[str, list[float]]:
+        return {"LLR": [0.0, 600.0, 0.0]}

@@ -5,33 +5,39 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from doe_kc.axle.model import BUSHINGS, Axle, both
-from doe_kc.effects._base import Effect, effect, per_bushing
+from doe_kc.axle.model import BUSHINGS
+from doe_kc.effects._base import effect
+from doe_kc.effects._bushing_values import BushingValues
 from doe_kc.errors import InputError
 
 
 @effect
-class BushingProgression(Effect):
+class BushingProgression(BushingValues):
     """Bushing progression."""
 
     id: ClassVar[str] = "bushing_progression"
     label: ClassVar[str] = "Bushing progression"
     table: ClassVar[str] = "bushing_cubic"
+    quantity: ClassVar[str] = "cubic"
+    unit: ClassVar[str] = "1/mm^2"
+    signed: ClassVar[bool] = False
+    typical: ClassVar[Mapping[str, float]] = dict.fromkeys(BUSHINGS, 0.05) | {"upb": 0.02}
+
+    physics: ClassVar[str] = (
+        "A bushing stiffens as it deflects, so that compliance curves flatten towards large loads."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("bushing_preload", "tie_rod_free_play", "power_assist")
+    shown_by: ClassVar[str] = "force over deflection of the bushing on a test bench; loads of twice the size"
+
+    def default(self) -> dict[str, list[float]]:
+        return {"LLR": [0.05, 0.05, 0.05], "UPB": [0.02, 0.02, 0.02]}
 
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        default = {"LLR": [0.05, 0.05, 0.05], "UPB": [0.02, 0.02, 0.02]}
-        checked = per_bushing(given or default, BUSHINGS, 3, source)
+        checked = super().read(given, source)
         for bushing, values in checked.items():
-            if min(values) < 0:
+            if bushing != "added" and min(values) < 0:
                 raise InputError(
                     f"{source}: effect {self.id}: {bushing.upper()} = {values}, expected numbers >= 0; "
                     "a negative progression lets the force fall at large deflection."
                 )
         return checked
-
-    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        values: dict[str, float] = {}
-        for bushing, cubic in options.items():
-            for axis, value in zip(("Fx", "Fy", "Fz"), cubic, strict=True):
-                values |= both(f"{bushing}.cubic.{axis}", value)
-        return axle.changed(values)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 
 @effect
@@ -21,6 +22,18 @@ class HubCompliance(Effect):
         "camber_Nm_deg": Option(6000.0, "Nm/deg"),
         "toe_Nm_deg": Option(9000.0, "Nm/deg"),
     }
+
+    physics: ClassVar[str] = (
+        "Wheel bearing and knuckle yield, so that the wheel tilts and steers against the strut under load."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("strut_bending", "ball_joint_compliance", "upb.Fy")
+    shown_by: ClassVar[str] = (
+        "camber at the hub against a target on the knuckle under lateral force; a pure overturning moment"
+    )
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("camber_Nm_deg", 6000.0, "Nm/deg", "compliance"),
+        Size("toe_Nm_deg", 9000.0, "Nm/deg", "compliance"),
+    )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(

@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import BUSHINGS, Axle
-from doe_kc.effects._base import Effect, checked_number, effect
-from doe_kc.errors import InputError, nearest
+from doe_kc.effects._base import Effect, effect
+from doe_kc.effects._tables import named_numbers
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.errors import InputError
 
 KEYS = {f"{name.upper()}_{side}": (name, side) for name in BUSHINGS for side in "LR"}
 
@@ -20,22 +22,27 @@ class LeftRightAsymmetry(Effect):
     label: ClassVar[str] = "Left/right asymmetry"
     table: ClassVar[str] = "asymmetry"
 
+    physics: ClassVar[str] = (
+        "A bushing of one side is stiffer or softer than its twin, so that the wheels answer equal loads "
+        "differently."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("bushing_preload", "bushing_progression", "tie_rod_free_play")
+    shown_by: ClassVar[str] = "the bushings of both sides exchanged: the difference changes sides with them"
+
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        return tuple(Hypothesis(self.id, key, (Size(key, 1.25, "-", "factor", signed=True),)) for key in KEYS)
+
+    def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
+        one, other = self.read(before, axle.name), self.read(after, axle.name)
+        return {k: one.get(k, 1.0) * other.get(k, 1.0) for k in one | other}
+
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
         nested = given.get("scale", {})
         if not isinstance(nested, Mapping):
             raise InputError(f"{source}: effect {self.id}: scale = {nested!r}, expected {{ LLR_R = 1.25 }}.")
         flat = {k.removeprefix("scale."): v for k, v in given.items() if k != "scale"} | dict(nested)
-        for key in flat:
-            if key not in KEYS:
-                raise InputError(
-                    f"{source}: effect {self.id}: {key!r} is not a bushing of one side; "
-                    f"expected one of {', '.join(KEYS)}.{nearest(key, KEYS)}"
-                )
-        flat = flat or {"LLR_R": 1.25}
-        return {
-            k: checked_number(v, f"{source}: effect {self.id}: {k} = {v!r}", positive=True)
-            for k, v in flat.items()
-        }
+        where = f"{source}: effect {self.id}"
+        return named_numbers(flat or {"LLR_R": 1.25}, KEYS, where, "a bushing of one side", positive=True)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         values = {}

@@ -1,4 +1,4 @@
-"""Pads raised before the sweep, which redefines the static state."""
+"""Pads raised before the sweep, which redefines the static state; on top of the file's ride height."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 
 @effect
@@ -20,5 +21,18 @@ class RideHeightOffset(Effect):
         "offset_mm": Option(7.0, "mm", positive=False),
     }
 
+    physics: ClassVar[str] = (
+        "The car stood higher or lower on the rig than in the model, so that every sweep starts at another "
+        "point of the wheel's path."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("ride_height", "bushing_preload", "static.toe")
+    shown_by: ClassVar[str] = "the height of the wheel arch over the wheel centre, measured before the sweep"
+    sizes: ClassVar[tuple[Size, ...]] = (Size("offset_mm", 7.0, "mm", signed=True),)
+    replaces: ClassVar[tuple[str, ...]] = ("ride_height",)
+
+    def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
+        one, other = self.read(before, axle.name), self.read(after, axle.name)
+        return {"offset_mm": one["offset_mm"] + other["offset_mm"]}
+
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        return axle.changed({"ride_height": options["offset_mm"]})
+        return axle.changed({"ride_height": axle.values["ride_height"] + options["offset_mm"]})

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 
 @effect
@@ -21,6 +22,16 @@ class SteeringFriction(Effect):
         "presliding_mm": Option(0.05, "mm"),
         "law": Option("dahl", choices=("dahl", "iwan")),
     }
+
+    physics: ClassVar[str] = (
+        "The rack sticks in its housing, so that toe lags behind its load and both ways of a loop differ."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("strut_friction", "tie_rod_free_play")
+    shown_by: ClassVar[str] = "hand-wheel torque over a slow steering sweep with unloaded wheels"
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("force_N", 250.0, "N"),
+        Size("presliding_mm", 0.05, "mm", "shape"),
+    )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(

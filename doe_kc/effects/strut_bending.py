@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 
 @effect
@@ -20,6 +21,17 @@ class StrutBending(Effect):
         "k_Nm_deg": Option(8000.0, "Nm/deg"),
         "torsion_Nm_deg": Option(30000.0, "Nm/deg"),
     }
+
+    physics: ClassVar[str] = (
+        "The damper bends and twists in its clamp, so that the wheel tilts and steers against the top mount."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("strut.flexibility", "hub_compliance", "upb.Fy", "upb.Fx")
+    shown_by: ClassVar[str] = "a target on the damper tube above the clamp and one on the knuckle below it"
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("k_Nm_deg", 8000.0, "Nm/deg", "compliance"),
+        Size("torsion_Nm_deg", 30000.0, "Nm/deg", "compliance"),
+    )
+    replaces: ClassVar[tuple[str, ...]] = ("strut.flexibility",)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(

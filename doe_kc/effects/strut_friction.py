@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 
 @effect
@@ -21,6 +22,16 @@ class StrutFriction(Effect):
         "presliding_mm": Option(0.3, "mm"),
         "law": Option("dahl", choices=("dahl", "iwan")),
     }
+
+    physics: ClassVar[str] = (
+        "The damper rod sticks in its guide and seal, so that the tyre load lags behind wheel travel."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("steering_friction", "spring.rate")
+    shown_by: ClassVar[str] = "tyre load over slow wheel travel up and down; the damper alone on a test bench"
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("force_N", 120.0, "N"),
+        Size("presliding_mm", 0.3, "mm", "shape"),
+    )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(

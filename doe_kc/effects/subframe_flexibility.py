@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 STIFFNESS = {
     "kx": 2 * 40000.0,
@@ -31,6 +32,13 @@ class SubframeFlexibility(Effect):
         "mode": Option("flexible", choices=("flexible", "rigid")),
         "scale": Option(1.0, "-"),
     }
+
+    physics: ClassVar[str] = (
+        "The sub-frame is no rigid part: its halves give way under the arms' forces and steer the wheels."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("hub_compliance", "rack_mount_compliance", "sff.Fy", "llf.Fx")
+    shown_by: ClassVar[str] = "lateral force in phase against in opposition; targets on both sub-frame halves"
+    sizes: ClassVar[tuple[Size, ...]] = (Size("scale", 1.0, "-", "compliance"),)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         if options["mode"] == "rigid":

@@ -1,4 +1,8 @@
-"""Free play in the outer tie-rod joints: joints = ["ROB_L", "ROB_R"], gap_mm between the contacts."""
+"""Free play in the outer tie-rod joints: joints = ["ROB_L", "ROB_R"], gap_mm between the contacts.
+
+A ball that has play also yields where it touches; its contact stiffness is a size of its own, so that the
+effect fades into a rigid rod.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.errors import InputError
 
 JOINTS = ("ROB_L", "ROB_R")
@@ -20,7 +25,29 @@ class TieRodFreePlay(Effect):
     id: ClassVar[str] = "tie_rod_free_play"
     label: ClassVar[str] = "Tie-rod free play"
     table: ClassVar[str] = "free_play"
-    options: ClassVar[Mapping[str, Option]] = {"joints": Option(JOINTS), "gap_mm": Option(0.2, "mm")}
+    options: ClassVar[Mapping[str, Option]] = {
+        "joints": Option(JOINTS),
+        "gap_mm": Option(0.2, "mm"),
+        "contact_N_mm": Option(20000.0, "N/mm"),
+    }
+
+    physics: ClassVar[str] = (
+        "A worn tie-rod ball has play, so that toe jumps where the rod's force changes sign."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = (
+        "tie_rod_compliance",
+        "steering_friction",
+        "bushing_progression",
+    )
+    shown_by: ClassVar[str] = "the wheel rocked by hand about the vertical, a dial gauge across the ball"
+
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        sizes = (
+            Size("gap_mm", 0.2, "mm"),
+            Size("contact_N_mm", 20000.0, "N/mm", "compliance"),
+        )
+        places = {"ROB": list(JOINTS)} | {joint: [joint] for joint in JOINTS}
+        return tuple(Hypothesis(self.id, p, sizes, {"joints": joints}) for p, joints in places.items())
 
     def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
         options = super().read(given, source)
@@ -39,4 +66,5 @@ class TieRodFreePlay(Effect):
             free_play_left="ROB_L" in options["joints"],
             free_play_right="ROB_R" in options["joints"],
         )
-        return replace(axle.changed(both("tie_rod.gap", options["gap_mm"])), topology=topology)
+        values = both("tie_rod.gap", options["gap_mm"]) | both("tie_rod.contact", options["contact_N_mm"])
+        return replace(axle.changed(values), topology=topology)

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
 from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects.hypothesis import Size
 
 
 @effect
@@ -21,6 +22,16 @@ class TyreHorizontalCompliance(Effect):
         "k_lat_N_mm": Option(180.0, "N/mm"),
         "k_long_N_mm": Option(250.0, "N/mm"),
     }
+
+    physics: ClassVar[str] = (
+        "The contact patch moves under the wheel along a horizontal force, and the tyre load's lever with it."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("hub_compliance", "tyre.rate", "bushing_progression")
+    shown_by: ClassVar[str] = "travel of the pad against travel of the wheel centre under the same force"
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("k_lat_N_mm", 180.0, "N/mm", "compliance"),
+        Size("k_long_N_mm", 250.0, "N/mm", "compliance"),
+    )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(

@@ -9,11 +9,11 @@ from typing import Any, Literal
 import numpy as np
 import pandas as pd
 
-from doe_kc.correlation.problem import Evaluated
+from doe_kc.characteristics import Characteristic
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
 from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.targets import Constraint, Objective
+from doe_kc.targets import Constraint, Objective, Rating, Score
 from doe_kc.targets.options import Goal
 
 Kind = Literal["objective", "curve", "constraint"]
@@ -59,69 +59,64 @@ def _weights(of: Objective | Constraint) -> dict[str, Any]:
     return {"linear": of.linear, "quadratic": of.quadratic, "norm": of.norm}
 
 
-def _both(found: Correlation, part: str, row: int) -> tuple[float, float]:
-    return _of(found.baseline, part, row), _of(found.best, part, row)
+def _named(entry: Characteristic) -> dict[str, Any]:
+    label = f"{case_label(entry.load_case)}: {entry.label}"
+    return {"id": entry.id, "label": label, "unit": entry.unit}
 
 
-def _of(evaluated: Evaluated, part: str, row: int) -> float:
-    where = evaluated.score if part in {"values", "rms"} else evaluated.rating
+def _judged(found: Correlation, part: str, terms: str, row: int) -> dict[str, Any]:
+    """What the row has before and after; part: of the score. terms: of the rating."""
+    before, after = found.baseline, found.best
+    return {
+        "baseline": _of(before.score, part, row),
+        "final": _of(after.score, part, row),
+        "baseline_term": _of(before.rating, terms, row),
+        "final_term": _of(after.rating, terms, row),
+    }
+
+
+def _of(where: Score | Rating | None, part: str, row: int) -> float:
     return float(getattr(where, part)[row]) + 0.0 if where is not None else np.nan  # + 0: no minus zero
 
 
 def _objectives(found: Correlation) -> Iterator[TermRow]:
     for i, t in enumerate(found.problem.targets.characteristics):
         if t.objective is not None:
-            value, term = _both(found, "values", i), _both(found, "objectives", i)
             yield TermRow(
                 kind="objective",
-                id=t.entry.id,
-                label=f"{case_label(t.entry.load_case)}: {t.entry.label}",
-                unit=t.entry.unit,
                 goal=t.objective.goal,
                 target=t.value,
                 sign=t.objective.sign,
-                baseline=value[0],
-                final=value[1],
-                baseline_term=term[0],
-                final_term=term[1],
+                **_named(t.entry),
                 **_weights(t.objective),
+                **_judged(found, "values", "objectives", i),
             )
 
 
 def _constraints(found: Correlation) -> Iterator[TermRow]:
     for i, t in enumerate(found.problem.targets.characteristics):
         if t.constraint is not None:
-            value, term = _both(found, "values", i), _both(found, "constraints", i)
             yield TermRow(
                 kind="constraint",
-                id=t.entry.id,
-                label=f"{case_label(t.entry.load_case)}: {t.entry.label}",
-                unit=t.entry.unit,
                 low=t.constraint.low,
                 high=t.constraint.high,
                 sign=-1.0,
-                baseline=value[0],
-                final=value[1],
-                baseline_term=term[0],
-                final_term=term[1],
+                **_named(t.entry),
                 **_weights(t.constraint),
+                **_judged(found, "values", "constraints", i),
             )
 
 
 def _curves(found: Correlation) -> Iterator[TermRow]:
     for i, t in enumerate(found.problem.targets.curves):
-        rms, term = _both(found, "rms", i), _both(found, "curves", i)
         yield TermRow(
             kind="curve",
             id=t.id,
             label=f"{case_label(t.load_case)}: {RESPONSE_LABELS[t.response]}, RMS",
             unit=RESPONSE_UNITS[t.response],
             sign=t.objective.sign,
-            baseline=rms[0],
-            final=rms[1],
-            baseline_term=term[0],
-            final_term=term[1],
             **_weights(t.objective),
+            **_judged(found, "rms", "curves", i),
         )
 
 

@@ -6,12 +6,16 @@ body receives on the motion it leaves free, and hands the wrench on to the body 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import casadi as ca
 
 from doe_kc.solver import rotation
+from doe_kc.solver.probe import Probe
 from doe_kc.solver.topology import Topology
+
+Response = Callable[[], ca.SX]
 
 FORCE_SCALE = 1.0
 MOMENT_SCALE = 100.0
@@ -94,6 +98,7 @@ class Builder:
     controls: dict[str, ca.SX] = field(default_factory=dict)
     states: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
     outputs: dict[str, ca.SX] = field(default_factory=dict)
+    probes: list[tuple[Probe, ca.SX, Response]] = field(default_factory=list)
 
     def join(
         self,
@@ -143,10 +148,13 @@ class Builder:
             self.controls[name] = ca.SX.sym(name)
         return self.controls[name]
 
-    def rigid(self, name: str, joint: str, violation: ca.SX) -> ca.SX:
-        """Ideal constraint violation(q) = 0 in mm; returns the symbol of its force in N."""
+    def rigid(self, name: str, joint: str, violation: ca.SX, compliance: ca.SX | float = 0.0) -> ca.SX:
+        """Constraint violation(q) = compliance * force in mm, ideal without compliance (mm/N).
+
+        Returns the symbol of its force in N.
+        """
         force = ca.SX.sym(name)
-        self.multipliers.append((Unknown(name, joint, LENGTH_SCALE), force, violation))
+        self.multipliers.append((Unknown(name, joint, LENGTH_SCALE), force, violation - compliance * force))
         return force
 
     def state(self, previous: ca.SX, following: ca.SX) -> None:
@@ -167,32 +175,13 @@ class Builder:
         """Named scalar result of an equilibrium."""
         self.outputs[name] = expression
 
+    def probe(self, probe: Probe, response: Response) -> ca.SX:
+        """Symbol of a probe, in its unit; exactly zero where the topology has no probes.
 
-def translations(name: str, axes: ca.SX | None = None) -> tuple[ca.SX, list[Freedom]]:
-    """Three displacements in mm along the columns of `axes` (default: chassis axes)."""
-    return _three(name, "", ca.SX.eye(3) if axes is None else axes, rotates=False)
-
-
-def rotations(name: str, axes: ca.SX | None = None) -> tuple[ca.SX, list[Freedom]]:
-    """Gibbs vector of three rotations; moment rows along the columns of `axes` (default: chassis)."""
-    return _three(name, "r", ca.SX.eye(3) if axes is None else axes, rotates=True)
-
-
-def slide(name: str, axis: ca.SX) -> tuple[ca.SX, list[Freedom]]:
-    """One displacement in mm along `axis` (chassis frame)."""
-    symbol = ca.SX.sym(name)
-    return symbol, [Freedom(name, symbol, axis, rotates=False)]
-
-
-def twist(name: str, axis: ca.SX) -> tuple[ca.SX, list[Freedom]]:
-    """One rotation tan(phi / 2) about `axis` (chassis frame) through the body's origin."""
-    symbol = ca.SX.sym(name)
-    return symbol, [Freedom(name, symbol, axis, rotates=True)]
-
-
-def _three(name: str, prefix: str, axes: ca.SX, *, rotates: bool) -> tuple[ca.SX, list[Freedom]]:
-    symbols = ca.SX.sym(name, 3)
-    freedoms = [
-        Freedom(f"{name}.{prefix}{letter}", symbols[i], axes[:, i], rotates) for i, letter in enumerate("xyz")
-    ]
-    return symbols, freedoms
+        response: what the finished axle shows there, in the probe's response unit.
+        """
+        if not self.topology.probes:
+            return ca.SX(0)
+        symbol = ca.SX.sym(probe.name)
+        self.probes.append((probe, symbol, response))
+        return symbol

@@ -19,7 +19,7 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.topology import Topology
+from doe_kc.solver.topology import KEPT, Topology
 from doe_kc.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=KEPT)
 def compiled_kernel(topology: Topology) -> CompiledKernel:
     """Build or load the library of a topology; CompileError when that cannot be done."""
     functions = list(kernel(topology).functions.values())

@@ -1,9 +1,9 @@
-"""Exact sensitivities of the mean curves, referred to static as the curves are."""
+"""Exact sensitivities of mean and half-width curves, the mean ones referred to static as the curves are."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,32 +14,45 @@ from doe_kc.solver.result import CaseSolution, Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
 from doe_kc.typing import FloatArray
 
+LOOP_BRANCHES = 3
+"""Branches of a load case that runs as a loop: first loading, unloading, loading."""
+
 
 @dataclass(frozen=True)
 class CurveGradients:
     """Derivatives to p parameters, per unit of each.
 
     inputs: load case -> (n,). cases: load case -> response -> (2, n, p) of the mean curve.
-    static: response -> (2, p), absolute.
+    static: response -> (2, p), absolute. half_width: as cases; a load case without friction has none.
     """
 
     paths: tuple[str, ...]
     inputs: Mapping[str, FloatArray]
     cases: Mapping[str, Mapping[str, FloatArray]]
     static: Mapping[str, FloatArray]
+    half_width: Mapping[str, Mapping[str, FloatArray]] = field(default_factory=dict)
 
 
 def curve_gradients(
     axle: Axle, solution: Solution, paths: Sequence[str], exact: Sensitivities | None = None
 ) -> CurveGradients:
-    """Derivatives of every mean curve of a solution; exact: its sensitivities, where they are known."""
-    found = exact if exact is not None else sensitivities(axle, solution, paths)
+    """Derivatives of every curve of a solution; exact: its sensitivities, where they are known."""
+    return gradients_of(solution, exact if exact is not None else sensitivities(axle, solution, paths))
+
+
+def gradients_of(solution: Solution, found: Sensitivities) -> CurveGradients:
+    """Derivatives of every curve from those of every equilibrium."""
     static = {
         name: np.array([found.static[solution.column(f"{name}@{side}")] for side in SIDES]) for name in ANGLES
     }
     cases = {ident: _case(solution, case, found.branches[ident]) for ident, case in solution.cases.items()}
     inputs = {ident: rising(case) for ident, case in solution.cases.items()}
-    return CurveGradients(tuple(paths), inputs, cases, static)
+    half = {
+        ident: _half_widths(solution, case, found.branches[ident])
+        for ident, case in solution.cases.items()
+        if len(case.branches) == LOOP_BRANCHES
+    }
+    return CurveGradients(found.paths, inputs, cases, static, half)
 
 
 def _case(solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
@@ -51,6 +64,16 @@ def _case(solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ..
         curve = mean[:, columns].transpose(1, 0, 2)
         out[response] = curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
     return out
+
+
+def _half_widths(
+    solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]
+) -> dict[str, FloatArray]:
+    _, half = mean_and_half_width(case, list(branches))
+    return {
+        response: half[:, [solution.column(f"{response}@{side}") for side in SIDES]].transpose(1, 0, 2)
+        for response in RESPONSE_UNITS
+    }
 
 
 def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE, Builder, Unknown
+from doe_kc.solver.probe import Probe
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,7 @@ class Equations:
     u: controls by `control_names`; z: friction states before the step.
     residual: (nx,) force (N), moment (N mm) or length (mm) by row; outputs: by `output_names`;
     next_state: (nz,). tail: number of trailing unknowns.
+    e: probes in their units, all zero in the axle; seen: what they show, both (ne,) by `probes`.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -34,6 +36,9 @@ class Equations:
     outputs: ca.SX
     next_state: ca.SX
     constants: ca.SX
+    probes: tuple[Probe, ...]
+    e: ca.SX
+    seen: ca.SX
 
 
 def _balance(b: Builder) -> tuple[list[Unknown], list[ca.SX], list[ca.SX]]:
@@ -88,4 +93,7 @@ def finish(b: Builder) -> Equations:
         outputs=ca.vertcat(*b.outputs.values()),
         next_state=ca.vertcat(ca.SX(0, 1), *[f for _, f in b.states]),
         constants=_resolved_constants(b),
+        probes=tuple(p for p, _, _ in b.probes),
+        e=ca.vertcat(ca.SX(0, 1), *[s for _, s, _ in b.probes]),
+        seen=ca.vertcat(ca.SX(0, 1), *[response() for _, _, response in b.probes]),
     )

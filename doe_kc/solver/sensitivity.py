@@ -9,20 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
-import casadi as ca
 import numpy as np
 from scipy import sparse
-from scipy.linalg import lapack
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import internal_gradient
-from doe_kc.solver.kernel import Buffered, kernel
-from doe_kc.solver.load_cases import LoadCase, StaticPads
+from doe_kc.solver.blocks import Block, blocks, equilibrium_change
+from doe_kc.solver.datum import control_gradient
+from doe_kc.solver.kernel import kernel
+from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.result import BranchSolution, Solution, StaticState
-from doe_kc.solver.static import control_matrix
-from doe_kc.solver.topology import Topology
 from doe_kc.typing import FloatArray
 
 
@@ -37,52 +34,6 @@ class Sensitivities:
     paths: tuple[str, ...]
     static: FloatArray
     branches: Mapping[str, tuple[FloatArray, ...]]
-
-
-@lru_cache(maxsize=16)
-def _blocks(topology: Topology) -> Mapping[str, ca.Function]:
-    """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on."""
-    k = kernel(topology)
-    eq = k.equations
-    symbols = [eq.x, eq.c, eq.u, eq.z]
-    parts = {"R": eq.residual, "Y": eq.outputs} | ({"Z": eq.next_state} if k.nz else {})
-    by = {"x": eq.x, "c": eq.c, "u": eq.u} | ({"z": eq.z} if k.nz else {})
-    out = {
-        f"{part}_{name}": ca.Function(f"{part}_{name}_block", symbols, [ca.jacobian(expression, symbol)])
-        for part, expression in parts.items()
-        for name, symbol in by.items()
-        if (part, name) != ("R", "x")
-    }
-    out["R_x"] = k.functions["jacobian"]
-    out["constants"] = ca.Function("constants_block", [eq.p], [ca.jacobian(eq.constants, eq.p)])
-    return out
-
-
-class _Matrix:
-    """A sparse derivative block evaluated through buffers."""
-
-    def __init__(self, function: ca.Function) -> None:
-        pattern = function.sparsity_out(0)
-        self._evaluate = Buffered(function)
-        row, col = pattern.get_triplet()
-        self._row, self._col = np.array(row, dtype=int), np.array(col, dtype=int)
-        self._shape = pattern.shape
-
-    def __call__(self, *arguments: FloatArray) -> FloatArray:
-        """The dense block at one point."""
-        out = np.zeros(self._shape, order="F")
-        out[self._row, self._col] = self._evaluate(*arguments)
-        return out
-
-    def times(self, points: Sequence[tuple[FloatArray, ...]], right: sparse.csr_array) -> FloatArray:
-        """(n, rows, columns) products of the blocks at many points with one sparse matrix, dense."""
-        n, rows = len(points), self._shape[0]
-        values = np.array([self._evaluate(*at).copy() for at in points]).reshape(n, -1)
-        row = (self._row + rows * np.arange(n)[:, None]).ravel()
-        stacked = sparse.csr_array(
-            (values.ravel(), (row, np.tile(self._col, n))), shape=(n * rows, self._shape[1])
-        )
-        return np.asarray((stacked @ right).toarray()).reshape(n, rows, right.shape[1])
 
 
 def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
@@ -100,11 +51,11 @@ class _Differentiator:
         self._axle, self._static, self._paths = axle, static, paths
         self._kernel = kernel(axle.topology)
         self._c = self._kernel.constant_values(dict(axle.values))
-        functions = _blocks(axle.topology)
-        self._block = {n: _Matrix(f) for n, f in functions.items() if n != "constants"}
+        functions = blocks(axle.topology)
+        self._block = {n: Block(f) for n, f in functions.items() if n != "constants"}
         self._dp = self._parameter_directions()
         p = np.array([axle.values[n] for n in self._kernel.equations.parameter_names])
-        self._dc = sparse.csr_array(_Matrix(functions["constants"])(p) @ self._dp)
+        self._dc = sparse.csr_array(Block(functions["constants"])(p) @ self._dp)
         self._parts = ("R", "Y", "Z") if self._kernel.nz else ("R", "Y")
         self._outputs = self._kernel.equations.output_names
 
@@ -141,19 +92,12 @@ class _Differentiator:
             if self._kernel.nz:
                 for p in self._parts:
                     known[p] += self._block[f"{p}_z"](*at) @ dz
-            dx = self._solved(self._block["R_x"](*at), known["R"])
+            dx = equilibrium_change(self._kernel, self._block["R_x"](*at), known["R"])
             all_dx.append(dx)
             all_dy.append(known["Y"] + self._block["Y_x"](*at) @ dx)
             if self._kernel.nz:
                 dz = known["Z"] + self._block["Z_x"](*at) @ dx
         return all_dx, all_dy, dz
-
-    def _solved(self, matrix: FloatArray, right: FloatArray) -> FloatArray:
-        scale = self._kernel.scale[:, None]
-        _, _, solved, info = lapack.dgesv(matrix / scale, -right / scale, overwrite_a=True, overwrite_b=True)
-        if info:
-            raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists")
-        return np.asarray(solved)
 
     def _point(
         self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
@@ -197,25 +141,8 @@ class _Differentiator:
         for branch in branches:
             if not (loop and out):
                 dz, dy_start = dz0, dy0
-            du = self._control_gradient(case, branch.input) @ datum
+            du = control_gradient(self._kernel, case, branch.input, self._static.pads) @ datum
             _, dy, dz = self._points(branch.x[1:], branch.u[1:], branch.z[:-1], du[1:], dz)
             out.append(np.array([dy_start, *dy]))
             dy_start = dy[-1]
         return tuple(out)
-
-    def _control_gradient(self, case: LoadCase, inputs: FloatArray) -> FloatArray:
-        """(n, nu, 5) derivative of the controls to the datum; they are affine in it."""
-        pads = self._static.pads
-        base = self._controls(case, inputs, pads)
-        flat = [*pads.pad, *pads.wheel_centre_z, pads.preload]
-        columns = []
-        for i in range(len(flat)):
-            moved = list(flat)
-            moved[i] += 1.0
-            shifted = StaticPads((moved[0], moved[1]), (moved[2], moved[3]), moved[4])
-            columns.append(self._controls(case, inputs, shifted) - base)
-        return np.stack(columns, axis=-1)
-
-    def _controls(self, case: LoadCase, inputs: FloatArray, pads: StaticPads) -> FloatArray:
-        values = {"preload": pads.preload, **case.controls(inputs, pads)}
-        return control_matrix(self._kernel, values, len(inputs))

@@ -7,6 +7,9 @@ from typing import Literal
 
 FrictionLaw = Literal["none", "dahl", "iwan"]
 
+KEPT = 64
+"""Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""
+
 
 @dataclass(frozen=True)
 class Topology:
@@ -14,12 +17,15 @@ class Topology:
 
     bump_points, rebound_points: number of points of the stop curves.
     tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
+    probes: whether zero-valued dislocations and force pairs are in, for derivatives to them alone.
     """
 
     hub: bool = False
     strut_bending: bool = False
     steer_arm: bool = False
+    ball_joint: bool = False
     rack_mount: bool = False
+    power_assist: bool = False
     flexible_subframe: bool = False
     tyre_horizontal: bool = False
     free_play_left: bool = False
@@ -29,6 +35,7 @@ class Topology:
     bump_points: int = 7
     rebound_points: int = 5
     tables: tuple[tuple[str, str, int], ...] = ()
+    probes: bool = False
 
     @property
     def frictional(self) -> bool:

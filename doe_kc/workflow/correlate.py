@@ -11,7 +11,7 @@ from doe_kc.correlation.advice import conflict_sentences, reach_sentences
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate, Run, run_method
-from doe_kc.correlation.methods import Settings, method_class
+from doe_kc.correlation.methods import Method, Settings, method_class
 from doe_kc.correlation.posterior import Posterior, posterior
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.correlation.result import Correlation
@@ -44,18 +44,10 @@ def correlate(
     """Run the study's correlation method (or another) against the records and the typed targets.
 
     method, budget: in place of the study's own. watch: told of each round of evaluations. InputError for
-    an unknown method, or one that the study's solver does not allow.
+    an unknown method, or sensitivities asked of a solver that gives none.
     """
     started = time.perf_counter()
-    options = study.correlation
-    chosen = method_class(
-        method or options.method, source="--method" if method else f"{study.source}: correlation.method"
-    )
-    if chosen.needs_exact and study.solver.command:
-        raise InputError(
-            f"{study.source}: {chosen.id} needs exact sensitivities, which an outside solver does not give; "
-            "choose --method ego."
-        )
+    options, chosen = study.correlation, _method(study, method)
     solver = solver_for(study.axle, study.solver, study.windows, study.folder)
     with Campaign(solver, study.store, workers=workers, scheduler=scheduler) as campaign:
 
@@ -91,6 +83,24 @@ def correlate(
         posterior=posterior_at(problem, at_best),
         seconds=time.perf_counter() - started,
     )
+
+
+def _method(study: Study, name: str | None) -> type[Method]:
+    options = study.correlation
+    chosen = method_class(
+        name or options.method, source="--method" if name else f"{study.source}: correlation.method"
+    )
+    if study.solver.command and chosen.needs_exact:
+        raise InputError(
+            f"{study.source}: {chosen.id} needs exact sensitivities, which an outside solver does not give; "
+            "choose --method ego."
+        )
+    if study.solver.command and options.gradients is True:
+        raise InputError(
+            f"{study.source}: correlation.gradients = true needs exact sensitivities, which an outside "
+            'solver does not give; leave it at "auto".'
+        )
+    return chosen
 
 
 def study_problem(study: Study, reduced: Reduced | None, *, space: Space | None = None) -> Problem:

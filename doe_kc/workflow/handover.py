@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,6 @@ from doe_kc.reporting.correlation_workbook import write_correlation_workbook
 from doe_kc.reporting.page import write_correlation_page
 from doe_kc.reporting.pareto_figure import write_pareto_figure
 from doe_kc.study import Study
-from doe_kc.targets import Targets
 
 TABLES = {
     "parameters.csv": parameter_frame,
@@ -120,16 +118,3 @@ def correlation_lines(found: Correlation) -> list[str]:
         )
     lines += [f"{key}: {text}" for key, text in summary(found).items()]
     return lines + remark_sentences(found)
-
-
-def rerated(found: Correlation, targets: Targets) -> Correlation:
-    """The same evaluations judged by other targets or weights, the best by them; nothing is solved again.
-
-    What the method predicted belonged to the old ones and is left out.
-    """
-    problem = replace(found.problem, targets=targets)
-    runs = tuple(
-        problem.judged(e.index, replace(e.candidate, predicted=None), e.outcome) for e in found.run.evaluated
-    )
-    best = max(range(len(runs)), key=lambda i: (runs[i].merit, -i))
-    return replace(found, problem=problem, run=replace(found.run, evaluated=runs, best=best))

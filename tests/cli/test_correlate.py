@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from doe_kc.axle import read_axle
@@ -108,8 +109,16 @@ def test_workers_do_not_change_the_result(tmp_path: Path) -> None:
 
 
 def test_another_seed_samples_elsewhere(tmp_path: Path) -> None:
-    study = study_in(tmp_path)
-    assert document_of(study)["rating"] != document_of(study, "--seed", 7, "--out", tmp_path / "b")["rating"]
+    study = study_in(tmp_path, budget=4)
+    document_of(study)
+    document_of(study, "--seed", 7, "--out", tmp_path / "b")
+    one, other = (
+        pd.read_csv(out / "correlate" / "evaluations.csv")[["origin", "LLF.z", "UPB.y"]]
+        for out in (study / "out", tmp_path / "b")
+    )
+    assert list(one["origin"]) == list(other["origin"]) == ["baseline", *3 * ["opening sample"]]
+    same = (one == other).all(axis=1)
+    assert same[0] and not same[1:].any()
 
 
 def test_sampled_designs_are_known_and_not_counted(tmp_path: Path) -> None:
@@ -199,7 +208,7 @@ def test_an_outside_solver_gives_the_same_correlation(tmp_path: Path) -> None:
     solver = f"[solver]\ncommand = {json.dumps(command)}\n"
     study = study_in(tmp_path, budget=6, extra=solver)
     found = document_of(study, "--workers", 2)
-    own = document_of(study_in(tmp_path / "own", budget=6))
+    own = document_of(study_in(tmp_path / "own", budget=6, extra="gradients = false\n"))
     assert found["rating"] == pytest.approx(own["rating"], rel=1e-5)
     assert all(p["sd"] is None for p in found["parameters"].values())
     fails(
@@ -210,6 +219,17 @@ def test_an_outside_solver_gives_the_same_correlation(tmp_path: Path) -> None:
         "--method",
         "gauss_newton",
     )
+    insisting = study_in(tmp_path / "insisting", extra="gradients = true\n" + solver)
+    fails(2, 'gradients = true needs exact sensitivities.*leave it at "auto"', "correlate", insisting)
+    wrong = study_in(tmp_path / "wrong", extra='gradients = "yes"\n')
+    fails(2, "correlation.gradients", "correlate", wrong)
+
+
+def test_slopes_of_the_own_solver_are_used_unless_forbidden(tmp_path: Path) -> None:
+    auto = document_of(study_in(tmp_path / "auto"))
+    forced = document_of(study_in(tmp_path / "true", extra="gradients = true\n"))
+    without = document_of(study_in(tmp_path / "false", extra="gradients = false\n"))
+    assert auto["rating"] == forced["rating"] != without["rating"]
 
 
 @pytest.mark.parametrize(

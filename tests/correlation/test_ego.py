@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
-from doe_kc.correlation.ego.opening import HALF_WIDTH, opening_sample, opening_size
 from doe_kc.correlation.ego.proposal import Box, Pull, gauss_newton
 from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE, RESTARTS, Strategy
 from doe_kc.correlation.ego.trust import Trust
+from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Candidate, Evaluated, Prediction
 from doe_kc.surrogates.models.gp import GaussianProcess
 from doe_kc.targets import Score, improvements, mean_improvement
 from doe_kc.true_solver.outcome import Outcome
+from doe_kc.variables import VariableOptions
 from tests.correlation.cases import problem, solver
+from tests.correlation.synthetic import Synthetic, synthetic
+from tests.correlation.synthetic import solver as synthetic_solver
 from tests.correlation.test_composite import designs
 
 
@@ -51,21 +57,6 @@ def test_gauss_newton_raises_the_expected_rating_and_stays_in_its_box() -> None:
 
     assert expected(found) > expected(start)
     assert np.all((found >= box.lower) & (found <= box.upper))
-
-
-def test_opening_sample_lies_near_the_start_on_the_levels() -> None:
-    space = problem("car_b").space
-    found = opening_sample(space, 24, seed=1)
-    np.testing.assert_array_equal(found, space.snapped(found))
-    assert np.abs(found - space.start).max() <= HALF_WIDTH + 0.005
-    assert not np.array_equal(found, opening_sample(space, 24, seed=2))
-
-
-def test_opening_size() -> None:
-    space = problem("car_b").space
-    assert opening_size(space, None, gradients=False) == 8
-    assert opening_size(space, None, gradients=True) == 4
-    assert opening_size(space, 7, gradients=False) == 7
 
 
 def test_strategy_keeps_what_gains_and_turns_from_what_does_not() -> None:
@@ -102,9 +93,58 @@ def test_trust_follows_the_errors_seen() -> None:
     assert trust.factor == pytest.approx(4.0, rel=1e-6)
 
 
+def test_outputs_predicted_with_certainty_say_nothing_of_the_others() -> None:
+    trust, seen = Trust(), answer(0.2, 0.1)
+    predicted = seen.candidate.predicted
+    assert predicted is not None
+    some = replace(predicted, sd=np.array([0.0, 0.1, 0.1, 0.0]))
+    trust.learn([replace(seen, candidate=replace(seen.candidate, predicted=some))])
+    assert trust.factor == pytest.approx(2.0)  # geometric mean of 1 and 4
+    none = replace(predicted, sd=np.zeros(4))
+    trust.learn([replace(seen, candidate=replace(seen.candidate, predicted=none))])
+    assert trust.factor == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("exact", "gradients", "slopes"),
+    [(True, "auto", True), (True, True, True), (True, False, False), (False, "auto", False)],
+)
+def test_learns_slopes_where_the_solver_gives_them(
+    exact: bool, gradients: Gradients, slopes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[np.ndarray] = []
+    known = Synthetic.linearize
+
+    def watched(self: Synthetic, point: np.ndarray) -> Linearization:
+        asked.append(point)
+        return known(self, point)
+
+    monkeypatch.setattr(Synthetic, "linearize", watched)
+    case = replace(synthetic(12), exact=exact)
+    method = METHODS["ego"](case, Settings(seed=1, budget=12, gradients=gradients))
+    run = run_method(case, method, synthetic_solver(case), budget=12)
+    opening = sum(e.candidate.origin == "opening sample" for e in run.evaluated)
+    assert opening == (4 if slopes else 8)
+    bests = {
+        e.point.tobytes()
+        for i, e in enumerate(run.evaluated)
+        if e.merit == max(o.merit for o in run.evaluated[: i + 1])
+    }
+    assert bool(asked) == slopes
+    assert len({p.tobytes() for p in asked}) == len(asked) and {p.tobytes() for p in asked} <= bests
+
+
+@pytest.mark.parametrize("gradients", ["auto", False])
+def test_outputs_that_no_variable_moves_are_no_hindrance(gradients: Gradients) -> None:
+    case = problem("car_b", VariableOptions(use=["arb.radius", "tyre.rate", "scb.Tz"]))
+    method = METHODS["ego"](case, Settings(seed=1, budget=8, first=4, gradients=gradients))
+    run = run_method(case, method, solver(case.axle), budget=8)
+    assert len(run.evaluated) == 8 and run.best != 0
+
+
 def test_with_exact_slopes_a_car_is_correlated_in_a_dozen_runs() -> None:
     case = problem("car_b")
-    method = METHODS["ego"](case, Settings(seed=1, budget=12, gradients=True))
+    method = METHODS["ego"](case, Settings(seed=1, budget=12))
     run = run_method(case, method, solver(case.axle), budget=12)
     best = run.evaluated[run.best]
     assert best.rating is not None and best.rating.feasible

@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from doe_kc.axle import parameter_value, read_axle
+from doe_kc.axle import parameter_value, read_axle, with_values
+from doe_kc.axle.write import write_axle
 from doe_kc.effects import EFFECTS, Option, apply_effect
 from doe_kc.errors import InputError
 from doe_kc.solver.topology import Topology
@@ -18,22 +19,33 @@ from tests.reference import EXAMPLE, nominal
 TEXT = (EXAMPLE / "axle.toml").read_text()
 
 DEFAULTS: dict[str, dict[str, float]] = {
+    "anti_roll_bar_link_compliance": {"arb.link_flexibility": 1 / 300.0},
+    "ball_joint_compliance": {"ball_joint.rate": 12000.0},
     "bushing_preload": {"llr.preload.Fx": 0.0, "llr.preload.Fy": 600.0, "llr.preload.Fz": 0.0},
     "bushing_progression": {"llr.cubic.Fx": 0.05, "upb.cubic.Fz": 0.02, "sff.cubic.Fx": 0.0},
     "hub_compliance": {"hub.camber": 6000.0, "hub.toe": 9000.0},
     "left_right_asymmetry": {"right.llr.Fx": 1.25, "right.llr.Fz": 1.25, "right.llr.Tx": 1.0, "llr.Fx": 1.0},
+    "power_assist": {"power_assist.gain": 1.0, "power_assist.reference": 300.0},
     "rack_mount_compliance": {"rack_mount.rate": 6000.0},
     "ride_height_offset": {"ride_height": 7.0},
+    "rig_channel_gain": {},
+    "rig_channel_offset": {},
+    "rig_input_gain": {},
+    "roll_technique": {},
     "steer_arm_compliance": {"steer_arm.radius": 14.0},
     "steering_friction": {"steering_friction.force": 250.0, "steering_friction.presliding": 0.05},
+    "steering_ratio": {"steering.rack_mm_per_rev": 1.03 * 52.0},
     "strut_bending": {"strut.flexibility": 1.0, "strut.bending": 8000.0, "strut.torsion": 30000.0},
     "strut_friction": {"strut_friction.force": 120.0, "right.strut_friction.presliding": 0.3},
     "subframe_flexibility": {"subframe.kx": 80000.0, "subframe.kz": 40000.0, "subframe.krx": 3000.0},
-    "tie_rod_free_play": {"tie_rod.gap": 0.2},
+    "tie_rod_compliance": {"tie_rod.flexibility": 1 / 15000.0},
+    "tie_rod_free_play": {"tie_rod.gap": 0.2, "tie_rod.contact": 20000.0},
     "tyre_horizontal_compliance": {"tyre.lat_rate": 180.0, "tyre.long_rate": 250.0},
 }
 TOPOLOGIES: dict[str, dict[str, Any]] = {
+    "ball_joint_compliance": {"ball_joint": True},
     "hub_compliance": {"hub": True},
+    "power_assist": {"power_assist": True},
     "rack_mount_compliance": {"rack_mount": True},
     "steer_arm_compliance": {"steer_arm": True},
     "steering_friction": {"steering_friction": "dahl"},
@@ -44,20 +56,30 @@ TOPOLOGIES: dict[str, dict[str, Any]] = {
     "tyre_horizontal_compliance": {"tyre_horizontal": True},
 }
 OPTIONS: dict[str, dict[str, Any]] = {
+    "anti_roll_bar_link_compliance": {"k_N_mm": 250.0},
+    "ball_joint_compliance": {"k_N_mm": 9000},
     "bushing_preload": {"SFF": [10.0, 20.0, -30.0], "upb": [1, 2, 3]},
-    "bushing_progression": {"LLF": [0.1, 0.0, 0.2]},
+    "bushing_progression": {"LLF": [0.1, 0.0, 0.2], "added": True},
     "hub_compliance": {"camber_Nm_deg": 4000},
     "left_right_asymmetry": {"scale": {"SFF_L": 0.8, "LLF_R": 1.1}},
+    "power_assist": {"gain": 2.0},
     "rack_mount_compliance": {"k_N_mm": 5000.0},
     "ride_height_offset": {"offset_mm": -4.0},
+    "rig_channel_gain": {"camber": 0.98, "wc_z": 1.01},
+    "rig_channel_offset": {"camber_deg": -0.2},
+    "rig_input_gain": {"brake": 1.1},
+    "roll_technique": {"technique": "wheel_to_ground"},
     "steer_arm_compliance": {"radius_mm": 11.0},
     "steering_friction": {"force_N": 99.0, "law": "iwan"},
+    "steering_ratio": {"factor": 0.97},
     "strut_bending": {"k_Nm_deg": 7000.0, "torsion_Nm_deg": 20000.0},
     "strut_friction": {"presliding_mm": 0.2, "law": "dahl"},
     "subframe_flexibility": {"mode": "flexible", "scale": 2.0},
+    "tie_rod_compliance": {"k_N_mm": 8000.0},
     "tie_rod_free_play": {"joints": ["ROB_R"], "gap_mm": 0.1},
     "tyre_horizontal_compliance": {"k_lat_N_mm": 200.0},
 }
+IN_FILES = [ident for ident, effect in EFFECTS.items() if not effect.on_rig]
 NUMBERS = [(i, k) for i, e in EFFECTS.items() for k, o in e.options.items() if isinstance(o.default, float)]
 
 
@@ -95,7 +117,7 @@ def test_an_effect_changes_nothing_but_its_own_values(ident: str) -> None:
     assert all(c in own or c.rpartition(".")[0] in families for c in changed), changed
 
 
-@pytest.mark.parametrize("ident", EFFECTS)
+@pytest.mark.parametrize("ident", IN_FILES)
 def test_from_a_file_it_is_the_same_axle(ident: str, tmp_path: Path) -> None:
     path = tmp_path / "axle.toml"
     lines = "\n".join(f"{k} = {toml(v)}" for k, v in OPTIONS[ident].items())
@@ -152,7 +174,17 @@ def test_the_near_key_is_suggested() -> None:
         ("tie_rod_free_play", {"joints": 3}),
         ("tie_rod_free_play", {"joints": None}),
         ("tie_rod_free_play", {"joints": [["ROB_L"]]}),
+        ("tie_rod_free_play", {"contact_N_mm": 0.0}),
+        ("roll_technique", {"technique": "road"}),
+        ("rig_channel_gain", {"caster": 1.05}),
+        ("rig_channel_gain", {"toe": 0.0}),
+        ("rig_channel_gain", {"toe": "1.05"}),
+        ("rig_channel_offset", {"toe": 0.1}),
+        ("rig_channel_offset", {"toe_deg": math.nan}),
+        ("rig_input_gain", {"heave": 1.05}),
+        ("rig_input_gain", {"lateral": -1.0}),
         ("bushing_preload", {"LLR": [1.0, 2.0]}),
+        ("bushing_preload", {"LLR": [1.0, 2.0, 3.0], "added": 1}),
         ("bushing_preload", {"LLR": 1.0}),
         ("bushing_preload", {"LLR": ["a", 0.0, 0.0]}),
         ("bushing_preload", {"LLX": [0.0, 0.0, 0.0]}),
@@ -196,6 +228,61 @@ def test_effects_add_up_in_any_order() -> None:
 
 def test_options_are_positive_unless_they_say_otherwise() -> None:
     assert Option(1.0).positive
+
+
+@pytest.mark.parametrize("ident", [i for i, e in EFFECTS.items() if e.on_rig])
+def test_an_axle_file_does_not_hold_faults_of_the_measurement(ident: str, tmp_path: Path) -> None:
+    path = tmp_path / "axle.toml"
+    path.write_text(f"{TEXT}\n[effects.{ident}]\n")
+    with pytest.raises(InputError, match=rf"axle\.toml.*\[effects\.{ident}\].*Remove the table"):
+        read_axle(path)
+    # but a search may carry it along, and the axle with it can be written
+    changed = with_values(applied(ident), {"LLF.z": 213.0})
+    written = write_axle(changed, EXAMPLE / "axle.toml", tmp_path / "out.toml")
+    assert read_axle(written).values == changed.values
+    assert read_axle(written).effects == {}
+
+
+def test_values_on_top_of_the_bushing_s_own() -> None:
+    base = with_values(nominal(), {"llr.preload.Fx": 100.0, "right.llr.preload.Fy": -50.0})
+    one = apply_effect(base, "bushing_preload", {"LLR": [10.0, 20.0, 0.0], "added": True}, source="t")
+    assert parameter_value(one, "llr.preload.Fx") == 110.0
+    assert parameter_value(one, "right.llr.preload.Fy") == -30.0
+    other = apply_effect(base, "bushing_preload", {"LLR": [10.0, 20.0, 0.0]}, source="t")
+    assert parameter_value(other, "llr.preload.Fx") == 10.0
+
+
+def test_the_ride_height_offset_is_on_top_of_the_file_s() -> None:
+    raised = apply_effect(with_values(nominal(), {"ride_height": 2.0}), "ride_height_offset", {}, source="t")
+    assert raised.values["ride_height"] == 9.0
+
+
+@pytest.mark.parametrize(
+    ("ident", "first", "second"),
+    [
+        ("bushing_preload", {"LLR": [1.0, 2.0, 3.0]}, {"SFF": [4.0, 5.0, 6.0]}),
+        ("bushing_preload", {"LLR": [1.0, 2.0, 3.0]}, {"LLR": [4.0, 5.0, 6.0], "added": True}),
+        ("bushing_progression", {"LLR": [0.1, 0.0, 0.0], "added": True}, {"UPB": [0.1, 0.0, 0.0]}),
+        ("left_right_asymmetry", {"LLR_R": 1.2}, {"scale": {"LLR_R": 1.1, "LLF_L": 0.9}}),
+        ("steering_ratio", {"factor": 1.02}, {"factor": 1.05}),
+        ("ride_height_offset", {"offset_mm": 2.0}, {"offset_mm": -5.0}),
+        ("hub_compliance", {"camber_Nm_deg": 5000.0}, {"toe_Nm_deg": 5000.0}),
+    ],
+)
+def test_an_effect_given_twice_is_recorded_as_one_table(
+    ident: str, first: dict[str, Any], second: dict[str, Any]
+) -> None:
+    twice = apply_effect(applied(ident, first), ident, second, source="t")
+    once = applied(ident, dict(twice.effects[ident]))
+    assert once.topology == twice.topology
+    assert once.values == pytest.approx(dict(twice.values), rel=1e-14)
+
+
+def test_faults_of_several_channels_add_up() -> None:
+    axle = apply_effect(
+        applied("rig_channel_gain", {"toe": 1.1}), "rig_channel_gain", {"wc_x": 0.9}, source="t"
+    )
+    assert axle.effects["rig_channel_gain"] == {"toe": 1.1, "wc_x": 0.9}
 
 
 def test_the_table_name_of_a_file_is_the_effect_too() -> None:

@@ -21,6 +21,11 @@ from tests.correlation.cases import AXLE, measured, outcome, problem, solver
 
 CAR = "car_b"
 STEPS = ("ride_height set to +1.20 mm from the vertical record (sd 0.3 mm).",)
+ODD_WEIGHTS = (
+    CharacteristicOptions(match="drive.anti_lift", goal="maximize", linear=0.5, quadratic=0.1),
+    CharacteristicOptions(match="brake.*", linear=2.0, constraint_linear=3.0),
+    CharacteristicOptions(match="vertical.bump_steer", low=-4.5, high=-4.0),
+)
 EVIL = "</script><script>alert('x')</script> & =1+1"
 
 
@@ -50,12 +55,7 @@ def odd() -> Correlation:
             ],
         }
     )
-    weights = [
-        CharacteristicOptions(match="drive.anti_lift", goal="maximize", linear=0.5, quadratic=0.1),
-        CharacteristicOptions(match="brake.*", linear=2.0, constraint_linear=3.0),
-        CharacteristicOptions(match="vertical.bump_steer", low=-4.5, high=-4.0),
-    ]
-    targets = build_targets(axle, measured(CAR), weights, [], source="test")
+    targets = build_targets(axle, measured(CAR), ODD_WEIGHTS, [], source="test")
     case = Problem(
         axle=axle,
         space=build_space(axle, options, "test"),

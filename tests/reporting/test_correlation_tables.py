@@ -13,10 +13,7 @@ from doe_kc.reporting.correlation_evaluations import evaluation_frame, history
 from doe_kc.reporting.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.correlation_terms import curve_frame, term_frame
-from doe_kc.targets import CharacteristicOptions, build_targets
-from doe_kc.workflow.handover import rerated
-from tests.correlation.cases import measured
-from tests.reporting.correlations import CAR, all_three, odd, real, typed
+from tests.reporting.correlations import all_three, odd, real, typed
 
 NAMES = ("real", "odd", "typed")
 
@@ -130,16 +127,3 @@ def test_summary_says_what_is_violated() -> None:
     assert summary(real())["Constraints"] == "all met" and summary(real())["Set first"].startswith(
         "ride_height"
     )
-
-
-def test_other_weights_need_no_evaluation() -> None:
-    weights = [CharacteristicOptions(match="*", linear=3.0, constraint=False)]
-    targets = build_targets(odd().problem.axle, measured(CAR), weights, [], source="test")
-    again = rerated(odd(), targets)
-    plain = term_frame(odd())
-    objectives = plain[(plain["kind"] == "objective") & (plain["goal"] == "target")]
-    now = by(term_frame(again)[lambda f: f["kind"] == "objective"], "id")
-    assert again.feasible and set(objectives["id"]) <= set(now)
-    merits = [e.merit for e in again.run.evaluated]
-    assert again.rating == max(merits) == pytest.approx(term_frame(again)["final_term"].sum())
-    assert len(evaluation_frame(again)) == 10 and not characteristic_frame(again).empty

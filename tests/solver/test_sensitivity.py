@@ -43,6 +43,8 @@ def step_of(axle: Axle, path: str) -> float:
     """Wide enough to drown rounding; Richardson's extrapolation takes care of the rest."""
     if path == "tie_rod.gap":
         return 1e-4
+    if path == "tie_rod.flexibility":
+        return 1e-6
     value = abs(parameter_value(axle, path))
     if path.endswith((".x", ".y", ".z", ".clearance")) or path == "ride_height":
         return 0.03
@@ -113,7 +115,13 @@ LOOPS = {
         ("subframe_flexibility", {}),
         ("tyre_horizontal_compliance", {}),
     ],
-    "free play": [("tie_rod_free_play", {"gap_mm": 0.2})],
+    "free play": [("tie_rod_free_play", {"gap_mm": 0.2}), ("tie_rod_compliance", {})],
+    "joints": [
+        ("ball_joint_compliance", {}),
+        ("tie_rod_compliance", {}),
+        ("anti_roll_bar_link_compliance", {}),
+        ("power_assist", {}),
+    ],
 }
 LOOP_PATHS = {
     "dahl": ("steering_friction.force", "steering_friction.presliding", "strut_friction.force", "ROB.x",
@@ -121,7 +129,9 @@ LOOP_PATHS = {
     "iwan": ("steering_friction.force", "ROB.x", "scb.Tz"),
     "compliant": ("hub.camber", "hub.toe", "strut.flexibility", "strut.torsion", "rack_mount.rate",
                   "steer_arm.radius", "SAH.z", "subframe.ky", "subframe.krz", "tyre.lat_rate", "CLAMP.z"),
-    "free play": ("tie_rod.gap", "ROB.x", "llr.Fx"),
+    "free play": ("tie_rod.gap", "tie_rod.contact", "tie_rod.flexibility", "ROB.x", "llr.Fx"),
+    "joints": ("ball_joint.rate", "tie_rod.flexibility", "arb.link_flexibility", "power_assist.gain",
+               "power_assist.reference", "LWB.y"),
 }  # fmt: skip
 
 

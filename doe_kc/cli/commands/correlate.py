@@ -7,19 +7,12 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.live import live_rating
-from doe_kc.cli.options import (
-    JsonOption,
-    MeasurementOption,
-    OutOption,
-    SchedulerOption,
-    SeedOption,
-    StudyArgument,
-    WorkersOption,
-)
+from doe_kc.cli.options import SchedulerOption
 from doe_kc.correlation.result import Correlation
 from doe_kc.output import write_json
-from doe_kc.study import Study, read_study
+from doe_kc.study import Study
 from doe_kc.workflow.correlate import correlate as run_correlation
 from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.measure import Reduced, study_records
@@ -27,31 +20,27 @@ from doe_kc.workflow.recall import write_run
 
 
 @app.command()
+@takes_study
 def correlate(
-    study: StudyArgument,
+    given: Given,
     method: Annotated[str | None, typer.Option(help="ego, gauss_newton, pareto, hybrid or smt_ego.")] = None,
     budget: Annotated[
         int | None, typer.Option(min=1, help="True-solver evaluations, the baseline among them.")
     ] = None,
-    measurement: MeasurementOption = None,
-    out: OutOption = None,
-    json: JsonOption = None,
-    seed: SeedOption = None,
-    workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> None:
     """Tune the variables to the measured car; every candidate is confirmed by the true solver."""
-    found = read_study(study, measurement=measurement, out=out, seed=seed)
+    found = given.read()
     reduced = study_records(found)
     correlation = correlated(
-        found, reduced, method=method, budget=budget, workers=workers, scheduler=scheduler
+        found, reduced, method=method, budget=budget, workers=given.workers, scheduler=scheduler
     )
     folder = found.out / "correlate"
     write_run(correlation, folder)
     records = reduced.measurement if reduced is not None else None
-    written = write_correlation(found, correlation, records, folder, workers=workers)
-    if json is not None:
-        write_json(json, correlation_document(correlation, folder / "axle.toml"))
+    written = write_correlation(found, correlation, records, folder, workers=given.workers)
+    if given.json is not None:
+        write_json(given.json, correlation_document(correlation, folder / "axle.toml"))
     for line in correlation_lines(correlation):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {folder}; store {found.store}", err=True)

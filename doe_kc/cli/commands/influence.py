@@ -5,20 +5,12 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.options import (
-    JsonOption,
-    MeasurementOption,
-    OutOption,
-    SeedOption,
-    StudyArgument,
-    WorkersOption,
-)
+from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.progress import progress_bar
 from doe_kc.influence.relations import relations
 from doe_kc.influence.result import Influence
 from doe_kc.measurement import reduce_measurement
 from doe_kc.output import write_json
-from doe_kc.study import read_study
 from doe_kc.workflow.influence import (
     influence_document,
     influence_runs,
@@ -28,26 +20,20 @@ from doe_kc.workflow.influence import (
 
 
 @app.command()
-def influence(
-    study: StudyArgument,
-    measurement: MeasurementOption = None,
-    out: OutOption = None,
-    json: JsonOption = None,
-    seed: SeedOption = None,
-    workers: WorkersOption = None,
-) -> None:
+@takes_study
+def influence(given: Given) -> None:
     """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""
-    found = read_study(study, measurement=measurement, out=out, seed=seed)
+    found = given.read()
     measured = None
     if found.measurement is not None:
         measured = reduce_measurement(
             found.measurement, windows=found.windows, half_track=found.axle.half_track
         )
     with progress_bar("one at a time", influence_runs(found)) as advance:
-        result = study_influence(found, measured, workers=workers, progress=advance)
-    if json is not None:
-        write_json(json, influence_document(result.matrix))
-    written = write_influence(found, result, found.out / "influence", workers=workers)
+        result = study_influence(found, measured, workers=given.workers, progress=advance)
+    if given.json is not None:
+        write_json(given.json, influence_document(result.matrix))
+    written = write_influence(found, result, found.out / "influence", workers=given.workers)
     for line in influence_lines(result.matrix):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {found.out / 'influence'}", err=True)

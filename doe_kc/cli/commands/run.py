@@ -10,21 +10,13 @@ from doe_kc.cli._app import app
 from doe_kc.cli.commands.correlate import correlated
 from doe_kc.cli.commands.influence import influence_lines
 from doe_kc.cli.commands.reduce import ride_height_line
-from doe_kc.cli.options import (
-    JsonOption,
-    MeasurementOption,
-    OutOption,
-    SchedulerOption,
-    SeedOption,
-    StudyArgument,
-    WorkersOption,
-)
+from doe_kc.cli.given import Given, takes_study
+from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
 from doe_kc.output import write_json
 from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.study import read_study
 from doe_kc.workflow.compare import (
     compare_model,
     comparison_document,
@@ -43,18 +35,11 @@ from doe_kc.workflow.recall import write_run
 
 
 @app.command()
-def run(
-    study: StudyArgument,
-    measurement: MeasurementOption = None,
-    out: OutOption = None,
-    json: JsonOption = None,
-    seed: SeedOption = None,
-    workers: WorkersOption = None,
-    scheduler: SchedulerOption = None,
-) -> None:
+@takes_study
+def run(given: Given, scheduler: SchedulerOption = None) -> None:
     """The whole chain: simulate, reduce, compare, influence matrix, correlate; everything under out."""
     started = time.perf_counter()
-    found = read_study(study, measurement=measurement, out=out, seed=seed)
+    found = given.read()
     found.measured()
     solution = solve(found.axle)
     seconds = time.perf_counter() - started
@@ -64,22 +49,22 @@ def run(
 
     reduced = reduce_records(found, solution)
     typer.echo("drawing the rig records and the comparison", err=True)
-    written += write_reduced(reduced, found.out / "reduce", workers=workers)
+    written += write_reduced(reduced, found.out / "reduce", workers=given.workers)
     comparison = compare_model(found, model, reduced.measurement)
-    written += write_comparison(comparison, found.out / "compare", workers=workers)
+    written += write_comparison(comparison, found.out / "compare", workers=given.workers)
 
     with progress_bar("one at a time", influence_runs(found)) as advance:
-        influence = study_influence(found, reduced.measurement, workers=workers, progress=advance)
-    written += write_influence(found, influence, found.out / "influence", workers=workers)
+        influence = study_influence(found, reduced.measurement, workers=given.workers, progress=advance)
+    written += write_influence(found, influence, found.out / "influence", workers=given.workers)
 
-    correlation = correlated(found, reduced, workers=workers, scheduler=scheduler)
+    correlation = correlated(found, reduced, workers=given.workers, scheduler=scheduler)
     folder = found.out / "correlate"
     write_run(correlation, folder)
-    written += write_correlation(found, correlation, reduced.measurement, folder, workers=workers)
+    written += write_correlation(found, correlation, reduced.measurement, folder, workers=given.workers)
 
-    if json is not None:
+    if given.json is not None:
         write_json(
-            json,
+            given.json,
             {
                 "simulate": characteristics_document(solution, seconds),
                 "reduce": reduced_document(reduced),

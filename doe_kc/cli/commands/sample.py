@@ -8,33 +8,21 @@ import typer
 
 from doe_kc.campaign.export import require_format
 from doe_kc.cli._app import app
-from doe_kc.cli.options import (
-    JsonOption,
-    MeasurementOption,
-    OutOption,
-    SchedulerOption,
-    SeedOption,
-    StudyArgument,
-    WorkersOption,
-)
+from doe_kc.cli.given import Given, takes_study
+from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
 from doe_kc.output import write_json
-from doe_kc.study import read_study
 from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, study_design, write_sample
 
 
 @app.command()
+@takes_study
 def sample(
-    study: StudyArgument,
+    given: Given,
     method: Annotated[
         str | None, typer.Option(help="lhs, sobol, one_at_a_time, full_factorial or table.")
     ] = None,
     n: Annotated[int | None, typer.Option("--n", min=1, help="Number of designs.")] = None,
-    measurement: MeasurementOption = None,
-    out: OutOption = None,
-    json: JsonOption = None,
-    seed: SeedOption = None,
-    workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
     export: Annotated[
         str | None, typer.Option(help="Also export the whole store, curves included: csv or parquet.")
@@ -43,20 +31,20 @@ def sample(
 ) -> None:
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
     form = require_format(export) if export is not None else None
-    found = read_study(study, measurement=measurement, out=out, seed=seed)
+    found = given.read()
     design = study_design(found, method=method, n=n)
     with progress_bar(design.method, len(design.values)) as advance:
         sampled = run_sample(
             found,
             design,
-            workers=workers,
+            workers=given.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
             progress=advance,
         )
     document = sample_document(found, sampled)
-    if json is not None:
-        write_json(json, document)
+    if given.json is not None:
+        write_json(given.json, document)
     written = write_sample(found, sampled, found.out / "sample", form)
     for line in sample_lines(document):
         typer.echo(line)

@@ -8,49 +8,34 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.options import (
-    JsonOption,
-    MeasurementOption,
-    OutOption,
-    SeedOption,
-    StudyArgument,
-    WorkersOption,
-)
+from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.progress import progress_bar
 from doe_kc.measurement import reduce_measurement
 from doe_kc.output import write_json
-from doe_kc.study import Study, read_study
-from doe_kc.workflow.surrogates import (
-    plan_surrogates,
-    run_surrogates,
-    surrogate_lines,
-    surrogates_document,
-    write_surrogates,
-)
+from doe_kc.study import Study
+from doe_kc.workflow.surrogate_handover import surrogate_lines, surrogates_document, write_surrogates
+from doe_kc.workflow.surrogate_plan import plan_surrogates
+from doe_kc.workflow.surrogates import run_surrogates
 
 
 @app.command()
+@takes_study
 def surrogates(
-    study: StudyArgument,
-    measurement: MeasurementOption = None,
-    out: OutOption = None,
-    json: JsonOption = None,
-    seed: SeedOption = None,
-    workers: WorkersOption = None,
+    given: Given,
     models: Annotated[
         str | None,
         typer.Option(help="Models to choose from, with commas: linear,quadratic,rbf,gp,kpls,kriging,gp_ard."),
     ] = None,
 ) -> None:
     """Fit fast models of every characteristic to the stored designs, cross-validate and choose."""
-    found = read_study(study, measurement=measurement, out=out, seed=seed)
+    found = given.read()
     plan = plan_surrogates(found, [m.strip() for m in (models or "").split(",") if m.strip()])
     targets = _targets(found)
     with progress_bar("fit", plan.steps) as advance:
-        report = run_surrogates(found, plan, targets=targets, workers=workers, progress=advance)
-    if json is not None:
-        write_json(json, surrogates_document(report))
-    written = write_surrogates(found, report, found.out / "surrogates", workers=workers)
+        report = run_surrogates(found, plan, targets=targets, workers=given.workers, progress=advance)
+    if given.json is not None:
+        write_json(given.json, surrogates_document(report))
+    written = write_surrogates(found, report, found.out / "surrogates", workers=given.workers)
     for line in surrogate_lines(report):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {found.out / 'surrogates'}", err=True)

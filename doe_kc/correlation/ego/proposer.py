@@ -15,6 +15,8 @@ from doe_kc.correlation.ego.strategy import AVERSION, Kind, Strategy
 from doe_kc.correlation.problem import Candidate, Prediction
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.models.gp import GaussianProcess, Trend
+from doe_kc.surrogates.training import constant_outputs
+from doe_kc.surrogates.varying import fit_varying
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
@@ -121,9 +123,10 @@ class Proposer:
 
 
 def fitted(archive: Archive, seed: int = 0) -> Fitted:
-    """Gaussian processes of all outputs, about the exact expansion where the archive has one."""
+    """Gaussian processes of all outputs that vary, about the exact expansion where the archive has one."""
     trend = None
     if archive.expansion is not None:
         at = int(np.flatnonzero((archive.points == archive.best.point).all(axis=1))[0])
-        trend = Trend(archive.best.point, archive.outputs[at], archive.expansion)
-    return GaussianProcess(trend=trend).fit(archive.points, archive.outputs, seed=seed)
+        varies = ~constant_outputs(archive.outputs)
+        trend = Trend(archive.best.point, archive.outputs[at][varies], archive.expansion[varies])
+    return fit_varying(GaussianProcess(trend=trend), archive.points, archive.outputs, seed=seed)

@@ -34,5 +34,8 @@ def _squared_error(answer: Evaluated, factor: float) -> float | None:
     predicted = answer.candidate.predicted
     if answer.score is None or predicted is None:
         return None
-    z = (answer.score.values - predicted.values) / np.maximum(predicted.sd, 1e-300)
+    doubted = predicted.sd > 0.0  # the others never change, or are predicted to round-off
+    if not doubted.any():
+        return None
+    z = (answer.score.values - predicted.values)[doubted] / predicted.sd[doubted]
     return max(factor * float(np.mean(z**2)), 1e-6)

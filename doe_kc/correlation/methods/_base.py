@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.errors import InputError, nearest
 
@@ -19,7 +20,7 @@ class Settings:
     budget: int
     batch: int = 1
     first: int | None = None
-    gradients: bool = False
+    gradients: Gradients = "auto"
 
 
 class Method(ABC):

@@ -15,35 +15,44 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.ego.archive import Archive, build_archive
-from doe_kc.correlation.ego.opening import opening_sample, opening_size
+from doe_kc.correlation.ego.archive import Archive, Slopes, build_archive
 from doe_kc.correlation.ego.proposer import Proposer, fitted
 from doe_kc.correlation.ego.strategy import CYCLE, Strategy
 from doe_kc.correlation.ego.trust import Trust
-from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.methods._base import Settings, register
+from doe_kc.correlation.methods._sampled import Sampled
+from doe_kc.correlation.opening import Opening
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
-from doe_kc.typing import FloatArray
 
+OPENING = Opening(fewest=8, variables_each=9, half_width=0.1, evened=True)
+"""The proposals teach more than further samples would; near enough for the first slopes to hold where the
+search goes."""
+WITH_SLOPES = Opening(fewest=4, variables_each=None, half_width=0.1, evened=True)
+"""Slopes are known; the sample shows how far they bend."""
 FEWEST = 3
 """Solved designs that the surrogates need."""
 
 
 @final
 @register
-class Ego(Method):
-    """State: all answers, the strategy, and how far predictions are trusted."""
+class Ego(Sampled):
+    """State: beside the answers the strategy, how far predictions are trusted, and slopes at the best design.
+
+    Exact slopes are taken wherever the problem has them, unless the settings forbid it.
+    """
 
     id: ClassVar[str] = "ego"
     label: ClassVar[str] = "Composite efficient global optimization"
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        self._problem, self._settings, self._space = problem, settings, problem.space
-        self._evaluated: list[Evaluated] = []
-        self._opened = False
+        self._exact = problem.exact and settings.gradients is not False
+        super().__init__(problem, settings, WITH_SLOPES if self._exact else OPENING)
         self._strategy = Strategy()
         self._trust = Trust()
-        levels = [v.levels for v in self._space.variables]
+        self._expanded: int | None = None
+        self._slopes: Slopes | None = None
+        levels = [v.levels for v in problem.space.variables]
         self._steps = np.array([0.0 if n is None else 1.0 / (n - 1) for n in levels])
 
     @property
@@ -51,37 +60,23 @@ class Ego(Method):
         """No worthwhile gain any more, also after restarts."""
         return self._strategy.stopped
 
-    def ask(self) -> Sequence[Candidate]:
-        """The opening sample, then `batch` candidates a round."""
-        rng = np.random.default_rng([self._settings.seed, len(self._evaluated)])
-        solved = sum(e.score is not None for e in self._evaluated)
-        if not self._opened or solved < FEWEST:
-            opening = self._opening(rng, solved)
-            if opening:
-                return opening
-        return self._round(rng)
-
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; proposals among them teach strategy and trust."""
         before = max((e.merit for e in self._evaluated), default=-np.inf)
-        self._evaluated.extend(evaluated)
+        super().tell(evaluated)
         if not any(e.candidate.predicted for e in evaluated):
             return
         self._trust.learn(evaluated)
         after = max(e.merit for e in evaluated)
         self._strategy = self._strategy.after(after - before, before)
 
-    def _opening(self, rng: np.random.Generator, solved: int) -> list[Candidate]:
-        """The designs that are missing; a few more at a time while too many fail."""
-        wanted = opening_size(self._space, self._settings.first, gradients=self._settings.gradients)
-        missing = max(FEWEST - solved, 0 if self._opened else wanted - (len(self._evaluated) - 1))
-        seed = self._settings.seed if not self._opened else int(rng.integers(2**31))
-        self._opened = True
-        if missing <= 0:
-            return []
-        return [Candidate(p, "opening sample") for p in opening_sample(self._space, missing, seed)]
+    def _missing(self) -> int:
+        """A few designs more at a time while too many fail."""
+        solved = sum(e.score is not None for e in self._evaluated)
+        return max(FEWEST - solved, super()._missing())
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
+        """`batch` candidates."""
         proposer = self._proposer()
         taken = {e.point.tobytes() for e in self._evaluated}
         kind, out = self._strategy.kind, list[Candidate]()
@@ -97,7 +92,7 @@ class Ego(Method):
     def _proposer(self) -> Proposer:
         archive = self._archive()
         return Proposer(
-            space=self._space,
+            space=self._problem.space,
             archive=archive,
             model=fitted(archive, self._settings.seed),
             k=len(self._problem.targets.characteristics),
@@ -106,7 +101,7 @@ class Ego(Method):
         )
 
     def _archive(self) -> Archive:
-        if not (self._settings.gradients and self._problem.exact):
+        if not self._exact:
             return build_archive(self._problem.targets, self._evaluated)
         best = max(self._evaluated, key=lambda e: e.merit)
         if self._expanded != best.index:
@@ -116,6 +111,3 @@ class Ego(Method):
                 self._slopes = None
             self._expanded = best.index
         return build_archive(self._problem.targets, self._evaluated, self._slopes)
-
-    _expanded: int | None = None
-    _slopes: tuple[FloatArray, FloatArray] | None = None

@@ -15,10 +15,10 @@ import numpy as np
 from doe_kc.correlation.hybrid.credit import Credit
 from doe_kc.correlation.hybrid.evolution import DifferentialEvolution, Mutation
 from doe_kc.correlation.hybrid.model_searches import LinearSearch, Restart, SurrogateSearch
-from doe_kc.correlation.hybrid.opening import opening_sample
 from doe_kc.correlation.hybrid.record import Record
 from doe_kc.correlation.hybrid.search import Search, Trial
-from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.methods._base import Settings, register
+from doe_kc.correlation.methods._sampled import Sampled
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 
 WORTH = 0.001
@@ -29,15 +29,14 @@ PATIENCE = 60
 
 @final
 @register
-class Hybrid(Method):
-    """State: all answers, the searches with their credit, and who proposed the last candidates."""
+class Hybrid(Sampled):
+    """State: beside the answers the searches with their credit, and who proposed the last candidates."""
 
     id: ClassVar[str] = "hybrid"
     label: ClassVar[str] = "Simultaneous global and local searches"
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        self._problem, self._settings = problem, settings
-        self._evaluated: list[Evaluated] = []
+        super().__init__(problem, settings)
         self._searches: tuple[Search, ...] = (
             SurrogateSearch(),
             LinearSearch(),
@@ -47,7 +46,6 @@ class Hybrid(Method):
         )
         self._credit = Credit(len(self._searches))
         self._asked: list[int] = []
-        self._opened = False
         self._idle = 0
 
     @property
@@ -57,26 +55,10 @@ class Hybrid(Method):
             return ""
         return f"no search gained {100 * WORTH:g} % of the rating in the last {self._idle} designs"
 
-    def ask(self) -> Sequence[Candidate]:
-        """The opening sample, then `batch` candidates, each from a search drawn by credit."""
-        self._asked = []
-        if not self._opened:
-            self._opened = True
-            opening = opening_sample(self._problem.space, self._settings, len(self._evaluated) - 1)
-            if opening:
-                return opening
-        record = Record(self._problem, self._evaluated, seed=self._settings.seed)
-        rng = np.random.default_rng([self._settings.seed, len(self._evaluated)])
-        out: list[Candidate] = []
-        for _ in range(self._settings.batch):
-            place = int(rng.choice(len(self._searches), p=self._credit.probability))
-            out.append(self._proposed(place, record, out, rng))
-        return out
-
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; searches and their credit learn from their own."""
         before = max((e.merit for e in self._evaluated if np.isfinite(e.merit)), default=-np.inf)
-        self._evaluated.extend(evaluated)
+        super().tell(evaluated)
         for place, answer in zip(self._asked, evaluated, strict=False):
             trial = Trial(answer, before)
             self._credit.reward(place, trial)
@@ -84,6 +66,15 @@ class Hybrid(Method):
         gain = max((e.merit for e in evaluated if np.isfinite(e.merit)), default=-np.inf) - before
         progress = not self._asked or gain > WORTH * abs(before)
         self._idle = 0 if progress else self._idle + len(evaluated)
+
+    def _round(self, rng: np.random.Generator) -> list[Candidate]:
+        """`batch` candidates, each from a search drawn by credit."""
+        self._asked = []
+        record, out = self._record, list[Candidate]()
+        for _ in range(self._settings.batch):
+            place = int(rng.choice(len(self._searches), p=self._credit.probability))
+            out.append(self._proposed(place, record, out, rng))
+        return out
 
     def _proposed(
         self, place: int, record: Record, out: Sequence[Candidate], rng: np.random.Generator

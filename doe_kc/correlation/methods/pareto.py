@@ -16,10 +16,10 @@ import numpy as np
 
 from doe_kc.correlation.ego.proposal import Box
 from doe_kc.correlation.hybrid.model_searches import can_model
-from doe_kc.correlation.hybrid.opening import opening_sample
 from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
 from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.methods._base import Settings, register
+from doe_kc.correlation.methods._sampled import Sampled
 from doe_kc.correlation.pareto.front import Front, front_of, knee
 from doe_kc.correlation.pareto.infill import predicted_front, spread_out
 from doe_kc.correlation.pareto.modelled import ModelledObjectives
@@ -40,8 +40,8 @@ PATIENCE = 6
 
 @final
 @register
-class Pareto(Method):
-    """State: all answers, the trust region about the best rating, the front's best values so far.
+class Pareto(Sampled):
+    """State: beside the answers the trust region about the best rating, the front's best values so far.
 
     `best` is the best rating: with the weights as given, that is the point of the front that they prefer.
     """
@@ -52,11 +52,10 @@ class Pareto(Method):
     def __init__(self, problem: Problem, settings: Settings) -> None:
         """InputError with fewer than two objectives, or without pymoo."""
         check_installed()
-        self._problem, self._settings = problem, settings
+        super().__init__(problem, settings)
         self._objectives = objectives(problem.targets)
-        self._evaluated: list[Evaluated] = []
         self._radius, self._idle = FIRST_RADIUS, 0
-        self._opened, self._infill = False, False
+        self._infill = False
         self._stopped = ""
 
     @property
@@ -69,22 +68,10 @@ class Pareto(Method):
         """Of the designs confirmed so far."""
         return front_of(self._problem.targets, self._evaluated, found=self._objectives)
 
-    def ask(self) -> Sequence[Candidate]:
-        """The opening sample, then a round spread over the predicted front."""
-        if not self._opened:
-            self._opened = True
-            opening = opening_sample(self._problem.space, self._settings, len(self._evaluated) - 1)
-            if opening:
-                return opening
-        record = Record(self._problem, self._evaluated, seed=self._settings.seed)
-        rng = np.random.default_rng([self._settings.seed, len(self._evaluated)])
-        self._infill = can_model(record)
-        return self._round(record, rng) if self._infill else self._random(record, rng)
-
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; the region follows the best rating, patience the front."""
         before = self.front if self._evaluated else None
-        self._evaluated.extend(evaluated)
+        super().tell(evaluated)
         if before is None or not self._infill:
             return
         after = self.front
@@ -99,7 +86,13 @@ class Pareto(Method):
                 f"{PATIENCE} rounds"
             )
 
-    def _round(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+    def _round(self, rng: np.random.Generator) -> list[Candidate]:
+        record = self._record
+        self._infill = can_model(record)
+        return self._spread(record, rng) if self._infill else self._random(record, rng)
+
+    def _spread(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+        """Designs spread over the predicted front, best rating and knee first."""
         modelled = ModelledObjectives(self._problem.targets, self._objectives, record.archive, record.model)
         points = predicted_front(record, modelled, self._region(record), len(self._objectives.names), rng)
         values, _ = modelled.values(points)

@@ -9,16 +9,15 @@ SMT 2.0, Advances in Engineering Software 188, 2024; D. R. Jones et al., J. Glob
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.opening import opening_sample
 from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.methods._base import Settings, register
+from doe_kc.correlation.methods._sampled import Sampled
 from doe_kc.correlation.methods._smt import Proposal, propose
-from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
+from doe_kc.correlation.problem import Candidate, Prediction, Problem
 from doe_kc.errors import RunError
 
 FEWEST = 3
@@ -27,16 +26,14 @@ FEWEST = 3
 
 @final
 @register
-class SmtEgo(Method):
-    """State: all answers."""
+class SmtEgo(Sampled):
+    """State: beside the answers why SMT gave up."""
 
     id: ClassVar[str] = "smt_ego"
     label: ClassVar[str] = "Scalar EGO of SMT (KPLS), for comparison"
 
     def __init__(self, problem: Problem, settings: Settings) -> None:
-        self._problem, self._settings = problem, settings
-        self._evaluated: list[Evaluated] = []
-        self._opened = False
+        super().__init__(problem, settings)
         self._stopped = ""
 
     @property
@@ -44,22 +41,12 @@ class SmtEgo(Method):
         """SMT could not train its surrogate, or found no expected improvement."""
         return self._stopped
 
-    def ask(self) -> Sequence[Candidate]:
-        """The opening sample, then the designs of SMT's next iteration."""
-        if not self._opened:
-            self._opened = True
-            opening = opening_sample(self._problem.space, self._settings, len(self._evaluated) - 1)
-            if opening:
-                return opening
-        record = Record(self._problem, self._evaluated, seed=self._settings.seed)
-        rng = np.random.default_rng([self._settings.seed, len(self._evaluated)])
+    def _round(self, rng: np.random.Generator) -> list[Candidate]:
+        """The designs of SMT's next iteration; failed ones are left out of its surrogate."""
+        record = self._record
         if len(record.sound) < FEWEST or np.ptp([e.merit for e in record.sound]) == 0.0:
             return self._random(record, rng)
         return self._iteration(record, rng)
-
-    def tell(self, evaluated: Sequence[Evaluated]) -> None:
-        """Answers; failed designs are left out of the surrogate."""
-        self._evaluated.extend(evaluated)
 
     def _iteration(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
         unique = {e.point.tobytes(): e for e in reversed(record.sound)}

@@ -1,17 +1,20 @@
 """Anti-roll bar: vertical forces F = k (z_L - z_R) at the drop links on the tubes.
 
-k follows the fourth power of the outer radius, k = k_nominal (r / r_nominal)^4, the law of a solid round
-bar k = G pi r^4 / (2 L a^2) with its lever a fixed by the nominal pair.
+The bar follows the fourth power of the outer radius, k_bar = k_nominal (r / r_nominal)^4, the law of a solid
+round bar k = G pi r^4 / (2 L a^2) with its lever a fixed by the nominal pair. A drop link of compliance c at
+either end is in series with it, 1 / k = 1 / k_bar + 2 c.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import ClassVar
 
 import casadi as ca
 
-from doe_kc.solver.builder import Builder
+from doe_kc.solver.builder import Builder, Response
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint
+from doe_kc.solver.elements._cuts import stretch
 
 
 @element
@@ -23,9 +26,18 @@ class AntiRollBar(Element):
 
     def assemble(self, b: Builder) -> None:
         ratio = b.parameter("arb.radius") / b.parameter("arb.nominal_radius")
-        rate = b.constant(b.parameter("arb.rate") * ratio**4)
+        bar = b.parameter("arb.rate") * ratio**4
+        rate = b.constant(bar / (1 + 2 * bar * b.parameter("arb.link_flexibility")))
         tubes = [b.bodies[f"tube.{side}"] for side in SIDES]
         links = [t.point(hardpoint(b, "ARB", s)) for t, s in zip(tubes, SIDES, strict=True)]
-        force = ca.vertcat(0, 0, rate * (links[0][2] - links[1][2]))
+        handed: dict[str, ca.SX] = {}
+        left, right = (stretch(b, "drop link", "z", s, _of(handed, s)) for s in SIDES)
+        up = rate * (links[0][2] - left - (links[1][2] - right))
+        handed |= {"L": up, "R": -up}
+        force = ca.vertcat(0, 0, up)
         b.push(tubes[0], -force, links[0])
         b.push(tubes[1], force, links[1])
+
+
+def _of(handed: Mapping[str, ca.SX], side: str) -> Response:
+    return lambda: handed[side]

@@ -10,8 +10,9 @@ from __future__ import annotations
 import casadi as ca
 
 from doe_kc.solver import curve, rotation
-from doe_kc.solver.builder import Body, Builder
+from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._base import NM_PER_DEG
+from doe_kc.solver.elements._cuts import SHIFTS, TURNS, push_pair, stretch, turn_pair
 
 FORCE_AXES = ("Fx", "Fy", "Fz")
 TORQUE_AXES = ("Tx", "Ty", "Tz")
@@ -31,10 +32,18 @@ def connect(
         apart = inner.axes.T @ apart
         gibbs = rotation.relative(inner.gibbs, outer.gibbs)
     d = axes.T @ apart
+    local: list[ca.SX] = []
+    for i, axis in enumerate(FORCE_AXES):
+        moved = stretch(b, f"{name}|body", SHIFTS[i], side, _item(local, i)) if inner is None else 0
+        pair = push_pair(b, name, SHIFTS[i], side, d[i])
+        local.append(_force(b, name, side, axis, d[i] - moved) + pair)
     kappa, slope = rotation.angle_ratio(ca.dot(gibbs, gibbs))
     phi = axes.T @ (kappa * gibbs)
-    force = axes @ ca.vertcat(*[_force(b, name, side, a, d[i]) for i, a in enumerate(FORCE_AXES)])
-    torque = axes @ ca.vertcat(*[_torque(b, name, side, a, phi[i]) for i, a in enumerate(TORQUE_AXES)])
+    turned = [
+        _torque(b, name, side, a, phi[i]) + turn_pair(b, name, TURNS[i], side, phi[i])
+        for i, a in enumerate(TORQUE_AXES)
+    ]
+    force, torque = axes @ ca.vertcat(*local), axes @ ca.vertcat(*turned)
     moment = rotation.spring_moment(gibbs, torque, kappa, slope)
     if inner is not None:
         force, moment = inner.axes @ force, inner.axes @ moment
@@ -42,6 +51,10 @@ def connect(
         b.turn(inner, moment)
     b.push(outer, -force, outer_point)
     b.turn(outer, -moment)
+
+
+def _item(values: list[ca.SX], i: int) -> Response:
+    return lambda: values[i]
 
 
 def _force(b: Builder, name: str, side: str, axis: str, d: ca.SX) -> ca.SX:

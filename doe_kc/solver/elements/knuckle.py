@@ -7,8 +7,18 @@ from typing import ClassVar
 import casadi as ca
 
 from doe_kc.solver import rotation
-from doe_kc.solver.builder import Body, Builder, body, rotations
-from doe_kc.solver.elements._base import NM_PER_DEG, SIDES, Element, Stage, element, hardpoint
+from doe_kc.solver.builder import Body, Builder, body
+from doe_kc.solver.elements._base import (
+    NM_PER_DEG,
+    SIDES,
+    Element,
+    Stage,
+    element,
+    hardpoint,
+    reflection,
+)
+from doe_kc.solver.elements._cuts import TURNS, cut, side_axes, turn_pair
+from doe_kc.solver.freedoms import rotations
 
 NEARLY_RIGID = 1e-4
 """Flexibility in place of 0, for the rigid side of an axle whose other strut bends."""
@@ -26,12 +36,14 @@ class Knuckle(Element):
         for side in SIDES:
             ball = hardpoint(b, "LWB", side)
             name = f"knuckle {side}"
-            arm = b.bodies[f"arm.{side}"]
+            carrier = b.bodies[f"ball joint.{side}"]
             turned, turns = rotations(name)
-            knuckle = body(name, ball, arm.origin, turned)
-            b.bodies[f"knuckle.{side}"] = b.join(name, knuckle, arm, turns, carries_moment=False)
+            knuckle = body(name, ball, carrier.origin, turned)
+            b.bodies[f"knuckle.{side}"] = b.join(name, knuckle, carrier, turns, carries_moment=False)
+            _turning_ball(b, carrier, knuckle, side)
+            clamp = cut(b, "tube|knuckle", side, knuckle, [("CLAMP", side)], strut_axes)
             bends = b.topology.strut_bending
-            b.bodies[f"tube.{side}"] = _bending_tube(b, knuckle, side) if bends else knuckle
+            b.bodies[f"tube.{side}"] = _bending_tube(b, clamp, side) if bends else clamp
 
 
 def strut_axis(b: Builder, side: str) -> ca.SX:
@@ -41,6 +53,26 @@ def strut_axis(b: Builder, side: str) -> ca.SX:
         along = hardpoint(b, "UPB", side) - hardpoint(b, "LWD", side)
         b.points[key] = b.constant(along / ca.norm_2(along))
     return b.points[key]
+
+
+def strut_axes(b: Builder, side: str) -> ca.SX:
+    """(3, 3) axes as columns: z along the strut axis, x and y by the shortest turn from the chassis."""
+    mirrored = reflection(side)
+    return mirrored @ rotation.minimal_rotation_from_z(mirrored @ strut_axis(b, side))
+
+
+def _turning_ball(b: Builder, carrier: Body, knuckle: Body, side: str) -> None:
+    """Probes against the ball joint's rotations, in the arm's axes."""
+    if not b.topology.probes:
+        return
+    gibbs = rotation.relative(carrier.gibbs, knuckle.gibbs)
+    kappa, slope = rotation.angle_ratio(ca.dot(gibbs, gibbs))
+    axes = side_axes(b, side)
+    phi = axes.T @ (kappa * gibbs)
+    pairs = [turn_pair(b, "ball joint", dof, side, phi[i]) for i, dof in enumerate(TURNS)]
+    moment = carrier.axes @ rotation.spring_moment(gibbs, axes @ ca.vertcat(*pairs), kappa, slope)
+    b.turn(carrier, moment)
+    b.turn(knuckle, -moment)
 
 
 def _bending_tube(b: Builder, knuckle: Body, side: str) -> Body:

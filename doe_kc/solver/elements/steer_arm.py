@@ -10,8 +10,10 @@ from typing import ClassVar
 
 import casadi as ca
 
-from doe_kc.solver.builder import Body, Builder, translations
+from doe_kc.solver.builder import Body, Builder
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint
+from doe_kc.solver.elements._cuts import SHIFTS, cut
+from doe_kc.solver.freedoms import translations
 
 STEEL_MODULUS = 210e3
 """N/mm^2."""
@@ -34,6 +36,7 @@ class SteerArm(Element):
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
             knuckle = b.bodies[f"knuckle.{side}"]
+            knuckle = cut(b, "steer arm|knuckle", side, knuckle, [("ROB", side)], dofs=SHIFTS)
             b.bodies[f"steer arm.{side}"] = _beam_end(b, knuckle, side) if b.topology.steer_arm else knuckle
 
 

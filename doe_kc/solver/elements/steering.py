@@ -1,4 +1,9 @@
-"""Rack on the sub-frame, driven through the steering column's spring, perhaps in a sprung housing."""
+"""Rack on the sub-frame, driven through the steering column's spring, perhaps in a sprung housing.
+
+Power assist pushes the rack the way the column does, and the more the column is wound up: with the column's
+own force S = k w the rack receives S (1 + g s^2 / (1 + s^2)), s = S / S_0. So S_0 is the force at which
+half of the largest assistance g is there.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +11,10 @@ from typing import ClassVar
 
 import casadi as ca
 
-from doe_kc.solver.builder import Body, Builder, slide
+from doe_kc.solver.builder import Body, Builder
 from doe_kc.solver.elements._base import Element, Stage, element
+from doe_kc.solver.elements._cuts import cut, push_pair, stretch
+from doe_kc.solver.freedoms import slide
 
 
 @element
@@ -20,15 +27,27 @@ class Steering(Element):
 
     def assemble(self, b: Builder) -> None:
         carrier = b.bodies["subframe.centre"]
+        carrier = cut(b, "rack housing|sub-frame", "", carrier, [("RIB", "L"), ("RIB", "R")])
         if b.topology.rack_mount:
             carrier, housing = _slider(b, "rack housing", carrier)
             b.resist("rack housing", b.constant(b.parameter("rack_mount.rate")) * housing)
         b.bodies["rack"], travel = _slider(b, "rack", carrier)
         column = b.constant(b.parameter("scb.Tz") * b.parameter("steering.column"))
-        windup = column * (travel - b.control("rack"))
-        b.resist("rack", windup)
+        angle = travel - b.control("rack")
+        own: list[ca.SX] = []
+        own.append(column * (angle - stretch(b, "column", "along", "", lambda: own[0])))
+        windup = own[0] + push_pair(b, "column", "along", "", angle)
+        if b.topology.power_assist:
+            windup *= 1 + _assistance(b, windup)
+        b.resist("rack", windup + push_pair(b, "rack|housing", "along", "", travel))
         b.points["rack"] = travel
         b.points["column force"] = -windup
+
+
+def _assistance(b: Builder, windup: ca.SX) -> ca.SX:
+    """Assist force over the column's own force."""
+    share = (windup / b.constant(b.parameter("power_assist.reference"))) ** 2
+    return b.constant(b.parameter("power_assist.gain")) * share / (1 + share)
 
 
 def _slider(b: Builder, name: str, carrier: Body) -> tuple[Body, ca.SX]:

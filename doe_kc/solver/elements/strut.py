@@ -7,10 +7,12 @@ from typing import ClassVar
 import casadi as ca
 
 from doe_kc.solver import rotation
-from doe_kc.solver.builder import Builder, body, slide, twist
+from doe_kc.solver.builder import Builder, body
 from doe_kc.solver.elements import bushing
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint, reflection
-from doe_kc.solver.elements.knuckle import strut_axis
+from doe_kc.solver.elements._cuts import cut, push_pair, turn_pair
+from doe_kc.solver.elements.knuckle import strut_axes, strut_axis
+from doe_kc.solver.freedoms import slide, twist
 
 
 @element
@@ -23,8 +25,9 @@ class Strut(Element):
 
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
-            tube = b.bodies[f"tube.{side}"]
             top, axis = hardpoint(b, "UPB", side), strut_axis(b, side)
+            tube, middle = b.bodies[f"tube.{side}"], [("LWD", side), ("UPB", side)]
+            tube = cut(b, "rod|tube", side, tube, middle, strut_axes, ("x", "y", "rx", "ry"))
             along = tube.axes @ axis
             slid, slides = slide(f"strut slide {side}", along)
             turned, twists = twist(f"strut twist {side}", along)
@@ -32,6 +35,8 @@ class Strut(Element):
             rod = body(f"rod {side}", top, origin, rotation.compose(tube.gibbs, axis * turned))
             b.bodies[f"rod.{side}"] = b.join(f"strut {side}", rod, tube, slides + twists)
             b.points[f"slide.{side}"] = slid
+            b.resist(f"strut slide {side}", push_pair(b, "rod|tube", "z", side, slid))
+            b.resist(f"strut twist {side}", turn_pair(b, "rod|tube", "rz", side, 2 * ca.atan(turned)))
             bushing.connect(b, "upb", side, at=top, axes=top_mount_axes(b, side), inner=None, outer=rod)
 
 

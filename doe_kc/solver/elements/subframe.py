@@ -7,7 +7,7 @@ from typing import ClassVar
 import casadi as ca
 
 from doe_kc.solver import rotation
-from doe_kc.solver.builder import Body, Builder, body, rotations, translations
+from doe_kc.solver.builder import Body, Builder, body
 from doe_kc.solver.elements import bushing
 from doe_kc.solver.elements._base import (
     NM_PER_DEG,
@@ -18,10 +18,14 @@ from doe_kc.solver.elements._base import (
     hardpoint,
     reflection,
 )
+from doe_kc.solver.elements._cuts import cut
+from doe_kc.solver.freedoms import rotations, translations
+
+MOUNTS = [(name, side) for name in ("SFF", "SFR") for side in SIDES]
 
 
 def _mount_centre(b: Builder) -> ca.SX:
-    points = [hardpoint(b, name, side) for name in ("SFF", "SFR") for side in SIDES]
+    points = [hardpoint(b, name, side) for name, side in MOUNTS]
     return b.constant((points[0] + points[1] + points[2] + points[3]) / 4)
 
 
@@ -46,9 +50,9 @@ class Subframe(Element):
             if b.topology.flexible_subframe:
                 half = _free_body(b, f"sub-frame half {side}", centre)
                 _flexible_joint(b, b.bodies["subframe.centre"], half, centre)
-                b.bodies[f"subframe.{side}"] = half
             else:
-                b.bodies[f"subframe.{side}"] = b.bodies["subframe.centre"]
+                half = b.bodies["subframe.centre"]
+            b.bodies[f"subframe.{side}"] = cut(b, "sub-frame half|centre", side, half, MOUNTS)
             for point, mount in (("SFF", "sff"), ("SFR", "sfr")):
                 bushing.connect(
                     b,

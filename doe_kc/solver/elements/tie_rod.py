@@ -1,7 +1,8 @@
-"""Tie rod between RIB on the rack and ROB on the knuckle: rigid, or with free play in its ball joint.
+"""Tie rod between RIB on the rack and ROB on the knuckle: of axial compliance c, by default rigid, and
+perhaps with free play in its ball joint.
 
 Free play: F = k0 dl + k1 (s(dl - gap/2) - s(-dl - gap/2)), s(x) = (x + sqrt(x^2 + e^2)) / 2, with
-k0 = 20 N/mm, k1 = 20000 N/mm and e = 2e-3 mm.
+k0 = 20 N/mm, k1 = 20000 N/mm and e = 2e-3 mm by default; e k1 = 40 N, so that a stiff contact is a sharp one.
 """
 
 from __future__ import annotations
@@ -10,21 +11,31 @@ from typing import ClassVar
 
 import casadi as ca
 
-from doe_kc.solver.builder import Builder
+from doe_kc.solver.builder import Builder, Response
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint
+from doe_kc.solver.elements._cuts import stretch
 
 CENTRING_STIFFNESS = 20.0
-CONTACT_STIFFNESS = 20000.0
-SMOOTHING = 2e-3
+SMOOTHING = 40.0
+"""N; the law's corners are rounded over this force over the contact stiffness."""
 
 
-def free_play_force(dl: ca.SX, gap: ca.SX) -> ca.SX:
-    """Tension in N at the lengthening dl in mm."""
+def free_play_force(dl: ca.SX, gap: ca.SX, contact: ca.SX, compliance: ca.SX) -> ca.SX:
+    """Tension in N at the lengthening dl in mm; contact: k1 in N/mm; compliance: of the rod, mm/N.
+
+    In series with the rod every straight part of the law stays straight, so only its slopes and the ends of
+    the gap change; the smoothing is taken along.
+    """
+    inside = CENTRING_STIFFNESS / (1 + compliance * CENTRING_STIFFNESS)
+    both = CENTRING_STIFFNESS + contact
+    outside = both / (1 + compliance * both) - inside
+    half = gap / 2 * (1 + compliance * CENTRING_STIFFNESS)
+    smoothing = SMOOTHING / contact
 
     def ramp(x: ca.SX) -> ca.SX:
-        return (x + ca.sqrt(x**2 + SMOOTHING**2)) / 2
+        return (x + ca.sqrt(x**2 + smoothing**2)) / 2
 
-    return CENTRING_STIFFNESS * dl + CONTACT_STIFFNESS * (ramp(dl - gap / 2) - ramp(-dl - gap / 2))
+    return inside * dl + outside * (ramp(dl - half) - ramp(-dl - half))
 
 
 @element
@@ -41,14 +52,23 @@ class TieRod(Element):
             design = b.constant(ca.norm_2(outer - inner))
             along = arm.point(outer) - rack.point(inner)
             length = ca.norm_2(along)
+            lengthening = length - design - stretch(b, "tie rod", "along", side, self._tension(b, side))
             plays = b.topology.free_play_left if side == "L" else b.topology.free_play_right
             label = f"tie rod {side}"
+            compliance = b.constant(b.parameter(f"tie_rod.flexibility@{side}"))
             if plays:
-                tension = free_play_force(length - design, b.constant(b.parameter(f"tie_rod.gap@{side}")))
+                gap, contact = (
+                    b.constant(b.parameter(f"tie_rod.{key}@{side}")) for key in ("gap", "contact")
+                )
+                tension = free_play_force(lengthening, gap, contact, compliance)
             else:
-                tension = b.rigid(label, f"tie rod {side} (length)", length - design)
+                tension = b.rigid(label, f"tie rod {side} (length)", lengthening, compliance)
             b.points[f"tie rod.{side}"] = tension
             pull = tension * along / length
             b.push(arm, -pull, arm.point(outer))
             b.push(rack, pull, rack.point(inner))
             b.points[f"tie rod pull.{side}"] = pull
+
+    @staticmethod
+    def _tension(b: Builder, side: str) -> Response:
+        return lambda: b.points[f"tie rod.{side}"]

@@ -12,7 +12,8 @@ from typing import ClassVar
 import casadi as ca
 
 from doe_kc.solver.builder import LENGTH_SCALE, Builder
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element
+from doe_kc.solver.elements._base import SIDES, Element, Stage, element, mirror
+from doe_kc.solver.elements._cuts import stretch
 
 
 @element
@@ -39,7 +40,7 @@ class Tyre(Element):
             squash = b.control("bilateral") * squash + (1 - b.control("bilateral")) * ca.fmax(squash, 0)
             load, contact = rate * squash / cosine, centre - distance * (normal - sine * spin) / cosine
             b.points[f"tyre.{side}"], b.points[f"pad.{side}"] = load, pad
-            b.points[f"contact.{side}"] = contact + _horizontal_deflection(b, side)
+            b.points[f"contact.{side}"] = contact + _horizontal_deflection(b, side) + _patch_probes(b, side)
             _loads(b, side, load * normal)
             b.close_tail(f"pad {side}", _pad_equation(b, side, pad, static_load, rate))
         _close_preload(b)
@@ -58,6 +59,14 @@ def _horizontal_deflection(b: Builder, side: str) -> ca.SX:
         return ca.SX.zeros(3)
     along, across = (b.constant(1 / b.parameter(f"tyre.{a}_rate@{side}")) for a in ("long", "lat"))
     return ca.vertcat(along * b.control(f"brake_{side}"), across * b.control(f"lateral_{side}"), 0)
+
+
+def _patch_probes(b: Builder, side: str) -> ca.SX:
+    """Dislocation of the contact point along the horizontal forces on it."""
+    y = mirror(side)
+    brake, lateral = b.control(f"brake_{side}"), y * b.control(f"lateral_{side}")
+    along = stretch(b, "contact patch|wheel", "x", side, lambda: brake)
+    return ca.vertcat(along, y * stretch(b, "contact patch|wheel", "y", side, lambda: lateral), 0)
 
 
 def _loads(b: Builder, side: str, normal_force: ca.SX) -> None:

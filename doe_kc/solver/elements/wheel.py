@@ -7,7 +7,7 @@ from typing import ClassVar
 import casadi as ca
 
 from doe_kc.solver import rotation
-from doe_kc.solver.builder import Body, Builder, body, rotations
+from doe_kc.solver.builder import Body, Builder, body
 from doe_kc.solver.elements._base import (
     NM_PER_DEG,
     SIDES,
@@ -17,6 +17,8 @@ from doe_kc.solver.elements._base import (
     hardpoint,
     mirror,
 )
+from doe_kc.solver.elements._cuts import cut
+from doe_kc.solver.freedoms import rotations
 
 SPIN_STIFFNESS = 1e11
 """N mm/rad about the knuckle's Y: the reference's brake lock, stiff but not ideal."""
@@ -33,6 +35,7 @@ class Wheel(Element):
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
             knuckle = b.bodies[f"knuckle.{side}"]
+            knuckle = cut(b, "wheel|knuckle", side, knuckle, [("WLC", side)])
             wheel = _sprung_wheel(b, knuckle, side) if b.topology.hub else knuckle
             b.bodies[f"wheel.{side}"] = wheel
             b.points[f"wheel centre.{side}"] = wheel.point(hardpoint(b, "WLC", side))

@@ -50,6 +50,20 @@ class CounterPhaseRoll(LoadCase):
         return {"pad_L": static.pad[0] - value, "pad_R": static.pad[1] + value}
 
 
+@dataclass(frozen=True)
+class PadRoll(Roll):
+    """The body is held, the pads move against each other as far as a body roll of the input would let them.
+
+    half_track: lever of the pads, mm; each pad moves half_track tan(angle).
+    """
+
+    half_track: float = 750.0
+
+    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+        travel = self.half_track * np.tan(np.radians(value))
+        return {"pad_L": static.pad[0] - travel, "pad_R": static.pad[1] + travel}
+
+
 TECHNIQUES: dict[str, LoadCase] = {
     "body": Roll(amplitude=4.0, steps=24),
     "counter_phase": CounterPhaseRoll(amplitude=60.0, steps=24),

@@ -38,3 +38,8 @@ def test_the_rate_is_g_pi_r4_over_2_l_a2(radius: float) -> None:
     rate = modulus * np.pi * radius**4 / (2 * length * lever2)
     (left, _), _ = forces(1.0, 0.0, {"arb.radius": radius})
     assert -left[2] == pytest.approx(rate)
+
+
+def test_the_drop_links_are_in_series_with_the_bar() -> None:
+    (left, _), _ = forces(1.0, 0.0, {"arb.link_flexibility": 1 / 300.0})
+    assert -left[2] == pytest.approx(1 / (1 / 22.0 + 2 / 300.0))

@@ -14,7 +14,7 @@ NM_PER_DEG = 1000 * 180 / np.pi
 def assembled(**topology: object):
     b = builder(**topology)
     for side in SIDES:
-        b.bodies[f"arm.{side}"] = stub(f"arm {side}", hardpoint("LWB", side), [0.0, 1.0, 20.0])
+        b.bodies[f"ball joint.{side}"] = stub(f"arm {side}", hardpoint("LWB", side), [0.0, 1.0, 20.0])
     Knuckle().assemble(b)
     return b
 

@@ -41,6 +41,26 @@ def test_the_column_pulls_the_rack_to_the_pinion() -> None:
     assert resistance == pytest.approx(-on_rack)
 
 
+@pytest.mark.parametrize("windup", [-0.4, -0.02, 0.0, 0.1, 1.0])
+def test_power_assist_adds_to_the_column_s_force(windup: float) -> None:
+    b = assembled(power_assist=True)
+    travel, pinion = b.joints[-1].freedoms[0].symbol, b.controls["rack"]
+    expression = ca.substitute(b.resistances["rack"], ca.vertcat(travel, pinion), ca.SX([windup, 0.0]))
+    found = number(b, expression, {"power_assist.gain": 1.5, "power_assist.reference": 300.0})
+    column = 2070.0 * windup
+    share = (column / 300.0) ** 2 / (1 + (column / 300.0) ** 2)
+    assert found == pytest.approx(column * (1 + 1.5 * share))
+
+
+def test_half_the_assistance_is_there_at_the_reference_force() -> None:
+    b = assembled(power_assist=True)
+    travel, pinion = b.joints[-1].freedoms[0].symbol, b.controls["rack"]
+    at = ca.SX([300.0 / 2070.0, 0.0])
+    expression = ca.substitute(b.resistances["rack"], ca.vertcat(travel, pinion), at)
+    found = number(b, expression, {"power_assist.gain": 2.0, "power_assist.reference": 300.0})
+    assert found == pytest.approx(600.0)
+
+
 def test_a_rack_mount_carries_rack_and_pinion() -> None:
     b = assembled(rack_mount=True)
     assert [j.label for j in b.joints] == ["rack housing", "rack"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import casadi as ca
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from doe_kc.solver.elements.tie_rod import TieRod, free_play_force
 from tests.solver.elements.mini import MIRROR, SIDES, builder, hardpoint, number, stub, wrench
@@ -20,8 +21,9 @@ def assembled(shift: object, **topology: object):
     return b
 
 
-def force(dl: float, gap: float) -> float:
-    return float(ca.DM(ca.Function("f", [], [free_play_force(ca.SX(dl), ca.SX(gap))])()["o0"]))
+def force(dl: float, gap: float, contact: float = 20000.0, compliance: float = 0.0) -> float:
+    law = free_play_force(*(ca.SX(v) for v in (dl, gap, contact, compliance)))
+    return float(ca.DM(ca.Function("f", [], [law])()["o0"]))
 
 
 @pytest.mark.parametrize(
@@ -70,5 +72,27 @@ def test_free_play_of_one_side_leaves_the_other_rigid() -> None:
     assert [u.name for u, _, _ in b.multipliers] == ["tie rod R"]
     design = hardpoint("ROB") - hardpoint("RIB")
     dl = np.linalg.norm(design + np.array([0, -0.3, 0])) - np.linalg.norm(design)
-    tension = number(b, b.points["tie rod.L"], {"tie_rod.gap@L": 0.2})
+    tension = number(b, b.points["tie rod.L"], {"tie_rod.gap@L": 0.2, "tie_rod.contact@L": 20000.0})
     assert tension == pytest.approx(force(dl, 0.2))
+
+
+def test_a_compliant_rod_lengthens_by_its_tension() -> None:
+    b = assembled([4.0, -3.0, 20.0])
+    (_, _, violation) = b.multipliers[0]
+    given = {"tie rod L": 3000.0}
+    rigid = number(b, violation, given)
+    compliant = number(b, violation, given | {"tie_rod.flexibility@L": 1 / 15000.0})
+    assert rigid - compliant == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("tension", [-3000.0, -700.0, 400.0, 5000.0])
+def test_free_play_in_series_with_a_compliant_rod(tension: float) -> None:
+    """Lengthenings add up; the rounded corners alone, 40 N of force, are not exactly in series."""
+    gap, contact, compliance = 0.2, 20000.0, 1 / 15000.0
+    joint = brentq(lambda d: force(d, gap) - tension, -2.0, 2.0, xtol=1e-14)
+    whole = brentq(lambda d: force(d, gap, contact, compliance) - tension, -2.0, 2.0, xtol=1e-14)
+    assert whole == pytest.approx(joint + compliance * tension, abs=1e-4)
+
+
+def test_a_tight_stiff_ball_is_rigid() -> None:
+    assert force(1e-4, 2e-5, contact=2e8) == pytest.approx(1e-4 * 2e8, rel=0.11)

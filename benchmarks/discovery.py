@@ -1,0 +1,55 @@
+"""Which effects hidden in synthetic rig records the analyser names, misses or takes for another.
+
+Draws cars, publishes the SHA-256 of their keys, analyses each car once, then opens the keys and scores.
+A run that was killed goes on where it was; answers of different code never mix.
+
+    python benchmarks/discovery.py [--cases N] [--suites a,b] [--seed S] [--out DIR] [--workers N]
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from _common import RESULTS, machine
+
+from benchmarks.discovery.cases import HASHES, cases, publish  # isort: skip  # after the thread limits
+from benchmarks.discovery.report import Run, write  # isort: skip
+from benchmarks.discovery.running import analyse_missing, fingerprint  # isort: skip
+from benchmarks.discovery.suites import SUITES  # isort: skip
+from benchmarks.discovery.unsealing import scores  # isort: skip
+from benchmarks.discovery.vehicles import BASES  # isort: skip
+
+DEFAULT = Path(tempfile.gettempdir()) / "doe_kc_discovery"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--cases", type=int, default=13, help="cars of each suite")
+    parser.add_argument("--suites", default=",".join(SUITES), help="of " + ", ".join(SUITES))
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument(
+        "--base", choices=BASES, default="example", help="base vehicle; shifted: to develop on"
+    )
+    parser.add_argument("--out", type=Path, default=DEFAULT, help="folder of cars, answers and keys; kept")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--results", type=Path, default=RESULTS, help="folder of the report")
+    given = parser.parse_args()
+    suites = given.suites.split(",")
+    unknown = [s for s in suites if s not in SUITES]
+    if unknown:
+        parser.error(f"unknown suite {unknown[0]}; known are {', '.join(SUITES)}")
+    code = fingerprint()
+    folder = given.out / f"{given.base}_{given.seed}_{given.cases}_{'-'.join(suites)}" / code
+    chosen = cases(given.cases, suites, given.seed, given.base)
+    publish(chosen, folder)
+    sys.stderr.write(f"{len(chosen)} keys are sealed in {folder / HASHES}\n")
+    analyse_missing(chosen, folder, workers=given.workers)
+    run = Run(" ".join(["python", *sys.argv]), given.base, given.seed, code, machine())
+    print("\n".join(write(scores(chosen, folder), run, given.results)))
+
+
+if __name__ == "__main__":
+    main()

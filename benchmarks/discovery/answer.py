@@ -1,0 +1,105 @@
+"""An analyser's answer, read from its JSON; what is missing there counts as not said."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+Verdict = Literal["named", "class", "none", "unexplained", "failed"]
+SURE = 0.9
+"""Probability from which an effect counts as named."""
+
+
+@dataclass(frozen=True)
+class Named:
+    """One effect of an answer. parameters: name -> (value, standard deviation)."""
+
+    id: str
+    location: str | None
+    probability: float
+    parameters: Mapping[str, tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """effects: most important first. classes: ids that are not told apart, one tuple an effect.
+
+    unexplained_at: (load case, response). gap: nominal, tuned, with_effect, best_decoy as whitened RMS.
+    held_out: load case -> (tuned, with effect). diagnosable: effect -> (detectability, chance of a wrong
+    name), where the analyser says so.
+    """
+
+    verdict: Verdict
+    effects: tuple[Named, ...]
+    classes: tuple[tuple[str, ...], ...]
+    unexplained_at: tuple[tuple[str, str], ...]
+    gap: Mapping[str, float]
+    held_out: Mapping[str, tuple[float, float]]
+    diagnosable: Mapping[str, tuple[float, float]]
+    seconds: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Ids that the answer commits itself to; members of a class and leads are no names."""
+        if self.verdict not in ("named", "class"):
+            return ()
+        unsure = {e for c in self.classes if len(set(c)) > 1 for e in c}
+        return tuple(
+            dict.fromkeys(e.id for e in self.effects if e.probability >= SURE and e.id not in unsure)
+        )
+
+    @property
+    def offered(self) -> frozenset[str]:
+        """Names and the members of all classes."""
+        if self.verdict not in ("named", "class"):
+            return frozenset()
+        return frozenset(self.names) | {e for c in self.classes for e in c} | {e.id for e in self.effects}
+
+    @property
+    def first(self) -> str:
+        """What the answer puts first: an id, or `none`, `unexplained`, `failed`."""
+        if self.verdict in ("named", "class"):
+            if self.effects:
+                return self.effects[0].id
+            return self.classes[0][0] if self.classes and self.classes[0] else "none"
+        return self.verdict
+
+
+FAILED = Answer("failed", (), (), (), {}, {}, {}, float("nan"))
+"""The analyser gave none."""
+
+
+def read_answer(data: Mapping[str, Any] | None) -> Answer:
+    """From the stored JSON; None for a case whose analysis broke off."""
+    if data is None or data.get("verdict") not in ("named", "class", "none", "unexplained"):
+        return FAILED
+    return Answer(
+        verdict=data["verdict"],
+        effects=tuple(_named(e) for e in data.get("effects") or ()),
+        classes=tuple(tuple(c) for c in data.get("classes") or ()),
+        unexplained_at=tuple((u["load_case"], u["response"]) for u in data.get("unexplained_at") or ()),
+        gap={k: float(v) for k, v in (data.get("gap") or {}).items() if v is not None},
+        held_out={
+            case: (float(h["tuned"]), float(h["with_effect"]))
+            for case, h in (data.get("held_out") or {}).items()
+            if h.get("tuned") is not None and h.get("with_effect") is not None
+        },
+        diagnosable={
+            name: (float(d["lambda"]), float(d["wrong_name_probability"]))
+            for name, d in (data.get("diagnosable") or {}).items()
+        },
+        seconds=float(data.get("seconds") or "nan"),
+    )
+
+
+def _named(effect: Mapping[str, Any]) -> Named:
+    parameters = {
+        name: (float(p["value"]), float(p["sd"]))
+        for name, p in (effect.get("parameters") or {}).items()
+        if p.get("value") is not None and p.get("sd") is not None
+    }
+    probability = effect.get("probability")
+    return Named(
+        effect["id"], effect.get("location"), 1.0 if probability is None else float(probability), parameters
+    )

@@ -1,0 +1,133 @@
+"""How far a hidden effect stands out of what re-tuning can do, and whether a rival looks the same.
+
+Computed from the opened key with the true change of the curves: no analyser has a part in it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import qr
+from scipy.special import ndtr
+
+from benchmarks.discovery.car import Car
+from doe_kc.axle import Axle
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.linearization import linearize
+from doe_kc.effects import EFFECTS, apply_effect, observed
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.result import NotConverged
+from doe_kc.solver.suite import solve
+from doe_kc.typing import FloatArray
+from doe_kc.variables import VariableOptions, build_space
+
+NO_CHARACTERISTICS = np.zeros(0)
+MUCH = 0.05
+"""Of the sum of squares."""
+
+
+@dataclass(frozen=True)
+class Detectability:
+    """strength: standard deviations of the change after re-tuning. rival: the most similar other effect;
+    wrong: chance that noise makes it the better one. shows: (load case, response) with much of the change."""
+
+    strength: float
+    rival: str
+    wrong: float
+    shows: tuple[tuple[str, str], ...]
+
+
+def detectability(nominal: Axle, car: Car, likelihood: Likelihood) -> dict[str, Detectability]:
+    """Hidden effect -> its standing. likelihood: of the records, for their noise."""
+    basis = _tuning(nominal, likelihood)
+    out = {}
+    for hidden in car.hidden:
+        without = replace(car, hidden=tuple(h for h in car.hidden if h is not hidden))
+        change = _residual(_as_read(car), likelihood) - _residual(_as_read(without), likelihood)
+        left = _beyond(change, basis)
+        out[hidden.id] = _against_rivals(left, hidden.id, nominal, likelihood, basis)
+    return out
+
+
+def _as_read(car: Car) -> Axle:
+    """The true axle, with those of its effects that are the rig's."""
+    axle = car.true_axle()
+    for hidden in car.hidden:
+        if EFFECTS[hidden.id].on_rig:
+            axle = apply_effect(axle, hidden.id, hidden.options, source="hidden")
+    return axle
+
+
+def _residual(axle: Axle, likelihood: Likelihood) -> FloatArray:
+    return likelihood.residual(observed(axle, curve_set(solve(axle))), NO_CHARACTERISTICS)
+
+
+def _tuning(nominal: Axle, likelihood: Likelihood) -> FloatArray:
+    """(M + d, d) orthonormal basis of what the variables can do within their priors."""
+    space = build_space(nominal, VariableOptions(), "detectability")
+    held = {path for e in EFFECTS.values() for path in e.replaces}
+    free = [i for i, path in enumerate(space.paths) if path not in held]
+    slopes = linearize(nominal, space, space.start)
+    rows = likelihood.jacobian(slopes.curves, slopes.characteristics)[:, free]
+    basis, _ = qr(np.vstack([rows, np.diag(1.0 / space.prior_sd[free])]), mode="economic")
+    return np.asarray(basis)
+
+
+def _beyond(change: FloatArray, basis: FloatArray) -> FloatArray:
+    padded = np.concatenate([change, np.zeros(basis.shape[1])])
+    return np.asarray(padded - basis @ (basis.T @ padded))
+
+
+def _against_rivals(
+    left: FloatArray, ident: str, nominal: Axle, likelihood: Likelihood, basis: FloatArray
+) -> Detectability:
+    strength = float(np.linalg.norm(left))
+    blank = _residual(nominal, likelihood)
+    rival, closest = "", 0.0
+    for effect in EFFECTS.values():
+        if effect.id == ident:
+            continue
+        for hypothesis in effect.hypotheses():
+            sizes = [s for s in hypothesis.sizes if s.growth != "shape"]
+            columns = []
+            for chosen in [s.name for s in sizes] or [""]:
+                at = {s.name: float(s.name == chosen) for s in hypothesis.sizes}
+                try:
+                    axle = apply_effect(nominal, effect.id, hypothesis.options(at), source=effect.id)
+                    columns.append(_beyond(_residual(axle, likelihood) - blank, basis))
+                except NotConverged:
+                    continue
+            alike = _explained(left, columns)
+            if alike > closest:
+                rival, closest = effect.id, alike
+    return Detectability(strength, rival, wrong_name(strength, closest), _shows(left, likelihood))
+
+
+def _shows(left: FloatArray, likelihood: Likelihood) -> tuple[tuple[str, str], ...]:
+    """Load cases and responses that hold MUCH of the change, the largest first; both wheels and branches."""
+    parts: dict[tuple[str, str], float] = {}
+    for curve, rows in likelihood.slices():
+        place = (curve.load_case, curve.response)
+        parts[place] = parts.get(place, 0.0) + float(np.sum(left[rows] ** 2))
+    enough = MUCH * sum(parts.values())
+    return tuple(sorted((p for p, v in parts.items() if v > enough), key=lambda p: -parts[p]))
+
+
+def _explained(left: FloatArray, columns: Sequence[FloatArray]) -> float:
+    """|cosine| between a change and the nearest one of a rival's sizes."""
+    length = float(np.linalg.norm(left))
+    stacked = [c for c in columns if np.linalg.norm(c) > 1e-6]
+    if not stacked or not length:
+        return 0.0
+    orthonormal, _ = qr(np.array(stacked).T, mode="economic")
+    return float(np.linalg.norm(orthonormal.T @ left)) / length
+
+
+def wrong_name(strength: float, correlation: float) -> float:
+    """Chance that a rival of given |correlation| fits better than the true effect, both of one size."""
+    apart = strength * math.sqrt(max(0.0, (1.0 - correlation) / 2.0))
+    along = strength * math.sqrt((1.0 + correlation) / 2.0)
+    return float(ndtr(-apart) * ndtr(along) + ndtr(apart) * ndtr(-along))

@@ -1,0 +1,173 @@
+"""One answer against its key."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from benchmarks.discovery.answer import Answer, Named
+from benchmarks.discovery.truth import TrueEffect, Truth
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter of a rightly named effect. approximate: of a law of another shape."""
+
+    effect: str
+    parameter: str
+    true: float
+    value: float
+    sd: float
+    approximate: bool
+
+    @property
+    def z(self) -> float:
+        """Error in standard deviations."""
+        return (self.value - self.true) / self.sd if self.sd > 0 else math.inf
+
+    @property
+    def relative(self) -> float:
+        """Error over the true value."""
+        return (self.value - self.true) / abs(self.true) if self.true else math.nan
+
+
+@dataclass(frozen=True)
+class Score:
+    """exact: the names are the hidden effects, no more and no less. found: all are named. top: the first name is a hidden effect.
+    in_class: every hidden effect is named or in a class. wrong: some name is not what is there; trace: some
+    name is clutter, rightly sized but too small to matter. missed: answered that nothing is missing.
+    placed: an unexplained deviation is reported where it is. located: right places over places asked.
+    closed, decoy: share of the gap that the named effects, and the best other one, close; nan where the
+    answer gives none.
+    """
+
+    name: str
+    suite: str
+    truth: str
+    first: str
+    verdict: str
+    names: tuple[str, ...]
+    exact: bool
+    found: bool
+    top: bool
+    in_class: bool
+    wrong: bool
+    trace: bool
+    missed: bool
+    unexplained: bool
+    placed: bool
+    located: tuple[int, int]
+    estimates: tuple[Estimate, ...]
+    believed: tuple[tuple[float, bool], ...]
+    closed: float
+    decoy: float
+    diagnosable: bool | None
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """From the opened key: detectability of the weakest hidden effect, the chance that noise names a rival,
+    and where its change shows."""
+
+    strength: float
+    wrong: float
+    shows: frozenset[tuple[str, str]] = frozenset()
+
+
+DETECTABLE = 10.0
+WRONG_NAME = 0.05
+FACTOR = 2.0
+"""Within which a trace is taken for rightly sized."""
+
+
+def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> Score:
+    """predicted: None for a car without hidden effects, or where the analyser's own word counts."""
+    shows = truth.shows | (predicted.shows if predicted is not None else frozenset())
+    names = frozenset(answer.names)
+    small = frozenset(e.id for e in answer.effects if e.id in names - truth.ids and _traced(truth, e))
+    pairs = [(t, n) for t in truth.effects for n in answer.effects if n.id == t.id and t.id in names]
+    return Score(
+        name=truth.name,
+        suite=truth.suite,
+        truth=truth.label,
+        first=answer.first,
+        verdict=answer.verdict,
+        names=answer.names,
+        exact=names == truth.ids and answer.verdict not in ("unexplained", "failed"),
+        found=bool(truth.ids) and truth.ids <= names,
+        top=answer.first in truth.ids,
+        in_class=bool(truth.ids) and truth.ids <= answer.offered,
+        wrong=bool(names - truth.ids - small),
+        trace=bool(small),
+        missed=bool(truth.ids or truth.outside) and answer.verdict == "none",
+        unexplained=answer.verdict == "unexplained",
+        placed=bool(shows & set(answer.unexplained_at)),
+        located=_located(pairs),
+        estimates=tuple(_estimates(pairs)),
+        believed=_believed(truth, answer),
+        closed=held_out_closed(answer),
+        decoy=decoy_closed(answer),
+        diagnosable=_diagnosable(truth, answer, predicted),
+        seconds=answer.seconds,
+    )
+
+
+def _traced(truth: Truth, named: Named) -> bool:
+    """Whether a name is clutter found: its numbers are those of the trace that is there, within a factor."""
+    true = truth.clutter.get(named.id, {}) if named.id not in truth.ids else {}
+    ratios = [value / true[name] for name, (value, _) in named.parameters.items() if true.get(name)]
+    return bool(ratios) and max(ratios) > 0 and 1 / FACTOR < max(ratios, key=abs) < FACTOR
+
+
+def _located(pairs: list[tuple[TrueEffect, Named]]) -> tuple[int, int]:
+    asked = [(t.location.lower(), (n.location or "").lower()) for t, n in pairs if t.location]
+    return sum(t == n for t, n in asked), len(asked)
+
+
+def _estimates(pairs: list[tuple[TrueEffect, Named]]) -> Iterator[Estimate]:
+    for t, n in pairs:
+        for name, (value, sd) in n.parameters.items():
+            if name in t.parameters:
+                yield Estimate(t.id, name, t.parameters[name], value, sd, t.approximate)
+
+
+def _believed(truth: Truth, answer: Answer) -> tuple[tuple[float, bool], ...]:
+    """(probability, whether it is right) of every effect that the answer gives as found."""
+    if answer.verdict not in ("named", "class"):
+        return ()
+    return tuple((e.probability, e.id in truth.ids) for e in answer.effects if not _traced(truth, e))
+
+
+def held_out_closed(answer: Answer) -> float:
+    """G = 1 - (R_after - 1) / (R_tuned - 1) of the load cases held out; R: whitened RMS, noise is 1."""
+    if not answer.held_out:
+        return math.nan
+    tuned, after = (
+        math.sqrt(sum(pair[i] ** 2 for pair in answer.held_out.values()) / len(answer.held_out))
+        for i in (0, 1)
+    )
+    return _closed(tuned, after)
+
+
+def decoy_closed(answer: Answer) -> float:
+    """The same of the best other effect, on the data that it was fitted to: an upper bound."""
+    gap = answer.gap
+    if "tuned" not in gap or "best_decoy" not in gap:
+        return math.nan
+    return _closed(gap["tuned"], gap["best_decoy"])
+
+
+def _closed(tuned: float, after: float) -> float:
+    return 1.0 - (after - 1.0) / (tuned - 1.0) if tuned > 1.0 else math.nan
+
+
+def _diagnosable(truth: Truth, answer: Answer, predicted: Predicted | None) -> bool | None:
+    """Whether the weakest hidden effect is strong enough and unlike all others; None where nobody says."""
+    said = [answer.diagnosable[i] for i in truth.ids if i in answer.diagnosable]
+    if predicted is not None:
+        said = [(predicted.strength, predicted.wrong)]
+    elif not truth.ids or len(said) < len(truth.ids):
+        return None
+    return all(strength >= DETECTABLE and wrong <= WRONG_NAME for strength, wrong in said)

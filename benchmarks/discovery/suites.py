@@ -1,0 +1,119 @@
+"""The suites: what is hidden in a car of each, and what the analyser is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from benchmarks.discovery.catalogue import CATALOGUE, REFERENCE
+from benchmarks.discovery.chance import log_uniform, stream
+from benchmarks.discovery.further import FURTHER
+from benchmarks.discovery.hidden import Hidden
+from benchmarks.discovery.outside import OUTSIDE, Outside
+from benchmarks.discovery.scatter import Spread
+from doe_kc.axle import Axle
+
+FULL = (0.5, 2.0)
+"""Sizes, in typical ones."""
+WEAK = (0.1, 0.3)
+BOTH = (0.7, 2.0)
+ALIKE = (
+    ("hub_compliance", "strut_bending"),
+    ("rack_mount_compliance", "tie_rod_compliance"),
+    ("hub_compliance", "ball_joint_compliance"),
+    ("bushing_preload", "ride_height_offset"),
+    ("steering_friction", "tie_rod_free_play"),
+    ("subframe_flexibility", "rack_mount_compliance"),
+    ("bushing_progression", "bushing_preload"),
+    ("subframe_flexibility", "ball_joint_compliance"),
+)
+"""Pairs that a rig hardly tells apart; one of each is hidden, if the library has both."""
+NOT_REMOVABLE = ("left_right_asymmetry", "ride_height_offset", "roll_technique")
+"""Tunable parameters say the same, so that without them nothing is missing."""
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a suite puts into one car. exclude: effects that the analyser's library has to do without."""
+
+    hidden: tuple[Hidden, ...] = ()
+    outside: Outside | None = None
+    exclude: tuple[str, ...] = ()
+    spread: Spread = field(default_factory=Spread)
+    pair: tuple[str, ...] = ()
+
+
+Fill = Callable[[int, np.random.Generator, Axle], Content]
+
+
+def _pick(items: Sequence[str], seed: int, suite: str) -> str:
+    """Every item once in each run of as many seeds, in an order that seeds do not tell."""
+    block, at = divmod(seed, len(items))
+    return items[int(stream(block, "order", suite).permutation(len(items))[at])]
+
+
+def _hide(ident: str, sizes: tuple[float, float], rng: np.random.Generator, axle: Axle) -> Hidden:
+    return CATALOGUE[ident](rng, log_uniform(rng, *sizes), axle)
+
+
+def null(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    return Content()
+
+
+def single(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    return Content((_hide(_pick(REFERENCE, seed, "single"), FULL, rng, axle),))
+
+
+def further(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    return Content((_hide(_pick(FURTHER, seed, "further"), FULL, rng, axle),))
+
+
+def weak(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    sized = [e for e in REFERENCE if e != "roll_technique"]
+    return Content((_hide(_pick(sized, seed, "weak"), WEAK, rng, axle),))
+
+
+def confounded(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    pairs = [p for p in ALIKE if all(e in CATALOGUE for e in p)]
+    chosen = pairs[seed % len(pairs)]
+    return Content((_hide(chosen[int(rng.integers(2))], FULL, rng, axle),), pair=chosen)
+
+
+def two(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """Any two, but not two of which one hides the other by construction."""
+    first = _pick(REFERENCE, seed, "two")
+    rivals = {e for p in ALIKE if first in p for e in p} | {first}
+    second = str(rng.choice([e for e in REFERENCE if e not in rivals]))
+    return Content(tuple(_hide(e, BOTH, rng, axle) for e in (first, second)))
+
+
+def library_deleted(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    listed = [e for e in REFERENCE if e not in NOT_REMOVABLE]
+    ident = _pick(listed, seed, "library_deleted")
+    return Content((_hide(ident, BOTH, rng, axle),), exclude=(ident,))
+
+
+def outside(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    return Content(outside=OUTSIDE[_pick(list(OUTSIDE), seed, "outside")](rng))
+
+
+def wrong_priors(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """A single effect in a car of a series that is off nominal as a whole, and scatters more or less."""
+    width = 0.5 if rng.random() < 0.5 else 2.0
+    hidden = _hide(_pick(REFERENCE, seed, "wrong_priors"), FULL, rng, axle)
+    return Content((hidden,), spread=Spread(shift=1.0, width=width))
+
+
+SUITES: dict[str, Fill] = {
+    "null": null,
+    "single": single,
+    "further": further,
+    "weak": weak,
+    "confounded": confounded,
+    "two": two,
+    "library_deleted": library_deleted,
+    "outside": outside,
+    "wrong_priors": wrong_priors,
+}

@@ -1,0 +1,134 @@
+"""The suites' results as lines of a report."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+
+from benchmarks.discovery.scoring import Score
+from benchmarks.discovery.statistics import Share, brier, calibration_error, reliability, share
+from benchmarks.discovery.truth import DELETED
+
+Measure = Callable[[Score], bool]
+MEASURES: dict[str, Measure] = {
+    "exact set": lambda s: s.exact,
+    "all found": lambda s: s.found,
+    "first right": lambda s: s.top,
+    "named or in a class": lambda s: s.in_class,
+    "wrong name": lambda s: s.wrong,
+    "trace named": lambda s: s.trace,
+    "missed": lambda s: s.missed,
+    "unexplained": lambda s: s.unexplained,
+    "right place": lambda s: s.placed,
+    "failed": lambda s: s.verdict == "failed",
+}
+HAVING = ("all found", "first right", "named or in a class")
+LEFT_OUT = {
+    "null": (*HAVING, "missed", "right place"),
+    "outside": (*HAVING, "exact set"),
+    DELETED: (*HAVING, "exact set"),
+}
+"""Measures that say nothing about a suite."""
+TARGETS = {
+    ("null", "wrong name"): "<= 5 %",
+    ("single, diagnosable", "first right"): ">= 95 %",
+    ("confounded", "named or in a class"): ">= 95 %",
+    ("two, diagnosable", "exact set"): ">= 75 %",
+    ("two, diagnosable", "all found"): ">= 85 %",
+    ("outside", "unexplained"): ">= 90 %",
+    (DELETED, "unexplained"): ">= 80 %",
+    (DELETED, "wrong name"): "<= 10 %",
+    ("wrong_priors, diagnosable", "first right"): ">= 85 %",
+}
+WRONG_NAMES = "<= 5 %"
+"""Everywhere else."""
+
+
+def groups(found: Sequence[Score]) -> dict[str, list[Score]]:
+    """Suite -> its cases, and the diagnosable ones of suites that have both kinds."""
+    out: dict[str, list[Score]] = {}
+    for suite in dict.fromkeys(s.suite for s in found):
+        own = [s for s in found if s.suite == suite]
+        out[suite] = own
+        clear = [s for s in own if s.diagnosable]
+        if any(s.diagnosable is not None for s in own):
+            out[f"{suite}, diagnosable"] = clear
+            out[f"{suite}, not diagnosable"] = [s for s in own if s.diagnosable is False]
+    return out
+
+
+def suite_table(found: Sequence[Score]) -> list[str]:
+    """A line for every group: shares in percent with their Wilson intervals, and targets where there are."""
+    lines = ["| cars | n | " + " | ".join(MEASURES) + " |", "|---" * (len(MEASURES) + 2) + "|"]
+    for name, members in groups(found).items():
+        cells = [_cell(name, label, [of(s) for s in members]) for label, of in MEASURES.items()]
+        lines.append(f"| {name} | {len(members)} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def _cell(group: str, label: str, flags: Sequence[bool]) -> str:
+    if label in LEFT_OUT.get(group.split(",")[0], ()) or not flags:
+        return ""
+    target = TARGETS.get((group, label), WRONG_NAMES if label == "wrong name" else "")
+    found = share(flags)
+    low, high = found.interval
+    text = f"{100 * found.value:.0f} ({100 * low:.0f}-{100 * high:.0f})"
+    return f"{text}, target {target}" if target else text
+
+
+def located(found: Iterable[Score]) -> Share:
+    """Right places of rightly named effects that have one."""
+    pairs = [s.located for s in found]
+    return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
+
+
+def parameter_lines(found: Sequence[Score]) -> list[str]:
+    """How good the numbers of rightly named effects are."""
+    lines = []
+    every = [e for s in found for e in s.estimates]
+    for label, chosen in (
+        ("same law", [e for e in every if not e.approximate]),
+        ("law of another shape", [e for e in every if e.approximate]),
+    ):
+        if chosen:
+            z = np.abs([e.z for e in chosen])
+            relative = np.abs([e.relative for e in chosen])
+            inside = ", ".join(f"within {n} sd: {share(list(z < n))}" for n in (1, 2))
+            middle, most = 100 * np.nanmedian(relative), 100 * np.nanquantile(relative, 0.9)
+            lines.append(
+                f"- Parameters, {label}: {len(chosen)}, {inside} (68 % and 95 % where honest); "
+                f"error, median {middle:.1f} %, 90 in 100 below {most:.0f} %"
+            )
+    return lines
+
+
+def calibration_lines(found: Sequence[Score]) -> list[str]:
+    """Brier score, expected calibration error and reliability of the stated probabilities."""
+    believed = [b for s in found for b in s.believed]
+    if not believed:
+        return ["- No probabilities were stated."]
+    lines = [
+        f"- Probabilities: {len(believed)}, Brier {brier(believed):.3f}, "
+        f"expected calibration error {calibration_error(believed):.3f} (target <= 0.1)",
+        "",
+        "| stated | mean | right |",
+        "|---|---|---|",
+    ]
+    bins = reliability(believed)
+    return lines + [f"| {b.low:g} to {b.high:g} | {b.stated:.3f} | {b.right} |" for b in bins]
+
+
+def closed_lines(found: Sequence[Score]) -> list[str]:
+    """How much of the gap on held-out load cases the named effects close, beside the best other effect."""
+    pairs = [(s.closed, s.decoy) for s in found if s.exact and math.isfinite(s.closed)]
+    if not pairs:
+        return ["- No held-out load cases were reported."]
+    closed = np.array([p[0] for p in pairs])
+    decoy = np.array([p[1] for p in pairs])
+    return [
+        f"- Gap closed on held-out load cases, rightly named: median {np.median(closed):.2f}, "
+        f"at least 0.90 in {share(list(closed >= 0.9))} (target: 0.90); best other effect on the data that "
+        f"it was fitted to: median {np.nanmedian(decoy) if np.isfinite(decoy).any() else math.nan:.2f}"
+    ]

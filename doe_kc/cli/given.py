@@ -1,0 +1,59 @@
+"""What every command that works on a whole study is told, declared once."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Concatenate, ParamSpec
+
+from doe_kc.cli.options import (
+    JsonOption,
+    MeasurementOption,
+    OutOption,
+    SeedOption,
+    StudyArgument,
+    WorkersOption,
+)
+from doe_kc.study import Study, read_study
+
+P = ParamSpec("P")
+
+
+@dataclass(frozen=True)
+class Given:
+    """measurement, out, seed: in place of the study's own. json: file for the figures."""
+
+    study: StudyArgument
+    measurement: MeasurementOption = None
+    out: OutOption = None
+    json: JsonOption = None
+    seed: SeedOption = None
+    workers: WorkersOption = None
+
+    def read(self) -> Study:
+        """The study; InputError as `read_study`."""
+        return read_study(self.study, measurement=self.measurement, out=self.out, seed=self.seed)
+
+
+def takes_study(command: Callable[Concatenate[Given, P], None]) -> Callable[..., None]:
+    """The command with the fields of `Given`, its first argument, as arguments and options beside its own."""
+    first, *common = _parameters(Given)
+    own = _parameters(command)[1:]
+
+    @functools.wraps(command)
+    def told(**options: Any) -> None:
+        given = Given(**{p.name: options.pop(p.name) for p in (first, *common)})
+        command(given, **options)  # type: ignore[call-arg]
+
+    # Typer reads signature and annotations, of what it is given as of what that wraps.
+    shown = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (first, *own, *common)]
+    told.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
+    told.__annotations__ = {p.name: p.annotation for p in shown}
+    del told.__wrapped__
+    return told
+
+
+def _parameters(of: Callable[..., Any]) -> list[inspect.Parameter]:
+    return list(inspect.signature(of, eval_str=True).parameters.values())

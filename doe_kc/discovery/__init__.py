@@ -1,0 +1,1 @@
+"""Finds the physical effect that a model lacks: where it disagrees, what explains it, how sure that is."""

@@ -1,0 +1,150 @@
+"""Where the work of a discovery is done: in worker processes, each result remembered in the ledger."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, as_completed
+from typing import Any, TypeVar
+
+import numpy as np
+
+from doe_kc.campaign.in_process import InProcess
+from doe_kc.discovery.fit import Fit, fit, restored
+from doe_kc.discovery.held_out import HeldOut, held_out
+from doe_kc.discovery.ledger import Arrays, Ledger, fingerprint, key_of
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import projection
+from doe_kc.discovery.screen import Screened, screen
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.solver.result import NotConverged
+from doe_kc.typing import FloatArray
+
+Watch = Callable[[str, int], None]
+"""Told what has been done, and how many steps of the work that were."""
+T = TypeVar("T")
+CHUNKS = 4
+"""Parts that a screening is cut into for each worker: enough for a bar that moves."""
+
+
+class Bench:
+    """executor: where tasks run, default this process. ledger: what is known already."""
+
+    def __init__(
+        self,
+        executor: Executor | None = None,
+        ledger: Ledger | None = None,
+        watch: Watch = lambda *_: None,
+        *,
+        workers: int = 1,
+    ) -> None:
+        self._executor = executor or InProcess()
+        self._ledger = ledger or Ledger(None)
+        self.watch = watch
+        self._workers = workers
+
+    def screened(self, found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+        """Every hypothesis added to a fitted model, in their order."""
+        base = fingerprint(found.model)
+        keys = [key_of("screen", base, found.z, repr(h)) for h in hypotheses]
+        out: dict[int, Screened] = {}
+        missing: list[int] = []
+        for i, (key, h) in enumerate(zip(keys, hypotheses, strict=True)):
+            known = self._ledger.get(key)
+            if known is None:
+                missing.append(i)
+            else:
+                out[i] = _unpacked(h, known)
+        parts = max(1, min(len(missing), CHUNKS * self._workers))
+        groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
+        tasks = [(found, [hypotheses[i] for i in part]) for part in groups]
+        for at, results in self._run(_screen_many, tasks):
+            part = groups[at]
+            for i, result in zip(part, results, strict=True):
+                self._ledger.put(keys[i], _packed(result))
+                out[i] = result
+            self.watch("screening effects", len(part))
+        return [out[i] for i in range(len(hypotheses))]
+
+    def fitted(self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str) -> list[Fit | None]:
+        """Fits from several starts; None where the start has no equilibrium."""
+        keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
+        out: dict[int, Fit | None] = {}
+        tasks = [(m, z, self._ledger.get(key)) for (m, z), key in zip(starts, keys, strict=True)]
+        for i, result in self._run(_fit_one, tasks):
+            out[i] = result
+            self._ledger.put(keys[i], _packed_fit(result))
+            self.watch(what, 1)
+        return [out[i] for i in range(len(starts))]
+
+    def held_out(self, tuned: Fit, final: Fit) -> tuple[HeldOut, ...]:
+        """Every load case of the records, predicted from the others."""
+        cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
+        found: dict[int, HeldOut] = {}
+        for i, result in self._run(held_out, [(tuned, final, case) for case in cases]):
+            found[i] = result
+            self.watch("load cases held out", 1)
+        return tuple(found[i] for i in range(len(cases)))
+
+    def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
+        """(place, result) of every task as it is done; in this process one is done before the next begins."""
+        if isinstance(self._executor, InProcess):
+            for i, given in enumerate(arguments):
+                yield i, task(*given)
+            return
+        futures = {self._executor.submit(task, *given): i for i, given in enumerate(arguments)}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
+
+def _screen_many(found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+    project = projection(found)
+    return [screen(found, project, h) for h in hypotheses]
+
+
+def _fit_one(model: EffectModel, start: FloatArray, known: Arrays | None) -> Fit | None:
+    """The fit, from what the ledger says of it where it says anything."""
+    if known is not None:
+        if not known["z"].size:
+            return None
+        return restored(model, known["z"], int(known["evaluations"]), bool(known["converged"]))
+    try:
+        return fit(model, start)
+    except NotConverged:
+        return None
+
+
+def _packed_fit(found: Fit | None) -> Arrays:
+    if found is None:
+        return {"z": np.zeros(0)}
+    return {
+        "z": found.z,
+        "evaluations": np.array(float(found.evaluations)),
+        "converged": np.array(float(found.converged)),
+    }
+
+
+def _packed(found: Screened) -> Arrays:
+    return {
+        "amplitudes": found.amplitudes,
+        "sd": found.sd,
+        "numbers": np.array([found.gain, found.score, found.detectability, found.absorbed]),
+        "columns": found.columns,
+        "change": found.change,
+        "failed": np.frombuffer(found.failed.encode(), dtype=np.uint8).astype(float),
+    }
+
+
+def _unpacked(hypothesis: Hypothesis, known: Arrays) -> Screened:
+    gain, score, detectability, absorbed = (float(v) for v in known["numbers"])
+    return Screened(
+        hypothesis,
+        known["amplitudes"],
+        known["sd"],
+        gain,
+        score,
+        known["columns"],
+        known["change"],
+        detectability,
+        absorbed,
+        bytes(known["failed"].astype(np.uint8)).decode(),
+    )

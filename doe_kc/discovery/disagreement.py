@@ -1,0 +1,93 @@
+"""Where model and records disagree: raw, and beyond what any re-tuning could absorb."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from doe_kc.discovery.contrasts import Contrast, Contrasts
+from doe_kc.discovery.projection import Projection
+from doe_kc.typing import FloatArray
+
+LEVEL = 0.05
+"""Chance that noise alone passes the threshold somewhere on the map."""
+DRAWS = 1000
+DOUBT = 0.2
+"""Share added to every variance: what a few repeats leave open of the noise's own size."""
+SEEN = 1e-4
+"""Share of a contrast's square below which re-tuning is said to absorb it wholly."""
+
+
+@dataclass(frozen=True)
+class Map:
+    """z: (k,) statistics, N(0, 1) each without disagreement, nan where re-tuning absorbs everything.
+
+    root: (k', k') of the correlation of those that are not nan.
+    """
+
+    names: tuple[Contrast, ...]
+    z: FloatArray
+    root: FloatArray
+
+    @cached_property
+    def _by_chance(self) -> FloatArray:
+        """(draws,) largest |z| that noise alone gives."""
+        rng = np.random.default_rng(11)
+        drawn = rng.standard_normal((DRAWS, self.root.shape[1])) @ self.root.T
+        return np.asarray(np.abs(drawn).max(axis=1))
+
+    @property
+    def threshold(self) -> float:
+        """Largest |z| that noise alone passes in 5 % of maps."""
+        return float(np.quantile(self._by_chance, 1.0 - LEVEL))
+
+    @property
+    def chance(self) -> float:
+        """How often noise alone gives a largest |z| as large as this map's."""
+        return float(np.mean(self._by_chance >= self.largest))
+
+    @property
+    def largest(self) -> float:
+        """Largest |z|."""
+        return float(np.nanmax(np.abs(self.z)))
+
+    @property
+    def mean_square(self) -> float:
+        """Mean of z^2; 1 is noise."""
+        return float(np.nanmean(self.z**2))
+
+    @property
+    def agrees(self) -> bool:
+        """Whether noise alone explains the whole map."""
+        return self.largest <= self.threshold
+
+    def worst(self, count: int) -> list[tuple[Contrast, float]]:
+        """The largest disagreements beyond the threshold, largest first."""
+        order = np.argsort(-np.nan_to_num(np.abs(self.z)))[:count]
+        return [(self.names[i], float(self.z[i])) for i in order if abs(self.z[i]) > self.threshold]
+
+
+def raw_map(found: Contrasts, residual: FloatArray) -> Map:
+    """Of a residual (M,) as it is, in units of the records' noise."""
+    return _map(found, found.rows, found.rows.T @ residual)
+
+
+def remaining_map(found: Contrasts, residual: FloatArray, project: Projection) -> Map:
+    """Of a fitted residual (M,): what re-tuning cannot absorb."""
+    rows = project(found.rows)
+    return _map(found, rows, rows.T @ project.residual(residual))
+
+
+def _map(found: Contrasts, rows: FloatArray, products: FloatArray) -> Map:
+    gram = rows.T @ rows
+    gram = gram + DOUBT * np.diag(np.diag(gram))
+    length = np.sqrt(np.diag(gram))
+    seen = length**2 > SEEN
+    z = np.where(seen, products / np.where(seen, length, 1.0), np.nan)
+    scale = length[seen]
+    correlation = gram[np.ix_(seen, seen)] / np.outer(scale, scale)
+    values, vectors = np.linalg.eigh(correlation)
+    root = vectors * np.sqrt(np.clip(values, 0.0, None))
+    return Map(found.names, z, root)

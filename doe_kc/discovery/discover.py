@@ -1,0 +1,91 @@
+"""The whole discovery on one car: from an axle and its records to a verdict."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+import numpy as np
+
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.contrasts import contrasts
+from doe_kc.discovery.disagreement import raw_map, remaining_map
+from doe_kc.discovery.findings import findings
+from doe_kc.discovery.gaps import gaps, returned
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import Projection, projection
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.search import Search, Trial, accepted_steps, search, threshold
+from doe_kc.discovery.sentences import next_tests, sentences
+from doe_kc.discovery.standing import Standing, Status, standings
+from doe_kc.discovery.verdict import classes, verdict
+from doe_kc.effects.hypothesis import Hypothesis
+
+WORST = 8
+"""Unexplained disagreements that are listed."""
+
+
+def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | None = None) -> Discovery:
+    """model: the axle without any effect, its tunable parameters and its records."""
+    started = time.perf_counter()
+    bench = bench or Bench()
+    found = search(model, library, bench)
+    nominal = model.residual(model.centre)
+    project = projection(found.final)
+    remaining = remaining_map(contrasts(found.final.model.likelihood), found.final.residual, project)
+    shapes = contrasts(model.likelihood)
+    every = findings(found, remaining.chance)
+    relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
+    predicted = bench.held_out(found.tuned, found.plain) if relevant else ()
+    judged = verdict(relevant, remaining, predicted, found.tuned, found.plain)
+    decoy = best_decoy(found, relevant)
+    whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
+    stands = _standings(found, project, every, len(library))
+    ambiguous = classes(relevant) if judged.kind == "class" else ()
+    return Discovery(
+        verdict=judged.kind,
+        sentences=sentences(judged, relevant, whole, remaining),
+        findings=relevant,
+        traces=tuple(f for f in every if not f.relevant),
+        classes=ambiguous,
+        standings=stands,
+        unexplained=tuple(remaining.worst(WORST)) if judged.kind == "unexplained" else (),
+        search=found,
+        decoy=decoy,
+        nominal=nominal,
+        raw=raw_map(shapes, nominal),
+        tuned=remaining_map(shapes, found.tuned.residual, projection(found.tuned)),
+        final=remaining,
+        gap=whole,
+        gaps=each,
+        held_out=predicted,
+        returned=returned(found.tuned, found.plain) if relevant else (),
+        next_tests=next_tests(judged, relevant, ambiguous, stands),
+        seconds=time.perf_counter() - started,
+    )
+
+
+def best_decoy(found: Search, relevant: Sequence[Finding]) -> Trial | None:
+    """The best refit of another effect in place of the one that was accepted for the largest finding."""
+    for finding in relevant[:1]:
+        for step in accepted_steps(found):
+            if step.trials[0].hypothesis == finding.hypothesis:
+                others = [t for t in step.trials if t.hypothesis.effect != finding.hypothesis.effect]
+                return others[0] if others else None
+    return None
+
+
+def _standings(
+    found: Search, project: Projection, every: Sequence[Finding], count: int
+) -> tuple[Standing, ...]:
+    critical = float(np.sqrt(2.0 * threshold(count)))
+    members: list[tuple[Screened, Status]] = []
+    for f in every:
+        for step in accepted_steps(found):
+            if step.trials[0].hypothesis == f.hypothesis:
+                own = next(s for s in step.screened if s.hypothesis == f.hypothesis)
+                members.append((own, "found" if f.relevant else "trace"))
+    names = {s.hypothesis.name for s, _ in members}
+    others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
+    return standings(found.final, project, others, members, critical)

@@ -1,0 +1,116 @@
+"""From the search's steps to findings: sizes with their uncertainty, probabilities, rivals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.special import logsumexp
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.projection import projection
+from doe_kc.discovery.result import Estimate, Finding, Rival
+from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.search import Search, Step, Trial, accepted_steps
+from doe_kc.discovery.standing import wrong_name_chance
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.typing import FloatArray
+
+RELEVANT = 0.1
+"""Amplitude, in typical sizes, below which an effect is a trace: seen, but not worth a name."""
+UNLISTED = 0.02
+"""Prior odds that an effect outside the library, which looks like the one named, is at work instead."""
+MENTIONED = 0.01
+"""Probability from which a rival is listed."""
+
+
+def findings(found: Search, unexplained: float) -> tuple[Finding, ...]:
+    """Every member of the final model. unexplained: chance that noise alone leaves what remains."""
+    return tuple(_finding(found, h, place, unexplained) for h, place in found.final.model.places())
+
+
+def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: float) -> Finding:
+    final = found.final
+    step = accepted_at(found, hypothesis)
+    shares = probabilities(step.trials, step.temper, unexplained)
+    amplitudes = final.z[place]
+    sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, amplitudes, strict=True)]
+    largest = max((abs(a) for s, a in sizes if s.growth != "shape"), default=1.0)
+    sd = np.sqrt(np.diag(final.covariance))[place]
+    own = next(s for s in step.screened if s.hypothesis == hypothesis)
+    detectability = _detectability(final, place) if sizes else own.detectability
+    rivals = tuple(
+        Rival(effect, p)
+        for effect, p in sorted(shares.items(), key=lambda item: -item[1])
+        if effect != hypothesis.effect and p >= MENTIONED
+    )
+    return Finding(
+        hypothesis=hypothesis,
+        estimates=tuple(estimate(s, a, float(e)) for (s, a), e in zip(sizes, sd, strict=True)),
+        probability=shares.get(hypothesis.effect, 0.0),
+        rivals=rivals,
+        gain=next(t.gain for t in step.trials if t.hypothesis == hypothesis),
+        detectability=detectability,
+        wrong_name=_wrong_name(step, own, detectability),
+        largest=largest,
+        relevant=largest >= RELEVANT,
+    )
+
+
+def accepted_at(found: Search, hypothesis: Hypothesis) -> Step:
+    """The step that brought a member in."""
+    return next(s for s in accepted_steps(found) if s.trials[0].hypothesis == hypothesis)
+
+
+def probabilities(trials: Sequence[Trial], temper: float, unexplained: float) -> dict[str, float]:
+    """Effect id -> probability among the refitted ones, none at all, and one outside the library.
+
+    Prior odds are equal for all effects, shared between the places of each. What remains unexplained counts
+    against all: a Bayes factor of at most -e p ln p for the model (T. Sellke, M. J. Bayarri, J. O. Berger,
+    The American Statistician 55, 2001).
+    """
+    logs = {t.hypothesis.name: t.gain / temper for t in trials}
+    top = max(logs.values())
+    p = min(max(unexplained, 1e-4), 1.0)
+    support = -np.e * p * np.log(p) if p < np.exp(-1.0) else 1.0
+    unlisted = top + float(np.log(UNLISTED / support))
+    total = float(logsumexp([*logs.values(), 0.0, unlisted]))
+    out: dict[str, float] = {}
+    for t in trials:
+        share = float(np.exp(logs[t.hypothesis.name] - total))
+        out[t.hypothesis.effect] = out.get(t.hypothesis.effect, 0.0) + share
+    return out
+
+
+def estimate(size: Size, amplitude: float, sd: float) -> Estimate:
+    """A size at its value, with the standard deviation of the value to first order."""
+    step = min(0.01, 0.1 * sd)
+    floor = 0.0 if size.signed or size.growth == "shape" else step
+    at = max(amplitude, floor)
+    slope = (size.value(at + step) - size.value(at - step)) / (2.0 * step) if step > 0.0 else 0.0
+    return Estimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
+
+
+def _detectability(final: Fit, place: slice) -> float:
+    """Standard deviations that the effect makes at its size, all else re-tuned."""
+    covariance = final.covariance[place, place]
+    information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
+    amplitudes = final.z[place]
+    return float(np.sqrt(max(0.0, float(amplitudes @ information @ amplitudes))))
+
+
+def _wrong_name(step: Step, own: Screened, detectability: float) -> float:
+    """Of the closest rival, from the remaining changes where the search stood."""
+    project = projection(step.before)
+    direction = _unit(project(own.change))
+    chances = [
+        wrong_name_chance(detectability, float(direction @ _unit(project(s.change))))
+        for s in step.screened
+        if s.hypothesis.effect != own.hypothesis.effect and not s.failed
+    ]
+    return max(chances, default=0.0)
+
+
+def _unit(seen: FloatArray) -> FloatArray:
+    length = float(np.linalg.norm(seen))
+    return np.asarray(seen / length if length > 1e-9 else 0.0 * seen)

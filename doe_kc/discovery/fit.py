@@ -1,0 +1,171 @@
+"""Joint fit of parameters and effects: the most probable axle, and the evidence for it.
+
+Minimizes |r(z)|^2 + |(z - z0) / P|^2 between bounds by Gauss-Newton steps in a trust region. Evidence by
+Laplace's approximation, ln Z = -1/2 min - 1/2 ln det(1 + P J'J P) + ln(share of each posterior inside its
+half-line over that of its prior), relative to constants that all models of the same data share.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import log_ndtr
+
+from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.discovery.model import EffectModel
+from doe_kc.solver.result import NotConverged
+from doe_kc.typing import FloatArray
+
+CONVERGED = 0.02
+"""Predicted decrease of the sum of squares below which a fit stands."""
+POOR, GOOD = 0.25, 0.75
+STEPS = 14
+SMALLEST = 1e-4
+LARGEST_RADIUS = 2.0
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model at its most probable point z (d + m,).
+
+    residual: (M,). jacobian: (M, d + m). cost: sum of squares with the prior's. covariance: (d + m, d + m).
+    evaluations: solved suites. converged: False when the steps ran out.
+    """
+
+    model: EffectModel
+    z: FloatArray
+    residual: FloatArray
+    jacobian: FloatArray
+    cost: float
+    evaluations: int
+    converged: bool
+
+    @property
+    def hessian(self) -> FloatArray:
+        """(d + m, d + m) J'J + P^-2 over the data that the fit looks at."""
+        seen = self.jacobian[self.model.used]
+        return np.asarray(seen.T @ seen + np.diag(self.model.prior_sd**-2.0))
+
+    @property
+    def gradient(self) -> FloatArray:
+        """(d + m,) half the slope of the cost."""
+        used, model = self.model.used, self.model
+        pulled = model.prior_sd**-2.0 * (self.z - model.centre)
+        return np.asarray(self.jacobian[used].T @ self.residual[used] + pulled)
+
+    @property
+    def covariance(self) -> FloatArray:
+        """(d + m, d + m) of the Gaussian approximation."""
+        return np.asarray(cho_solve(cho_factor(self.hessian), np.eye(self.z.size)))
+
+    @property
+    def misfit(self) -> float:
+        """Sum of squared residuals."""
+        return float(self.residual @ self.residual)
+
+    @property
+    def rms(self) -> float:
+        """Whitened RMS of the residuals; 1 is noise."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+    @property
+    def amplitudes(self) -> FloatArray:
+        """(m,) sizes of the effects, in typical sizes."""
+        return self.z[self.model.dimension :]
+
+    @property
+    def evidence(self) -> float:
+        """ln Z, see the module."""
+        total = -0.5 * self.cost - 0.5 * float(np.linalg.slogdet(self.hessian)[1])
+        total -= float(np.sum(np.log(self.model.prior_sd)))
+        sd = np.sqrt(np.diag(self.covariance))
+        for i, size in enumerate(self.model.sizes, start=self.model.dimension):
+            if not (size.signed or size.growth == "shape"):
+                total += float(log_ndtr(self.z[i] / sd[i])) + float(np.log(2.0))
+        return total
+
+
+def fit(model: EffectModel, start: FloatArray, *, steps: int = STEPS, known: Fit | None = None) -> Fit:
+    """The most probable point reached from `start` (d + m,); known: expansion of the same model there.
+
+    NotConverged when the start has no solution.
+    """
+    z = np.clip(start, model.lower, model.upper)
+    if known is not None:
+        current = replace(known, model=model, cost=cost_of(model, z, known.residual))
+    else:
+        current = _expanded(model, z, model.residual(z), 1)
+    radius = 1.0
+    for _ in range(steps):
+        gradient = current.gradient
+        low = np.maximum(model.lower - current.z, -radius)
+        high = np.minimum(model.upper - current.z, radius)
+        hessian = current.hessian
+        step = bounded_step(hessian, gradient, low, high)
+        predicted = float(-(2.0 * gradient @ step + step @ hessian @ step))
+        if predicted < CONVERGED:
+            return replace(current, converged=True)
+        trial, residual = current.z + step, None
+        try:
+            residual = model.residual(trial)
+            cost = cost_of(model, trial, residual)
+        except NotConverged:
+            cost = np.inf
+        current = replace(current, evaluations=current.evaluations + 1)
+        ratio = (current.cost - cost) / predicted
+        if ratio < POOR:
+            radius = min(radius, float(np.abs(step).max())) / 4.0
+        elif ratio > GOOD:
+            radius = min(LARGEST_RADIUS, 2.0 * radius)
+        if residual is not None and cost < current.cost:
+            gained = current.cost - cost
+            current = _expanded(model, trial, residual, current.evaluations)
+            if gained < CONVERGED:
+                return replace(current, converged=True)
+        if radius < SMALLEST:
+            return current
+    return current
+
+
+def restored(model: EffectModel, z: FloatArray, evaluations: int, converged: bool) -> Fit:
+    """A fit whose point is known, its derivatives computed again."""
+    found = _expanded(model, z, model.residual(z), evaluations)
+    return replace(found, evaluations=evaluations, converged=converged)
+
+
+def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
+    """Sum of squares of the data that fits look at, with the prior's."""
+    seen = residual[model.used]
+    return float(seen @ seen + np.sum(((z - model.centre) / model.prior_sd) ** 2))
+
+
+def _expanded(model: EffectModel, z: FloatArray, residual: FloatArray, evaluations: int) -> Fit:
+    growth = model.growth(z, residual)
+    jacobian = np.hstack([model.tuning(z), growth])
+    cost = cost_of(model, z, residual)
+    return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
+
+
+def followed(found: Fit, model: EffectModel, *, steps: int = 6) -> Fit:
+    """The fit of the same model to other data, by steps along the derivatives at `found`.
+
+    For small changes, such as a load case left out: no new derivatives are taken.
+    """
+    current = replace(found, model=model, cost=cost_of(model, found.z, found.residual))
+    for _ in range(steps):
+        low, high = model.lower - current.z, model.upper - current.z
+        gradient, hessian = current.gradient, current.hessian
+        step = bounded_step(hessian, gradient, low, high)
+        if -(2.0 * gradient @ step + step @ hessian @ step) < CONVERGED:
+            break
+        try:
+            residual = model.residual(current.z + step)
+        except NotConverged:
+            break
+        cost = cost_of(model, current.z + step, residual)
+        if cost >= current.cost:
+            break
+        current = replace(current, z=current.z + step, residual=residual, cost=cost)
+    return current

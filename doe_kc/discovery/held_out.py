@@ -1,0 +1,56 @@
+"""Load cases held out: predicted by a model that was fitted to all the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+
+from doe_kc.discovery.fit import Fit, fit, followed
+from doe_kc.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """rms: of the held-out records' deviations in standard deviations of the prediction, those of its
+    parameters among them; 1 is as good as predicted. score: ln of the predictive density, relative."""
+
+    rms: float
+    score: float
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """One load case, predicted by the re-tuned model without the effects and by the one with them."""
+
+    load_case: str
+    tuned: Prediction
+    with_effect: Prediction
+
+    @property
+    def gain(self) -> float:
+        """ln predictive density won by the effects."""
+        return self.with_effect.score - self.tuned.score
+
+
+def held_out(tuned: Fit, final: Fit, case: str) -> HeldOut:
+    """One load case of the records, predicted from all the others."""
+    without = fit(replace(tuned.model, left_out=case), tuned.z, steps=REFITS, known=tuned)
+    with_effect = followed(final, replace(final.model, left_out=case))
+    return HeldOut(case, _prediction(without), _prediction(with_effect))
+
+
+REFITS = 2
+"""Steps of the re-tuned model without the effect: it follows its data further, as it fits them badly."""
+
+
+def _prediction(found: Fit) -> Prediction:
+    """Of the rows that the fit did not look at."""
+    hidden = ~found.model.used
+    residual, rows = found.residual[hidden], found.jacobian[hidden]
+    covariance = np.eye(residual.size) + rows @ cho_solve(cho_factor(found.hessian), rows.T)
+    root = cholesky(covariance, lower=True)
+    reduced: FloatArray = solve_triangular(root, residual, lower=True)
+    score = -0.5 * float(reduced @ reduced) - float(np.sum(np.log(np.diag(root))))
+    return Prediction(float(np.sqrt(np.mean(reduced**2))), score)

@@ -1,0 +1,162 @@
+"""An axle with effects of unknown size: its residuals against the records, and their derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import with_values
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.linearization import linearize
+from doe_kc.curves import CurveSet
+from doe_kc.discovery.calibration import input_gains
+from doe_kc.effects import apply_effect
+from doe_kc.effects._base import observed
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
+from doe_kc.typing import FloatArray
+from doe_kc.variables import Space
+
+LARGEST = 6.0
+"""Amplitude, in typical sizes, that a search does not go beyond."""
+DIFFERENCE = 1e-3
+"""Step of amplitudes for their derivatives, in typical sizes."""
+NO_CHARACTERISTICS = np.zeros(0)
+
+
+@dataclass(frozen=True)
+class EffectModel:
+    """axle: nominal, without the hypotheses. space: tunable parameters. members: effects in it.
+
+    left_out: load case whose records are held back from fits, None for none. sides: (M, k) change of the
+    residual by each difference between the sides, in its standard deviation.
+
+    A point is z = (u, b, a), (d + m,): places of the parameters, linear nuisances (calibrations of the
+    rig's inputs, differences between the sides), d together, then m amplitudes of all members' sizes. The
+    priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot be
+    negative.
+    """
+
+    axle: Axle
+    space: Space
+    likelihood: Likelihood
+    members: tuple[Hypothesis, ...] = ()
+    left_out: str | None = None
+    sides: FloatArray | None = None
+
+    @cached_property
+    def used(self) -> NDArray[np.bool_]:
+        """(M,) rows of the data that fits look at: all but those of the load case left out."""
+        out = np.ones(self.likelihood.size, dtype=bool)
+        for curve, place in self.likelihood.slices():
+            out[place] = curve.load_case != self.left_out
+        return out
+
+    @cached_property
+    def sizes(self) -> tuple[Size, ...]:
+        """(m,) sizes of all members, in order."""
+        return tuple(s for h in self.members for s in h.sizes)
+
+    @cached_property
+    def nuisances(self) -> FloatArray:
+        """(M, k) derivative of the residual to the nuisances, each in its standard deviation."""
+        rig = input_gains(self.likelihood)
+        return rig if self.sides is None else np.hstack([rig, self.sides])
+
+    @property
+    def parameters(self) -> int:
+        """Number of tunable parameters of the axle."""
+        return self.space.dimension
+
+    @property
+    def dimension(self) -> int:
+        """d, parameters and nuisances: all that tuning may move."""
+        return self.space.dimension + self.nuisances.shape[1]
+
+    @cached_property
+    def prior_sd(self) -> FloatArray:
+        """(d + m,) standard deviations before the measurement."""
+        others = self.dimension - self.parameters + len(self.sizes)
+        return np.concatenate([self.space.prior_sd, np.ones(others)])
+
+    @cached_property
+    def centre(self) -> FloatArray:
+        """(d + m,) the axle as it is in the file, the rig as it says."""
+        others = self.dimension - self.parameters + len(self.sizes)
+        return np.concatenate([self.space.start, np.zeros(others)])
+
+    @cached_property
+    def lower(self) -> FloatArray:
+        """(d + m,) lower bounds."""
+        free = [-LARGEST if s.signed or s.growth == "shape" else 0.0 for s in self.sizes]
+        rig = np.full(self.dimension - self.parameters, -LARGEST)
+        return np.concatenate([np.zeros(self.parameters), rig, free])
+
+    @cached_property
+    def upper(self) -> FloatArray:
+        """(d + m,) upper bounds."""
+        others = self.dimension - self.parameters + len(self.sizes)
+        return np.concatenate([np.ones(self.parameters), np.full(others, LARGEST)])
+
+    def extended(self, hypothesis: Hypothesis) -> EffectModel:
+        """The model with one more effect."""
+        return replace(self, members=(*self.members, hypothesis))
+
+    def without(self, hypothesis: Hypothesis) -> EffectModel:
+        """The model with one effect less."""
+        return replace(self, members=tuple(h for h in self.members if h != hypothesis))
+
+    def places(self) -> Iterator[tuple[Hypothesis, slice]]:
+        """Each member with the places of its amplitudes in z."""
+        at = self.dimension
+        for h in self.members:
+            yield h, slice(at, at + len(h.sizes))
+            at += len(h.sizes)
+
+    def with_effects(self, z: FloatArray) -> Axle:
+        """The nominal axle with the members at their amplitudes."""
+        axle = self.axle
+        for h in self.members:
+            axle = apply_effect(axle, h.effect, h.options(self.sizes_at(z, h)), source=h.name)
+        return axle
+
+    def sizes_at(self, z: FloatArray, hypothesis: Hypothesis) -> dict[str, float]:
+        """Amplitudes of a member by `Size.name`."""
+        place = next(p for h, p in self.places() if h == hypothesis)
+        return {s.name: float(a) for s, a in zip(hypothesis.sizes, z[place], strict=True)}
+
+    def axle_at(self, z: FloatArray) -> Axle:
+        """The axle at a point."""
+        return with_values(self.with_effects(z), self.space.values(z[: self.parameters]))
+
+    def curves(self, z: FloatArray) -> CurveSet:
+        """What the rig would read; NotConverged when the axle has no equilibrium."""
+        axle = self.axle_at(z)
+        return observed(axle, curve_set(solve(axle)))
+
+    def residual(self, z: FloatArray) -> FloatArray:
+        """(M,) in standard deviations of the data."""
+        plain = self.likelihood.residual(self.curves(z), NO_CHARACTERISTICS)
+        return np.asarray(plain + self.nuisances @ z[self.parameters : self.dimension])
+
+    def tuning(self, z: FloatArray) -> FloatArray:
+        """(M, d) derivative of the residual to parameters (exact) and nuisances."""
+        expansion = linearize(self.with_effects(z), self.space, z[: self.parameters])
+        found = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
+        return np.hstack([found, self.nuisances])
+
+    def growth(self, z: FloatArray, residual: FloatArray, *, which: slice | None = None) -> FloatArray:
+        """(M, m) derivative to the amplitudes by forward differences. residual: at z."""
+        columns = []
+        for i in range(*(which or slice(self.dimension, z.size)).indices(z.size)):
+            step = DIFFERENCE if z[i] + DIFFERENCE <= self.upper[i] else -DIFFERENCE
+            moved = z.copy()
+            moved[i] += step
+            columns.append((self.residual(moved) - residual) / step)
+        return np.array(columns).T.reshape(residual.size, -1)

@@ -1,0 +1,133 @@
+"""What a discovery found: the verdict and all that stands behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from doe_kc.discovery.contrasts import Contrast
+from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.held_out import HeldOut
+from doe_kc.discovery.search import Search, Trial
+from doe_kc.discovery.standing import Standing
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.typing import FloatArray
+
+VerdictKind = Literal["named", "class", "none", "unexplained"]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number of an effect, as in its table. index: place in a list option, None for a number."""
+
+    key: str
+    index: int | None
+    value: float
+    sd: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class Rival:
+    """Another effect that could be the one named, with its probability."""
+
+    effect: str
+    probability: float
+
+
+@dataclass(frozen=True)
+class Finding:
+    """An effect that the data ask for.
+
+    probability: that it is this effect, in whatever place. rivals: most probable first. gain: ln of the
+    evidence over the model without it. detectability: standard deviations that it makes after re-tuning.
+    wrong_name: chance that noise names its closest rival instead. largest: its largest amplitude, in
+    typical sizes. relevant: whether that is worth naming.
+    """
+
+    hypothesis: Hypothesis
+    estimates: tuple[Estimate, ...]
+    probability: float
+    rivals: tuple[Rival, ...]
+    gain: float
+    detectability: float
+    wrong_name: float
+    largest: float
+    relevant: bool
+
+
+@dataclass(frozen=True)
+class Gap:
+    """Whitened RMS of all records' deviations; 1 is noise. best_decoy: of the best other effect, nan
+    without one."""
+
+    nominal: float
+    tuned: float
+    with_effect: float
+    noise_floor: float
+    best_decoy: float
+
+
+@dataclass(frozen=True)
+class CurveGap:
+    """The gap of one response in one load case, both branches and wheels."""
+
+    load_case: str
+    response: str
+    gap: Gap
+
+
+@dataclass(frozen=True)
+class Returned:
+    """A parameter's distance from nominal in standard deviations of its prior, before and after."""
+
+    path: str
+    nominal: float
+    tuned: float
+    with_effect: float
+    unit: str
+    tuned_distance: float
+    with_effect_distance: float
+
+
+@dataclass(frozen=True)
+class Discovery:
+    """verdict: named, class (one of several), none (none needed) or unexplained.
+
+    findings: effects worth naming, largest first; leads where the verdict is unexplained. traces: effects
+    that the data show but too small to matter. sentences: the verdict in words. raw: map of the nominal
+    axle; tuned: after re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
+    """
+
+    verdict: VerdictKind
+    sentences: tuple[str, ...]
+    findings: tuple[Finding, ...]
+    traces: tuple[Finding, ...]
+    classes: tuple[tuple[str, ...], ...]
+    standings: tuple[Standing, ...]
+    unexplained: tuple[tuple[Contrast, float], ...]
+    search: Search
+    decoy: Trial | None
+    nominal: FloatArray
+    raw: Map
+    tuned: Map
+    final: Map
+    gap: Gap
+    gaps: tuple[CurveGap, ...]
+    held_out: tuple[HeldOut, ...]
+    returned: tuple[Returned, ...]
+    next_tests: tuple[str, ...]
+    seconds: float
+    notes: tuple[str, ...] = ()
+
+    @property
+    def fitted(self) -> Fit:
+        """The most probable axle, with the effects."""
+        return self.search.final
+
+    @property
+    def held_out_by_case(self) -> Mapping[str, HeldOut]:
+        """Load case -> its prediction."""
+        return {h.load_case: h for h in self.held_out}

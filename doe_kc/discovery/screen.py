@@ -1,0 +1,174 @@
+"""Screening: what each hypothesis would gain, re-tuning projected out, without refitting the parameters.
+
+The parameters follow to first order (their Jacobian at the tuned axle), the effect is solved for at its own
+size: with Q an orthonormal basis of the tuning, residual and columns are reduced to what it cannot absorb,
+and the amplitudes follow by Gauss-Newton steps on true solutions. That is the score test, followed beyond
+its linear range, where effects that are large or have a dead band would mislead it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import Projection
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.solver.result import NotConverged
+from doe_kc.typing import FloatArray
+
+PROBE = 0.3
+"""First size at which an effect is solved for, in typical sizes."""
+STEPS = 4
+ENOUGH = 0.1
+"""Decrease of the sum of squares below which an amplitude stands."""
+SHAPES = (0.0, -2.0, 2.0)
+"""Starts of a shape: it does not exist where the effect is absent (Davies 1977), so several are tried."""
+
+
+@dataclass(frozen=True)
+class Screened:
+    """One hypothesis added to a fitted model.
+
+    amplitudes: (m,) most probable sizes. sd: (m,) of them, after re-tuning and the prior. gain: ln of the
+    evidence over the model without it. score: standard deviations by which the fit improves. change: (M,)
+    whitened change of the data at typical size. detectability: standard deviations of that change after
+    re-tuning; absorbed: share of its square that re-tuning hides.
+    """
+
+    hypothesis: Hypothesis
+    amplitudes: FloatArray
+    sd: FloatArray
+    gain: float
+    score: float
+    columns: FloatArray
+    change: FloatArray
+    detectability: float
+    absorbed: float
+    failed: str = ""
+
+
+def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
+    """The hypothesis on its own; one without equilibria comes back as failed."""
+    model = found.model.extended(hypothesis)
+    try:
+        results = [_followed(model, found, project, s) for s in _starts(hypothesis)]
+        change = _typical(model, found, hypothesis)
+    except NotConverged as error:
+        empty = np.zeros(len(hypothesis.sizes))
+        nothing = np.zeros((found.residual.size, 1 + empty.size))
+        return Screened(
+            hypothesis,
+            empty,
+            empty + np.inf,
+            -np.inf,
+            0.0,
+            nothing[:, 1:],
+            nothing[:, 0],
+            0.0,
+            0.0,
+            str(error),
+        )
+    best = min(results, key=lambda r: r.cost)
+    return _summary(found, project, hypothesis, best, change)
+
+
+def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArray:
+    """(M,) change of the data at typical size."""
+    amplitudes = [0.0 if s.growth == "shape" else 1.0 for s in hypothesis.sizes]
+    return model.residual(np.concatenate([found.z, amplitudes])) - found.residual
+
+
+def _starts(hypothesis: Hypothesis) -> list[FloatArray]:
+    base = np.array([0.0 if s.growth == "shape" or s.signed else PROBE for s in hypothesis.sizes])
+    shapes = [i for i, s in enumerate(hypothesis.sizes) if s.growth == "shape"]
+    out = []
+    for shape in SHAPES if shapes else (0.0,):
+        start = base.copy()
+        start[shapes] = shape
+        out.append(start)
+    return out
+
+
+@dataclass(frozen=True)
+class _Followed:
+    """amplitudes (m,), columns (M, m) and change (M,) there."""
+
+    amplitudes: FloatArray
+    columns: FloatArray
+    change: FloatArray
+    cost: float
+
+
+def _followed(model: EffectModel, found: Fit, project: Projection, start: FloatArray) -> _Followed:
+    """Gauss-Newton steps of the amplitudes on true solutions."""
+    place = slice(found.z.size, found.z.size + start.size)
+    low, high = model.lower[place], model.upper[place]
+    a, best = start, None
+    for _ in range(STEPS):
+        z = np.concatenate([found.z, a])
+        residual = model.residual(z)
+        reduced = project.residual(residual)
+        cost = float(reduced @ reduced + a @ a)
+        gained = np.inf if best is None else best.cost - cost
+        if gained <= 0.0:
+            break
+        columns = model.growth(z, residual, which=place)
+        best = _Followed(a, columns, residual - found.residual, cost)
+        if gained < ENOUGH or not a.size:
+            break
+        projected = project(columns)
+        hessian = projected.T @ projected + np.eye(a.size)
+        a = a + bounded_step(hessian, projected.T @ reduced + a, low - a, high - a)
+    assert best is not None
+    return best
+
+
+def _summary(
+    found: Fit, project: Projection, hypothesis: Hypothesis, best: _Followed, change: FloatArray
+) -> Screened:
+    plain = project.residual(found.residual)
+    projected = project(best.columns)
+    hessian = projected.T @ projected + np.eye(best.amplitudes.size)
+    seen, whole = project(change), float(change @ change)
+    without = float(plain @ plain)
+    fitted = best.cost - float(best.amplitudes @ best.amplitudes)
+    return Screened(
+        hypothesis,
+        best.amplitudes,
+        np.sqrt(np.diag(np.linalg.inv(hessian))),
+        0.5 * (without - best.cost) - 0.5 * float(np.linalg.slogdet(hessian)[1]),
+        float(np.sqrt(max(0.0, without - fitted))),
+        best.columns,
+        change,
+        float(np.linalg.norm(seen)),
+        1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
+    )
+
+
+def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
+    """The score test at another model with the columns known from an earlier one: no new solution.
+
+    amplitudes and gain to first order; hypotheses without sizes keep their amplitude, there or not.
+    """
+    if known.failed:
+        return known
+    plain, seen = project.residual(found.residual), project(known.change)
+    columns = project(known.columns if known.amplitudes.size else known.change[:, None])
+    hessian = columns.T @ columns + np.eye(columns.shape[1])
+    slope = columns.T @ plain
+    amplitudes = -np.linalg.solve(hessian, slope)
+    gain = 0.5 * float(-slope @ amplitudes) - 0.5 * float(np.linalg.slogdet(hessian)[1])
+    whole = float(known.change @ known.change)
+    return replace(
+        known,
+        amplitudes=amplitudes if known.amplitudes.size else known.amplitudes,
+        sd=np.sqrt(np.diag(np.linalg.inv(hessian)))[: known.amplitudes.size],
+        gain=gain,
+        score=float(np.sqrt(max(0.0, -slope @ amplitudes))),
+        detectability=float(np.linalg.norm(seen)),
+        absorbed=1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
+    )

@@ -1,0 +1,186 @@
+"""The search: one effect after the other, each by the evidence of its joint refit against its rivals'."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.contrasts import contrasts
+from doe_kc.discovery.disagreement import Map, remaining_map
+from doe_kc.discovery.fit import Fit, fit, restored
+from doe_kc.discovery.granted import granted
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import projection
+from doe_kc.discovery.screen import Screened, rescreened
+from doe_kc.discovery.sides import side_differences
+from doe_kc.effects.hypothesis import Hypothesis
+
+MOST = 6
+"""Effects, named ones and traces, after which the search ends."""
+LEADERS = 5
+"""Hypotheses refitted jointly at each step."""
+WORTH = 0.2
+"""Share of the best screened gain below which a hypothesis is not refitted."""
+OF_ONE_KIND = 2
+"""Places of the same effect that are refitted at most."""
+FALSE_ALARM = 0.05
+PROMISING = 1.0
+"""ln evidence to first order from which a hypothesis is screened anew at a later step."""
+SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
+"""Effects that a model may have in several places at once."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A hypothesis refitted jointly. gain: ln evidence over the model without it."""
+
+    hypothesis: Hypothesis
+    fit: Fit
+    gain: float
+
+
+@dataclass(frozen=True)
+class Step:
+    """One step of the search. before: the model that it began with, its map and the screening there.
+
+    trials: best first. temper: what ln evidence is divided by, because what remains is not noise alone.
+    """
+
+    before: Fit
+    map: Map
+    screened: tuple[Screened, ...]
+    trials: tuple[Trial, ...]
+    temper: float
+    accepted: bool
+
+
+@dataclass(frozen=True)
+class Search:
+    """tuned: without any effect. final: with all accepted ones, the shape of their laws granted.
+
+    plain: the same point, against the records' own errors.
+    """
+
+    tuned: Fit
+    steps: tuple[Step, ...]
+    final: Fit
+    plain: Fit
+
+
+def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> Search:
+    """Tune, then add effects as long as the evidence asks for them.
+
+    NotConverged when the nominal axle has no equilibrium.
+    """
+    tuned = current = tune(model)
+    bench.watch("re-tuning", 1)
+    steps: list[Step] = []
+    while True:
+        step = _step(current, library, bench, steps[-1].screened if steps else ())
+        steps.append(step)
+        if not step.accepted or len(step.trials[0].fit.model.members) > MOST:
+            break
+        current = pruned(step.trials[0].fit, threshold(len(library)), bench)
+        current = fit(granted(current.model, model.likelihood, current.z), current.z)
+    plain = replace(current.model, likelihood=model.likelihood)
+    return Search(tuned, tuple(steps), current, restored(plain, current.z, current.evaluations, True))
+
+
+def tune(model: EffectModel) -> Fit:
+    """The best axle without a further effect, the differences between its sides linear about it."""
+    first = fit(model, model.centre)
+    sided = replace(model, sides=side_differences(model, first.z))
+    start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
+    return fit(sided, start)
+
+
+def threshold(count: int) -> float:
+    """ln evidence that one of so many hypotheses must reach (Bonferroni on the family)."""
+    return float(np.log(count / FALSE_ALARM))
+
+
+def accepted_steps(found: Search) -> list[Step]:
+    """Steps that brought in an effect, the latest first."""
+    return [s for s in reversed(found.steps) if s.accepted]
+
+
+def _step(
+    current: Fit,
+    library: Sequence[Hypothesis],
+    bench: Bench,
+    known: Sequence[Screened],
+) -> Step:
+    """known: the step before; its columns tell which hypotheses are worth a screening anew."""
+    project, shapes = projection(current), contrasts(current.model.likelihood)
+    before = remaining_map(shapes, current.residual, project)
+    candidates = [h for h in library if compatible(current.model, h)]
+    quick = {s.hypothesis.name: rescreened(current, project, s) for s in known}
+    again = [h for h in candidates if h.name not in quick or quick[h.name].gain > PROMISING]
+    full = {s.hypothesis.name: s for s in bench.screened(current, again)}
+    screened = [full.get(h.name) or quick[h.name] for h in candidates]
+    screened.sort(key=lambda s: -s.gain)
+    trials = tried(current, leaders(screened, threshold(len(library)) / 2.0), bench)
+    if not trials:
+        return Step(current, before, tuple(screened), (), 1.0, False)
+    after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
+    temper = max(1.0, after.mean_square)
+    passes = trials[0].gain / temper > threshold(len(library))
+    return Step(current, before, tuple(screened), tuple(trials), temper, passes)
+
+
+def leaders(screened: Sequence[Screened], least: float) -> list[Screened]:
+    """Those worth a refit, best first; a decoy of another kind is always among them."""
+    out: list[Screened] = []
+    for s in screened:
+        kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
+        enough = s.gain > least and s.gain > WORTH * screened[0].gain
+        if enough and kind < OF_ONE_KIND and len(out) < LEADERS:
+            out.append(s)
+    if out and all(s.hypothesis.effect == out[0].hypothesis.effect for s in out):
+        out += [s for s in screened if s.hypothesis.effect != out[0].hypothesis.effect and not s.failed][:1]
+    return out
+
+
+def compatible(model: EffectModel, hypothesis: Hypothesis) -> bool:
+    """Whether the model can take the effect besides those it has."""
+    for member in model.members:
+        if member.effect == hypothesis.effect:
+            if member.effect not in SEVERAL_PLACES:
+                return False
+            if _bushing(member) == _bushing(hypothesis):
+                return False
+    return True
+
+
+def _bushing(hypothesis: Hypothesis) -> str:
+    return (hypothesis.location or "").partition("_")[0]
+
+
+def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:
+    """The joint refits from the screened sizes, best first; those without a solution are left out."""
+    starts = [
+        (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
+    ]
+    fits = bench.fitted(starts, "refitting leaders")
+    trials = [
+        Trial(s.hypothesis, f, f.evidence - current.evidence)
+        for s, f in zip(screened, fits, strict=True)
+        if f is not None
+    ]
+    return sorted(trials, key=lambda t: -t.gain)
+
+
+def pruned(found: Fit, least: float, bench: Bench) -> Fit:
+    """Backward elimination: members that the later ones have made needless are taken out."""
+    while len(found.model.members) > 1:
+        members = list(found.model.places())[:-1]
+        starts = [(found.model.without(h), np.delete(found.z, np.r_[place])) for h, place in members]
+        fewer = [f for f in bench.fitted(starts, "taking effects out") if f is not None]
+        best = max(fewer, key=lambda f: f.evidence, default=None)
+        if best is None or found.evidence - best.evidence > least:
+            return found
+        found = best
+    return found

@@ -1,0 +1,87 @@
+"""The verdict in words, and what to test next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.result import Finding, Gap
+from doe_kc.discovery.standing import Standing
+from doe_kc.discovery.verdict import Verdict
+from doe_kc.effects import EFFECTS
+
+ADVISED = 6
+"""Tests that are listed at most."""
+
+
+def sentences(verdict: Verdict, findings: Sequence[Finding], gap: Gap, remaining: Map) -> tuple[str, ...]:
+    """Verdict first, then each effect, then how far the gap shrank."""
+    out = [_opening(verdict, findings)]
+    out += [_one(f) for f in findings]
+    if verdict.kind == "unexplained":
+        out += [f"Against a name: {o}." for o in verdict.objections]
+        out += [
+            f"Unexplained: {c.load_case}, {c.response}, {c.shape} ({c.wheels}), {z:+.1f} standard deviations."
+            for c, z in remaining.worst(3)
+        ]
+    out.append(
+        f"Whitened RMS of all deviations: {gap.nominal:.2f} nominal, {gap.tuned:.2f} re-tuned without an "
+        f"effect, {gap.with_effect:.2f} with what was found; {gap.noise_floor:.2f} is noise."
+    )
+    return tuple(out)
+
+
+def _opening(verdict: Verdict, findings: Sequence[Finding]) -> str:
+    names = " and ".join(_label(f) for f in findings)
+    if verdict.kind == "named":
+        return f"The model lacks {names}."
+    if verdict.kind == "class":
+        return f"The model lacks an effect that is most likely {names}, but others cannot be told from it."
+    if verdict.kind == "none":
+        return "No effect is missing: re-tuning within production scatter explains all records."
+    if findings:
+        return f"Something is missing that the library does not name for sure; the best lead is {names}."
+    return "Something is missing that no effect of the library explains."
+
+
+def _label(finding: Finding) -> str:
+    label = EFFECTS[finding.hypothesis.effect].label.lower()
+    place = finding.hypothesis.location
+    return f"{label} ({place})" if place else label
+
+
+def _one(finding: Finding) -> str:
+    sizes = ", ".join(
+        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {e.value:.4g} ± {e.sd:.2g} {e.unit}"
+        for e in finding.estimates
+    )
+    rivals = ", ".join(f"{r.effect} {r.probability:.0%}" for r in finding.rivals)
+    text = f"{_label(finding).capitalize()}: probability {finding.probability:.1%}"
+    text += f"; {sizes}" if sizes else ""
+    return text + (f"; else {rivals}." if rivals else ".")
+
+
+def next_tests(
+    verdict: Verdict,
+    findings: Sequence[Finding],
+    ambiguous: Sequence[Sequence[str]],
+    standings: Sequence[Standing],
+) -> tuple[str, ...]:
+    """What would separate a class, confirm a name, or show what is not testable here."""
+    out: list[str] = []
+    for members in ambiguous:
+        out += [f"To tell {_known(m)} from its rivals: {EFFECTS[m].shown_by}." for m in members]
+    if verdict.kind in ("named", "unexplained"):
+        out += [
+            f"To confirm {_known(f.hypothesis.effect)}: {EFFECTS[f.hypothesis.effect].shown_by}."
+            for f in findings
+        ]
+    hidden = [s for s in standings if s.status == "not testable"]
+    for effect in dict.fromkeys(s.hypothesis.effect for s in hidden):
+        if all(s.status == "not testable" for s in standings if s.hypothesis.effect == effect):
+            out.append(f"Not testable here, {_known(effect)}: {EFFECTS[effect].shown_by}.")
+    return tuple(out[:ADVISED])
+
+
+def _known(effect: str) -> str:
+    return EFFECTS[effect].label.lower()

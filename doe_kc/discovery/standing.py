@@ -1,0 +1,106 @@
+"""Where every hypothesis of the library stands: found, excluded above a size, or not testable and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import ndtr
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.screen import Screened
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.typing import FloatArray
+
+Status = Literal["found", "trace", "excluded", "not testable", "no solution"]
+POWER = 0.84
+"""Standard deviations above the critical value at which an effect is found in 80 % of cars."""
+ALIKE = 0.8
+"""|correlation| after re-tuning from which two effects are listed as alike."""
+HIDING = 3
+"""Parameters listed that hide an effect."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """One hypothesis.
+
+    detectable: smallest size, as a multiple of the typical one, that would be found in 80 % of cars; inf
+    when re-tuning absorbs all of it. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
+    parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
+    remaining change is the same, with the correlation.
+    """
+
+    hypothesis: Hypothesis
+    status: Status
+    detectable: float
+    absorbed: float
+    hidden_by: tuple[tuple[str, float], ...]
+    alike: tuple[tuple[str, float], ...]
+
+
+def standings(
+    found: Fit,
+    project: Projection,
+    screened: Sequence[Screened],
+    members: Sequence[tuple[Screened, Status]],
+    critical: float,
+) -> tuple[Standing, ...]:
+    """Of members (as screened before they were added) and of all others screened at the final model.
+
+    critical: |z| that a hypothesis must reach among so many.
+    """
+    everything = [s for s, _ in members] + list(screened)
+    known = dict(enumerate(status for _, status in members))
+    changes = project(np.array([s.change for s in everything]).T)
+    length = np.linalg.norm(changes, axis=0)
+    safe = np.where(length > 0, length, 1.0)
+    correlation = (changes / safe).T @ (changes / safe)
+    moves = _moves(found, np.array([s.change for s in everything]).T)
+    out = []
+    for i, s in enumerate(everything):
+        detectable = (critical + POWER) / s.detectability if s.detectability > 1e-9 else np.inf
+        status: Status = known.get(i) or _status(s, detectable)
+        alike = tuple(
+            (everything[j].hypothesis.name, float(correlation[i, j]))
+            for j in np.argsort(-np.abs(correlation[i]))
+            if j != i and abs(correlation[i, j]) >= ALIKE and length[i] > 1.0 and length[j] > 1.0
+        )
+        hidden_by = _hiding(found, moves[:, i], s)
+        out.append(Standing(s.hypothesis, status, float(detectable), s.absorbed, hidden_by, alike))
+    return tuple(out)
+
+
+def _status(screened: Screened, detectable: float) -> Status:
+    if screened.failed:
+        return "no solution"
+    return "excluded" if detectable <= 1.0 else "not testable"
+
+
+def _moves(found: Fit, changes: FloatArray) -> FloatArray:
+    """(d + m, k) how the fitted point would follow each change."""
+    return np.asarray(-cho_solve(cho_factor(found.hessian), found.jacobian.T @ changes))
+
+
+def _hiding(found: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, float], ...]:
+    if screened.absorbed < 0.5:
+        return ()
+    paths = found.model.space.paths
+    relative = move[: len(paths)] / found.model.prior_sd[: len(paths)]
+    order = np.argsort(-np.abs(relative))[:HIDING]
+    return tuple((paths[i], float(relative[i])) for i in order)
+
+
+def wrong_name_chance(detectability: float, correlation: float) -> float:
+    """Chance that noise names a rival of one parameter instead of the true effect of one parameter.
+
+    detectability: standard deviations of the effect after re-tuning. correlation: of both remaining
+    changes. P = Phi(-a) Phi(b) + Phi(a) Phi(-b), a, b = detectability sqrt((1 -+ |correlation|) / 2).
+    """
+    a = detectability * np.sqrt((1.0 - abs(correlation)) / 2.0)
+    b = detectability * np.sqrt((1.0 + abs(correlation)) / 2.0)
+    return float(ndtr(-a) * ndtr(b) + ndtr(a) * ndtr(-b))

@@ -1,0 +1,89 @@
+"""The verdict: named, one of a class, none needed, or unexplained."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.held_out import HeldOut
+from doe_kc.discovery.result import Finding, VerdictKind
+
+SURE = 0.9
+"""Probability from which an effect is named by itself."""
+NOISE = 0.01
+"""Chance of a map's largest disagreement below which noise does not explain it."""
+PLAUSIBLE = 3.0
+"""Typical sizes beyond which an effect is not believed."""
+CLOSED = 0.9
+"""Share of the gap that a name must close, where the gap is clear of noise."""
+CLEAR = 5.0
+"""Standard deviations of a sum of squares beyond which a gap is clear of noise."""
+HARM = 6.0
+"""ln predictive density that a held-out load case may lose to chance."""
+HARM_SHARE = 0.02
+"""Share of the total gain that a held-out load case may lose to the shape of the effect's law."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """kind, and what speaks against a name, in sentences."""
+
+    kind: VerdictKind
+    objections: tuple[str, ...] = ()
+
+
+def verdict(
+    findings: Sequence[Finding], remaining: Map, held_out: Sequence[HeldOut], tuned: Fit, final: Fit
+) -> Verdict:
+    """findings: the relevant ones. remaining: map of the final model, the effects' shape granted."""
+    agrees = remaining.chance >= NOISE
+    if not findings:
+        return Verdict("none") if agrees else Verdict("unexplained")
+    objections = [*_implausible(findings), *_harmed(held_out), *_open(tuned, final)]
+    if not agrees:
+        worst, z = remaining.worst(1)[0]
+        objections.append(
+            f"{worst.load_case}, {worst.response}, {worst.shape} still disagrees by {abs(z):.1f} "
+            "standard deviations"
+        )
+    if objections:
+        return Verdict("unexplained", tuple(objections))
+    return Verdict("named" if all(f.probability >= SURE for f in findings) else "class")
+
+
+def classes(findings: Sequence[Finding]) -> tuple[tuple[str, ...], ...]:
+    """For every effect that is not sure: it and the rivals that it cannot be told from."""
+    return tuple(
+        (f.hypothesis.effect, *(r.effect for r in f.rivals)) for f in findings if f.probability < SURE
+    )
+
+
+def _implausible(findings: Sequence[Finding]) -> list[str]:
+    return [
+        f"{f.hypothesis.name} would have to be {f.largest:.1f} times its typical size"
+        for f in findings
+        if f.largest > PLAUSIBLE
+    ]
+
+
+def _harmed(held_out: Sequence[HeldOut]) -> list[str]:
+    total = sum(h.gain for h in held_out)
+    if held_out and total <= 0.0:
+        return ["load cases held out are not predicted better"]
+    allowed = max(HARM, HARM_SHARE * total)
+    return [
+        f"held-out load case {h.load_case} is predicted worse than without the effect"
+        for h in held_out
+        if h.gain < -allowed
+    ]
+
+
+def _open(tuned: Fit, final: Fit) -> list[str]:
+    expected = float(tuned.residual.size)
+    before, after = tuned.misfit - expected, final.misfit - expected
+    if before < CLEAR * (2.0 * expected) ** 0.5:
+        return []
+    closed = 1.0 - max(0.0, after) / before
+    return [] if closed >= CLOSED else [f"it closes only {closed:.0%} of the gap that re-tuning leaves"]

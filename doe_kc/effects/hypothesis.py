@@ -1,0 +1,81 @@
+"""In which places and sizes an effect is looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+Growth = Literal["amount", "compliance", "factor", "shape"]
+
+ABSENT = 1e-4
+"""Smallest amplitude of a size that cannot be negative: so small that it stands for none (rigid, no gap)."""
+SPREAD = 0.7
+"""Standard deviation of the logarithm of a shape, such as a presliding distance: a factor of two."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """One number of a hypothesis, searched as an amplitude a: 0 without the effect, 1 at its typical size.
+
+    key: option of the effect's table; index: place in it where the option is a list. typical: value at
+    a = 1, in `unit`. growth: amount, value = typical a; compliance, value = typical a^(-1/power), rigid at
+    0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(0.7 a), a number
+    that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off.
+    signed: whether a may be negative (shapes always may).
+    """
+
+    key: str
+    typical: float
+    unit: str
+    growth: Growth = "amount"
+    index: int | None = None
+    signed: bool = False
+    power: float = 1.0
+
+    @property
+    def name(self) -> str:
+        """Unique in its hypothesis, e.g. `LLR[1]`."""
+        return self.key if self.index is None else f"{self.key}[{self.index}]"
+
+    def value(self, amplitude: float) -> float:
+        """The option's number, in `unit`."""
+        if self.growth == "amount":
+            return self.typical * (amplitude if self.signed else max(amplitude, ABSENT))
+        if self.growth == "compliance":
+            return float(self.typical * max(amplitude, ABSENT) ** (-1.0 / self.power))
+        if self.growth == "factor":
+            return float(self.typical**amplitude)
+        return float(self.typical * 2.718281828459045 ** (SPREAD * amplitude))
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """An effect in one place. location: bushing or joint, with _L or _R for one side; None: no choice.
+
+    sizes: none for an effect that is there or not. fixed: further options, as in the effect's table.
+    """
+
+    effect: str
+    location: str | None
+    sizes: tuple[Size, ...]
+    fixed: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def name(self) -> str:
+        """Unique in the library, e.g. `bushing_preload LLR`; without a location by what is fixed."""
+        where = [str(v) for v in self.fixed.values()] if self.location is None else [self.location]
+        return " ".join([self.effect, *where])
+
+    def options(self, amplitudes: Mapping[str, float]) -> dict[str, Any]:
+        """The effect's table at the amplitudes, by `Size.name`."""
+        out: dict[str, Any] = dict(self.fixed)
+        for size in self.sizes:
+            value = size.value(amplitudes[size.name])
+            if size.index is None:
+                out[size.key] = value
+            else:
+                out.setdefault(size.key, [0.0] * (1 + max(s.index or 0 for s in self.sizes)))[size.index] = (
+                    value
+                )
+        return out

@@ -1,0 +1,54 @@
+"""Responses that the rig reads with a wrong gain, in all load cases and on both sides: toe = 1.05."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import Axle
+from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
+from doe_kc.effects._base import Effect, effect
+from doe_kc.effects._tables import named_numbers
+from doe_kc.effects.hypothesis import Hypothesis, Size
+
+
+@effect
+class RigChannelGain(Effect):
+    """Wrong gain of a measuring channel.
+
+    It scales changes from static, the tyre load as a whole; the static alignment is measured otherwise.
+    """
+
+    id: ClassVar[str] = "rig_channel_gain"
+    label: ClassVar[str] = "Wrong gain of a measuring channel"
+    on_rig: ClassVar[bool] = True
+
+    physics: ClassVar[str] = "The rig's sensor of one response is calibrated wrongly."
+    mistaken_for: ClassVar[tuple[str, ...]] = ("rig_input_gain", "steering_ratio", "roll_technique")
+    shown_by: ClassVar[str] = "the channel against a gauge of known size; one gain in every load case"
+
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        return tuple(
+            Hypothesis(self.id, name, (Size(name, 1.05, "-", "factor", signed=True),))
+            for name in RIG_RESPONSES
+        )
+
+    def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
+        return self.read(before, axle.name) | self.read(after, axle.name)
+
+    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
+        where = f"{source}: effect {self.id}"
+        return named_numbers(given or {"toe": 1.05}, RIG_RESPONSES, where, "a response", positive=True)
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        return axle
+
+    def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
+        return replace(curves, cases={i: _scaled(c, options) for i, c in curves.cases.items()})
+
+
+def _scaled(case: CaseCurves, gains: Mapping[str, float]) -> CaseCurves:
+    mean = {name: gains.get(name, 1.0) * curve for name, curve in case.mean.items()}
+    half = {name: gains.get(name, 1.0) * curve for name, curve in case.half_width.items()}
+    return replace(case, mean=mean, half_width=half)

@@ -1,0 +1,51 @@
+"""Static angles that the rig reads with an offset, on both sides: toe_deg = 0.1."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import Axle
+from doe_kc.curves import CurveSet
+from doe_kc.effects._base import Effect, effect
+from doe_kc.effects._tables import named_numbers
+from doe_kc.effects.hypothesis import Hypothesis, Size
+
+KEYS = {f"{name}_deg": name for name in ("toe", "camber", "spin")}
+
+
+@effect
+class RigChannelOffset(Effect):
+    """Offset of the static alignment; curves hold changes from static and do not see it."""
+
+    id: ClassVar[str] = "rig_channel_offset"
+    label: ClassVar[str] = "Offset of the static alignment"
+    on_rig: ClassVar[bool] = True
+
+    physics: ClassVar[str] = (
+        "The rig's zero of an angle is off, so that the static alignment is read wrongly."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("static.toe", "static.camber", "bushing_preload")
+    shown_by: ClassVar[str] = "the wheels' alignment measured on another rig, or with the car turned around"
+
+    def hypotheses(self) -> tuple[Hypothesis, ...]:
+        return tuple(
+            Hypothesis(self.id, name, (Size(key, 0.1, "deg", signed=True),)) for key, name in KEYS.items()
+        )
+
+    def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
+        return self.read(before, axle.name) | self.read(after, axle.name)
+
+    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
+        return named_numbers(given or {"toe_deg": 0.1}, KEYS, f"{source}: effect {self.id}", "an angle")
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        return axle
+
+    def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
+        if curves.static is None:
+            return curves
+        offsets = {KEYS[key]: value for key, value in options.items()}
+        static = {name: value + offsets.get(name, 0.0) for name, value in curves.static.items()}
+        return replace(curves, static=static)

@@ -1,0 +1,151 @@
+"""The curves that re-tuning explains worst: measured, re-tuned, with the effect and with the best decoy."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import MaxNLocator
+
+from doe_kc.correlation.likelihood import Branches
+from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
+from doe_kc.discovery.contrasts import LOOP_SHAPES
+from doe_kc.discovery.result import Discovery
+from doe_kc.reporting import style
+from doe_kc.reporting.correlation_characteristics import case_label
+from doe_kc.reporting.correlation_curves import BAND, response_name
+from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.discovery_heat_map import signed
+from doe_kc.reporting.discovery_views import ModelView, model_views
+from doe_kc.typing import FloatArray
+
+SHOWN = 6
+PER_CASE = 2
+DASHES = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
+WORDS = {
+    "tuned": "re-tuned without an effect",
+    "with_effect": "with the effect",
+    "best_decoy": "with the decoy",
+}
+SIDE_WORDS = ("left wheel", "right wheel")
+
+
+@dataclass(frozen=True)
+class WorstView:
+    """A curve of one wheel. half: measured half-width for the branches of a mean curve, (n,), else None."""
+
+    view: ModelView
+    side: int
+    shape: str
+    z: float
+    half: FloatArray | None
+
+    @property
+    def title(self) -> str:
+        """Load case and wheel, and what disagrees by how much."""
+        place = f"{case_label(self.view.load_case)}, {SIDE_WORDS[self.side]}"
+        return f"{place}\n{self.shape}, z = {signed(self.z)} after re-tuning"
+
+    @property
+    def label(self) -> str:
+        """Response with its unit."""
+        view = self.view
+        name, unit = response_name(view.response), RESPONSE_UNITS[view.response]
+        if view.branches == "half_width":
+            return f"{name}, half-width of the loop [{unit}]"
+        return f"{'' if view.response == TYRE_LOAD else 'Δ '}{name} [{unit}]"
+
+
+def worst_views(found: Discovery) -> list[WorstView]:
+    """Largest disagreements after re-tuning; a curve's wheel is the one that the re-tuned model misses more.
+
+    At most two curves of a load case; where nothing disagrees, the largest deviations there are.
+    """
+    views = model_views(found)
+    order = np.argsort(-np.nan_to_num(np.abs(found.tuned.z)))
+    out: list[WorstView] = []
+    taken: dict[str, int] = {}
+    for i in order:
+        contrast, z = found.tuned.names[i], float(found.tuned.z[i])
+        branches: Branches = "half_width" if contrast.shape in LOOP_SHAPES else "mean"
+        view = views.get((contrast.load_case, contrast.response, branches))
+        if view is None or any(w.view is view for w in out) or taken.get(contrast.load_case, 0) >= PER_CASE:
+            continue
+        side = int(np.argmax(np.mean(view.deviation("tuned") ** 2, axis=1)))
+        loop = views.get((contrast.load_case, contrast.response, "half_width"))
+        half = None
+        if branches == "mean" and loop is not None:
+            half = np.interp(view.input, loop.input, loop.measured[side])
+        out.append(WorstView(view, side, contrast.shape, z, half))
+        taken[contrast.load_case] = taken.get(contrast.load_case, 0) + 1
+        if len(out) == SHOWN:
+            break
+    return out
+
+
+def curve_figure(worst: Sequence[WorstView], study: str) -> Figure:
+    """Two rows of three curves, each with its deviation from the measured one below."""
+    columns, rows = 3, max(1, -(-len(worst) // 3))
+    height = 0.95 + 3.65 * rows
+    fig, axes = style.figure(2 * rows, columns, size=(11.69, height), share_x=False)
+    axes[0, 0].get_gridspec().set_height_ratios([2.2, 1.0] * rows)
+    for k in range(columns * rows):
+        top, below = axes[2 * (k // columns), k % columns], axes[2 * (k // columns) + 1, k % columns]
+        if k >= len(worst):
+            top.set_axis_off()
+            below.set_axis_off()
+            continue
+        _curve(top, worst[k])
+        _deviation(below, worst[k])
+    fig.legend(handles=_handles(worst), loc="outside lower center", ncols=6, fontsize=7.5, frameon=False)
+    fig.suptitle(f"Curves that re-tuning explains worst: {study}", fontsize=11, parse_math=False)
+    return fig
+
+
+def _curve(ax: Axes, worst: WorstView) -> None:
+    view, side = worst.view, worst.side
+    mean, sd = view.measured[side], view.sd[side]
+    ax.fill_between(view.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0)
+    if worst.half is not None:
+        for sign in (-1.0, 1.0):
+            ax.plot(view.input, mean + sign * worst.half, color=style.PALETTE["grey"], lw=0.6)
+    for name, dash in DASHES.items():
+        if name in view.models:
+            ax.plot(view.input, view.models[name][side], dash, color=COLOURS[name], lw=1.4)
+    step = max(1, mean.size // 22)
+    ax.plot(view.input[::step], mean[::step], "o", color="black", ms=2.4, mew=0.0, zorder=4)
+    ax.set_title(worst.title, fontsize=8.5)
+    style.label(ax, None, worst.label)
+    ax.tick_params(labelbottom=False)
+    ax.xaxis.set_major_locator(MaxNLocator(6))
+
+
+def _deviation(ax: Axes, worst: WorstView) -> None:
+    view = worst.view
+    ax.axhspan(-BAND, BAND, color="#DDDDDD", lw=0, zorder=0)
+    ax.axhline(0.0, color="black", lw=0.6)
+    for name, dash in DASHES.items():
+        if name in view.models:
+            ax.plot(view.input, view.deviation(name)[worst.side], dash, color=COLOURS[name], lw=1.2)
+    style.label(ax, view.input_label, "model − measured\n[sd of the noise]")
+    ax.xaxis.set_major_locator(MaxNLocator(6))
+
+
+def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:
+    models = worst[0].view.models if worst else {}
+    out: list[Line2D | Patch] = [
+        Line2D([], [], color="black", ls="", marker="o", ms=3, label="measured"),
+        Line2D([], [], color=style.PALETTE["grey"], lw=0.8, label="its branches, input rising and falling"),
+        Patch(color="#BBBBBB", label=f"±{BAND:g} sd of the noise"),
+    ]
+    out += [
+        Line2D([], [], color=COLOURS[m], ls=dash, lw=1.4, label=WORDS[m])
+        for m, dash in DASHES.items()
+        if m in models
+    ]
+    return out

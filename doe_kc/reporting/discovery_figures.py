@@ -1,0 +1,41 @@
+"""The pictures of a discovery, drawn side by side."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from doe_kc.discovery.result import Discovery
+from doe_kc.reporting.discovery_curves import curve_figure, worst_views
+from doe_kc.reporting.discovery_evidence import evidence_figure, evidence_steps
+from doe_kc.reporting.discovery_gaps import gap_figure, gap_rows
+from doe_kc.reporting.discovery_grid import discovery_grids
+from doe_kc.reporting.discovery_heat_map import heat_map_figure
+from doe_kc.reporting.discovery_held_out import held_out_figure
+from doe_kc.reporting.discovery_isolability import isolability, isolability_figure
+from doe_kc.reporting.discovery_parameters import parameter_figure
+from doe_kc.reporting.discovery_tables import tuned_parameters
+from doe_kc.reporting.series import Job, draw_series
+
+
+def discovery_jobs(found: Discovery, folder: Path, study: str) -> list[Job]:
+    """What is drawn: (path without suffix, maker). Makers hold only the numbers that they draw."""
+    jobs: list[Job] = [
+        (folder / "disagreement", partial(heat_map_figure, discovery_grids(found), study)),
+        (folder / "gap", partial(gap_figure, gap_rows(found), study)),
+        (folder / "evidence", partial(evidence_figure, evidence_steps(found), study)),
+        (folder / "worst_curves", partial(curve_figure, worst_views(found), study)),
+        (folder / "isolability", partial(isolability_figure, isolability(found), study)),
+        (folder / "parameters", partial(parameter_figure, tuned_parameters(found), study)),
+    ]
+    if found.held_out:
+        jobs.append((folder / "held_out", partial(held_out_figure, found.held_out, study)))
+    return jobs
+
+
+def write_discovery_figures(
+    found: Discovery, folder: Path, *, study: str, workers: int | None = None
+) -> list[Path]:
+    """`disagreement`, `gap`, `evidence`, `worst_curves`, `isolability`, `parameters` and, where effects were
+    found, `held_out`, as .png and .svg. RunError when the folder cannot be written."""
+    return draw_series(discovery_jobs(found, folder, study), workers, vector=True)

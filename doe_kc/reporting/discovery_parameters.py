@@ -1,0 +1,98 @@
+"""Parameters that re-tuning had to bend, and where they go once the effect is in the model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from doe_kc.discovery.gaps import RETURNS_FROM
+from doe_kc.reporting import style
+from doe_kc.reporting.correlation_dna import short
+from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.discovery_tables import TunedParameter
+from doe_kc.reporting.discovery_words import unit_words
+
+SHOWN = 40
+ROW = 0.17
+RETURNS, LEAVES, STILL = style.PALETTE["blue"], style.PALETTE["vermillion"], "#8A9199"
+NEITHER = 0.1
+"""Standard deviations of the prior by which a parameter must move for its arrow to have a colour."""
+
+
+def moved_parameters(parameters: Sequence[TunedParameter]) -> list[TunedParameter]:
+    """Those that are off nominal in one of the two fits, the ones that return furthest first."""
+    off = [p for p in parameters if p.moved >= RETURNS_FROM]
+    return sorted(off, key=lambda p: _away(p) if np.isfinite(p.with_effect_distance) else -p.moved)[:SHOWN]
+
+
+def _away(p: TunedParameter) -> float:
+    """How much further from nominal the effect leaves it, sd of the prior."""
+    return abs(p.with_effect_distance) - abs(p.tuned_distance)
+
+
+def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Figure:
+    """An arrow a parameter, from the re-tuned model to the one with the effect, in sd of the prior."""
+    rows = moved_parameters(parameters)
+    height = ROW * max(len(rows), 4) + 1.75
+    margins = {"left": 0.15, "right": 0.66, "top": 1 - 0.75 / height, "bottom": 0.95 / height}
+    fig, axes = style.figure(1, 1, size=(8.27, height), margins=margins)
+    ax = axes[0, 0]
+    reach = max(2.0, 1.08 * max((p.moved for p in rows), default=1.0))
+    ax.set_xlim(-reach, reach)
+    ax.set_ylim(max(len(rows), 1), 0)
+    ax.axvspan(-1, 1, color="#EEF1F3", lw=0, zorder=0)
+    ax.axvline(0.0, color="black", lw=0.8, zorder=1)
+    ax.grid(visible=False, axis="y")
+    ax.tick_params(axis="y", length=0)
+    ax.set_yticks([i + 0.5 for i in range(len(rows))], [p.path for p in rows], fontsize=6.5)
+    ax.set_xlabel("distance from nominal, standard deviations of its prior")
+    for y, p in enumerate(rows):
+        _arrow(ax, y + 0.5, p)
+    heads = "nominal, re-tuned, with the effect"
+    if rows:
+        ax.text(1.02, -0.35, heads, transform=ax.get_yaxis_transform(), fontsize=6.5, color="#555555")
+    else:
+        ax.text(0, 0.5, "no parameter is off nominal", ha="center", va="center", fontsize=8)
+    fig.legend(handles=_handles(rows), loc="lower center", ncols=4, fontsize=7, frameon=False)
+    fig.suptitle(f"Parameters before and after: {study}", fontsize=11, y=1 - 0.12 / height, va="top",
+                 parse_math=False)  # fmt: skip
+    return fig
+
+
+def _arrow(ax: Axes, y: float, p: TunedParameter) -> None:
+    start, end = p.tuned_distance, p.with_effect_distance
+    ax.plot([start], [y], "o", color=COLOURS["tuned"], mfc="white", ms=4, mew=1.2, zorder=3)
+    if np.isfinite(end):
+        look = {"arrowstyle": "-|>", "color": _colour(p), "lw": 1.1, "mutation_scale": 7, "shrinkA": 2}
+        ax.annotate("", (end, y), (start, y), arrowprops={**look, "shrinkB": 0})
+    ax.text(1.02, y, values_words(p), transform=ax.get_yaxis_transform(), fontsize=6.2, va="center")
+
+
+def values_words(p: TunedParameter) -> str:
+    """The three values with their unit."""
+    values = [p.nominal, p.tuned, p.with_effect]
+    text = "  →  ".join(short(v) for v in values if np.isfinite(v))
+    return f"{text}{unit_words(p.unit)}"
+
+
+def _colour(p: TunedParameter) -> str:
+    change = _away(p)
+    return STILL if abs(change) < NEITHER else RETURNS if change < 0 else LEAVES
+
+
+def _handles(rows: Sequence[TunedParameter]) -> list[Line2D | Patch]:
+    out: list[Line2D | Patch] = [
+        Line2D([], [], color=COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.2,
+               label="re-tuned without an effect")
+    ]  # fmt: skip
+    if any(np.isfinite(p.with_effect_distance) for p in rows):
+        out += [
+            Line2D([], [], color=RETURNS, marker=">", ms=4, lw=1.1, label="returns with the effect"),
+            Line2D([], [], color=LEAVES, marker=">", ms=4, lw=1.1, label="goes further off"),
+        ]
+    return [*out, Patch(color="#E4E7EA", label="±1 sd of the prior")]

@@ -1,0 +1,71 @@
+"""The sizes of a found effect with their uncertainty, and what they do not say."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.discovery.result import Discovery, Estimate, Finding
+from doe_kc.effects.hypothesis import Size
+from doe_kc.reporting.correlation_bars import with_sd
+from doe_kc.reporting.discovery_words import number, unit_words
+
+SEEN = 2.0
+"""Standard deviations above zero from which a size that cannot be negative is told from none."""
+ONE_SIDED = 1.645
+"""Standard deviations of a one-sided 95 % limit."""
+
+
+@dataclass(frozen=True)
+class FoundSize:
+    """One number of a found effect. times: as a multiple of the typical size (shapes: sd off typical)."""
+
+    size: Size
+    estimate: Estimate
+    times: float
+    limit: float
+    seen: bool
+
+    @property
+    def words(self) -> str:
+        """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
+        unit = unit_words(self.size.unit)
+        if self.seen:
+            return f"{value_sd(self.estimate.value, self.estimate.sd)}{unit}"
+        limit = f"{number(self.limit)}{unit}"
+        if self.size.growth == "compliance":
+            return f"not told from rigid (above {limit}, 95 %)"
+        return f"not told from none (below {limit}, 95 %)"
+
+
+def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
+    """The numbers of a finding in the order of its hypothesis."""
+    sd = np.sqrt(np.diag(found.fitted.covariance))
+    place = next(p for h, p in found.fitted.model.places() if h is finding.hypothesis)
+    for size, estimate, i in zip(
+        finding.hypothesis.sizes, finding.estimates, range(place.start, place.stop), strict=True
+    ):
+        amplitude = float(found.fitted.z[i])
+        one_sided = not (size.signed or size.growth in ("shape", "factor"))
+        yield FoundSize(
+            size,
+            estimate,
+            amplitude,
+            size.value(amplitude + ONE_SIDED * float(sd[i])),
+            not one_sided or amplitude >= SEEN * float(sd[i]),
+        )
+
+
+def value_sd(value: float, sd: float) -> str:
+    """`value ± sd`, both to the second significant digit of sd, without an exponent for ordinary sizes."""
+    if math.isfinite(sd) and sd > 0.0 and abs(value) < 1e6:
+        return with_sd(value, sd)
+    return number(value, 4)
+
+
+def size_words(found: Discovery, finding: Finding) -> str:
+    """All sizes of a finding in one line."""
+    return "; ".join(f"{s.size.name} = {s.words}" for s in found_sizes(found, finding))

@@ -1,0 +1,136 @@
+"""What a law at every interface would do to the curves: one column a probe, per unit of its amplitude."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.solver.curve_gradient import LOOP_BRANCHES, CurveGradients, gradients_of
+from doe_kc.solver.interface_laws import LAWS, Law, stop_operator
+from doe_kc.solver.interfaces import BranchInfluences, Influences, StaticInfluences
+from doe_kc.solver.result import BranchSolution, CaseSolution
+from doe_kc.solver.sensitivity import Sensitivities
+from doe_kc.typing import FloatArray
+
+PRESLIDING = 0.05
+"""mm or deg over which friction builds up."""
+
+
+def law_columns(
+    influences: Influences, law: str, presliding: float | FloatArray = PRESLIDING
+) -> CurveGradients:
+    """Derivatives of the curves to the amplitude of a law, at zero, referred to static as curves are.
+
+    Columns, by `paths`, are the probes that the law applies to (`Probe.name`). law: of LAWS. presliding: of
+    friction only, > 0, mm or deg, one for all probes of the axle or (m,). Friction on an axle without any
+    runs its sweeps forth and back on the states known, and so has half-widths.
+    KeyError for an unknown law.
+    """
+    chosen = LAWS[law]
+    pick = np.array([i for i, p in enumerate(influences.probes) if p.kind in chosen.kinds], dtype=int)
+    found = picked(influences, pick)
+    if chosen.value is None:
+        found = looped(found)
+        distances = np.broadcast_to(np.asarray(presliding, dtype=float), (len(influences.probes),))[pick]
+        values = {i: stop_operator([b.seen for b in c], distances) for i, c in found.branches.items()}
+        design = static = np.zeros(pick.size)
+    else:
+        values, design, static = _pointwise(found, chosen)
+    datum = found.static.datum_design * design + found.static.datum * static
+    start = (
+        found.static.output_design * design + found.static.output * static,
+        found.static.state_design * design + found.static.state * static,
+    )
+    branches = {
+        ident: _case(case, values[ident], datum, start, loop=len(case) == LOOP_BRANCHES)
+        for ident, case in found.branches.items()
+    }
+    names = tuple(p.name for p in found.probes)
+    return gradients_of(found.solution, Sensitivities(names, start[0], branches))
+
+
+def _pointwise(found: Influences, law: Law) -> tuple[dict[str, list[FloatArray]], FloatArray, FloatArray]:
+    """Values h of a law without memory: by load case and branch, static at design height, static."""
+    assert law.value is not None
+    seen = [b.seen for case in found.branches.values() for b in case]
+    largest = np.abs(np.vstack([*seen, found.static.seen[None]])).max(axis=0)
+    values = {i: [law.value(b.seen, largest) for b in case] for i, case in found.branches.items()}
+    return values, law.value(found.static.seen_design, largest), law.value(found.static.seen, largest)
+
+
+def _case(
+    branches: tuple[BranchInfluences, ...],
+    values: list[FloatArray],
+    datum: FloatArray,
+    start: tuple[FloatArray, FloatArray],
+    *,
+    loop: bool,
+) -> tuple[FloatArray, ...]:
+    """(n, ny, m) per branch; a loop hands its friction states from branch to branch."""
+    out: list[FloatArray] = []
+    first, dz = start
+    for b, h in zip(branches, values, strict=True):
+        if not loop:
+            first, dz = start
+        columns = b.influence * h[:, None, :] + b.datum @ datum
+        columns[0] = first
+        if dz.size:
+            for i in range(1, len(h)):
+                columns[i] += b.state[i] @ dz
+                dz = b.next_influence[i] * h[i] + b.next_datum[i] @ datum + b.next_state[i] @ dz
+        out.append(columns)
+        first = columns[-1]
+    return tuple(out)
+
+
+def picked(found: Influences, probes: FloatArray) -> Influences:
+    """The influences of some probes, by their index."""
+    static = StaticInfluences(**{n: getattr(found.static, n)[..., probes] for n in vars(found.static)})
+    branches = {
+        ident: tuple(
+            replace(
+                b,
+                seen=b.seen[:, probes],
+                influence=b.influence[..., probes],
+                next_influence=b.next_influence[..., probes],
+            )
+            for b in case
+        )
+        for ident, case in found.branches.items()
+    }
+    return Influences(found.solution, tuple(found.probes[i] for i in probes), static, branches)
+
+
+def looped(found: Influences) -> Influences:
+    """The same with two branches from zero rearranged as the loop that a rig runs: 0, +A, -A, +A."""
+    cases, branches = dict(found.solution.cases), dict(found.branches)
+    for ident, case in found.solution.cases.items():
+        if len(case.branches) == LOOP_BRANCHES:
+            continue
+        cases[ident] = _looped_case(case)
+        pos, neg = found.branches[ident]
+        rising = _joined(neg, pos)
+        branches[ident] = (pos, _reversed(rising), rising)
+    return replace(found, solution=replace(found.solution, cases=cases), branches=branches)
+
+
+def _looped_case(case: CaseSolution) -> CaseSolution:
+    pos, neg = case.branches
+    fields = ("input", "y", "x", "z", "u")
+    up = {f: np.concatenate([getattr(neg, f)[:0:-1], getattr(pos, f)]) for f in fields}
+    load = BranchSolution("load", path=pos.path, **up)
+    unload = BranchSolution("unload", path=neg.path, **{f: v[::-1] for f, v in up.items()})
+    return CaseSolution(case.load_case, (replace(pos, name="init"), unload, load))
+
+
+def _joined(neg: BranchInfluences, pos: BranchInfluences) -> BranchInfluences:
+    return BranchInfluences(*(np.concatenate([a[:0:-1], b]) for a, b in _pairs(neg, pos)))
+
+
+def _reversed(b: BranchInfluences) -> BranchInfluences:
+    return BranchInfluences(*(a[::-1] for a, _ in _pairs(b, b)))
+
+
+def _pairs(one: BranchInfluences, other: BranchInfluences) -> list[tuple[FloatArray, FloatArray]]:
+    return [(getattr(one, name), getattr(other, name)) for name in vars(one)]

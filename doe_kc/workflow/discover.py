@@ -1,0 +1,97 @@
+"""Discover: from a study to a verdict on what its axle lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fnmatch import fnmatchcase
+from pathlib import Path
+
+from doe_kc.axle.model import Axle
+from doe_kc.campaign.executors import processes
+from doe_kc.campaign.processes import available_cores
+from doe_kc.correlation.likelihood import record_likelihood
+from doe_kc.discovery.bench import Bench, Watch
+from doe_kc.discovery.discover import discover
+from doe_kc.discovery.ledger import Ledger
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.result import Discovery
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.errors import InputError, nearest
+from doe_kc.measurement import Measurement
+from doe_kc.study import Study
+from doe_kc.variables import Space, VariableOptions, build_space
+
+
+def discover_study(
+    study: Study,
+    measurement: Measurement,
+    *,
+    exclude: Sequence[str] = (),
+    workers: int | None = None,
+    watch: Watch = lambda *_: None,
+) -> Discovery:
+    """Look for effects that the study's axle lacks.
+
+    exclude: ids of effects that are not looked for. InputError for an unknown one, an outside solver, or
+    records and sweeps without a common load case. Results are remembered in `discovery.sqlite` of the
+    study's folder, so that the same call goes on where it was interrupted.
+    """
+    if study.solver.command:
+        raise InputError(
+            f"{study.source}: discovery needs exact sensitivities, which an outside solver does not give; "
+            "remove [solver] command."
+        )
+    axle = study.axle
+    library = effect_library(axle, exclude)
+    likelihood = record_likelihood(axle, measurement)
+    if not likelihood.curves:
+        raise InputError(
+            f"{study.source}: no load case of the records is among the axle's; "
+            f"expected one of {', '.join(axle.load_cases)}."
+        )
+    model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
+    count = workers or available_cores()
+    with processes(count) as executor, Ledger(study.out / "discovery.sqlite") as ledger:
+        return discover(model, library, Bench(executor, ledger, watch, workers=count))
+
+
+def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis, ...]:
+    """Every place of every effect that the axle does not have yet; InputError for an unknown id."""
+    for ident in exclude:
+        if ident not in EFFECTS:
+            raise InputError(
+                f"--exclude {ident}: is no effect; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
+            )
+    wanted = [e for e in EFFECTS.values() if e.id not in exclude and e.id not in axle.effects]
+    return tuple(h for e in wanted for h in e.hypotheses())
+
+
+def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
+    """The study's variables but those that are an effect in other words: they would absorb it wholly."""
+    held = {path for e in EFFECTS.values() for path in e.replaces}
+    named = set() if options.use == "selection" else set(options.use)
+    changes = [c for c in options.change if not any(fnmatchcase(path, c.match) for path in held & {c.match})]
+    use = [glob for glob in named if glob not in held] or ["*"]
+    free = options.model_copy(
+        update={"use": use, "leave_out": [*options.leave_out, *sorted(held)], "change": changes}
+    )
+    return build_space(axle, free, source)
+
+
+def discover_folder(
+    axle_path: Path, measurement_dir: Path, *, exclude: Sequence[str] = (), out: Path, workers: int = 1
+) -> dict[str, object]:
+    """An axle file against a folder of records, without a study file; the answer as data."""
+    from doe_kc.axle import read_axle
+    from doe_kc.measurement import reduce_measurement
+    from doe_kc.workflow.discovery_handover import discovery_document
+
+    axle = read_axle(axle_path)
+    measurement = reduce_measurement(measurement_dir, half_track=axle.half_track)
+    library = effect_library(axle, exclude)
+    space = discovery_space(axle, VariableOptions(), str(axle_path))
+    model = EffectModel(axle, space, record_likelihood(axle, measurement))
+    with processes(workers) as executor, Ledger(out / "discovery.sqlite") as ledger:
+        found = discover(model, library, Bench(executor, ledger, workers=workers))
+    return discovery_document(found, None)

@@ -1,0 +1,97 @@
+"""A correlation read back from its record and the store: the same, or judged by other weights."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doe_kc.campaign.key import design_key
+from doe_kc.campaign.record import Record, packed_outcome
+from doe_kc.campaign.store import open_store
+from doe_kc.correlation.result import Correlation
+from doe_kc.errors import InputError
+from doe_kc.reporting.correlation_characteristics import characteristic_frame
+from doe_kc.reporting.correlation_evaluations import evaluation_frame
+from doe_kc.reporting.correlation_terms import term_frame
+from doe_kc.study import Study, read_study
+from doe_kc.targets import CharacteristicOptions
+from doe_kc.true_solver.make import solver_for
+from doe_kc.workflow.measure import Reduced
+from doe_kc.workflow.recall import recall, write_run
+from tests.correlation.cases import measured
+from tests.reference import EXAMPLE
+from tests.reporting.correlations import CAR, ODD_WEIGHTS, odd, real
+
+REDUCED = Reduced(measured(CAR), None)
+
+
+def kept(found: Correlation, out: Path, *weights: CharacteristicOptions) -> Study:
+    """A study with the record and the evaluations of a correlation."""
+    plain = replace(read_study(EXAMPLE, out=out), windows={}, characteristics=weights, curves=())
+    with open_store(plain.store, solver_for(plain.axle, plain.solver)) as store:
+        for e in found.run.evaluated:
+            values = found.problem.space.values(e.point)
+            row = Record(
+                key=design_key(values),
+                parameters=values,
+                packed=packed_outcome(e.outcome),
+                windows={},
+                origin="test",
+                created="2026-01-31",
+                versions={},
+            )
+            store.put(row)
+    write_run(found, out)
+    return plain
+
+
+def chosen(found: Correlation, place: int) -> Correlation:
+    return replace(found, run=replace(found.run, best=place))
+
+
+def test_the_same_weights_give_the_same_correlation(tmp_path: Path) -> None:
+    merits = [e.merit for e in odd().run.evaluated]
+    found = chosen(odd(), int(np.argmax(merits)))
+    again = recall(kept(found, tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path)
+    assert again.run.best == found.run.best
+    assert [e.merit for e in again.run.evaluated] == pytest.approx(merits, rel=1e-12)
+    assert again.values == found.values
+    for one, other in zip(again.run.evaluated, found.run.evaluated, strict=True):
+        assert (one.candidate.predicted is None) == (other.candidate.predicted is None)
+    assert again.posterior is not None and found.posterior is not None
+    np.testing.assert_array_equal(again.posterior.sd, found.posterior.sd)
+    for mine, known in zip(again.problem.space.variables, found.problem.space.variables, strict=True):
+        assert replace(mine, parameter=known.parameter) == known
+    assert again.problem.space.ties == found.problem.space.ties
+
+
+def test_standard_deviations_of_another_design_are_left_out(tmp_path: Path) -> None:
+    again = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path)
+    assert again.run.best != odd().run.best and again.posterior is None
+
+
+def test_other_weights_need_no_evaluation(tmp_path: Path) -> None:
+    study = kept(odd(), tmp_path, CharacteristicOptions(match="*", linear=3.0, constraint=False))
+    again = recall(study, REDUCED, tmp_path)
+    plain = term_frame(odd())
+    objectives = plain[(plain["kind"] == "objective") & (plain["goal"] == "target")]
+    now = term_frame(again)
+    assert again.feasible and set(objectives["id"]) <= set(now[now["kind"] == "objective"]["id"])
+    merits = [e.merit for e in again.run.evaluated]
+    assert again.rating == max(merits) == pytest.approx(now["final_term"].sum())
+    assert len(evaluation_frame(again)) == 10 and not characteristic_frame(again).empty
+
+
+def test_the_fit_keeps_the_design_that_it_chose(tmp_path: Path) -> None:
+    again = recall(kept(chosen(real(), 0), tmp_path), REDUCED, tmp_path)
+    assert again.run.best == 0 and max(e.merit for e in again.run.evaluated) > again.rating
+
+
+def test_a_store_without_the_designs(tmp_path: Path) -> None:
+    study = kept(odd(), tmp_path / "one", *ODD_WEIGHTS)
+    empty = replace(study, out=tmp_path / "other")
+    with pytest.raises(InputError, match=r"evaluation 0 is not in .*run doe-kc correlate again"):
+        recall(empty, REDUCED, tmp_path / "one")
