@@ -44,14 +44,14 @@ class Car:
         """What a rig without noise reads. NotConverged when the axle has no equilibrium somewhere."""
         stiffens = any(h.stiffening for h in (*self.hidden, *self.clutter))
         benches = [Bench(self.true_axle(load)) for load in ((-1.0, 1.0) if stiffens else (0.0,))]
-        static = {r: np.mean([b.static[r] for b in benches], axis=0) for r in benches[0].static}
+        static = benches[0].static
         loops = {}
         for name, case in benches[0].axle.load_cases.items():
             inputs = triangle(case.amplitude, self.warp.get(name, 0.0))
             done, path = rig.driven(case, inputs, self.axle, self.hidden)
             ends = [bench.loop(done, path) for bench in benches]
             relative = inputs[:-1] / case.amplitude
-            channels = _blended(ends, np.abs(relative))
+            channels = _blended(ends, [bench.static for bench in benches], np.abs(relative))
             channels = rig.read(case, inputs[:-1], channels, static, self.hidden)
             if self.outside is not None:
                 channels = self.outside.read(name, relative, channels)
@@ -87,12 +87,19 @@ class CleanRecords:
         return values if response == TYRE_LOAD else values - self.static[response][:, None]
 
 
-def _blended(ends: list[dict[str, FloatArray]], load: FloatArray) -> dict[str, FloatArray]:
+def _blended(
+    ends: list[dict[str, FloatArray]], statics: list[Mapping[str, FloatArray]], load: FloatArray
+) -> dict[str, FloatArray]:
     """Between the axle unloaded and under full load, as the load goes (n,): equilibria of springs whose
-    stiffness follows the load."""
+    stiffness follows the load. The state at rest is one: what a preloaded spring has sagged stays."""
     if len(ends) == 1:
         return ends[0]
-    return {r: (1.0 - load) * ends[0][r] + load * ends[1][r] for r in ends[0]}
+    out = {}
+    for response in ends[0]:
+        rest = [static.get(response, np.zeros(2))[:, None] for static in statics]
+        changes = [end[response] - at for end, at in zip(ends, rest, strict=True)]
+        out[response] = (rest[0] + rest[1]) / 2.0 + (1.0 - load) * changes[0] + load * changes[1]
+    return out
 
 
 def with_tables(axle: Axle, tables: Mapping[tuple[str, str], list[list[float]]]) -> Axle:

@@ -43,5 +43,5 @@ def always_none(truth: Truth) -> dict[str, Any]:
 def lucky(truth: Truth, seed: int = 0) -> dict[str, Any]:
     """Names any effect, and is sure of it."""
     ident = random.Random(f"{seed} {truth.name}").choice(REFERENCE)
-    effect = {"id": ident, "location": None, "probability": 0.95, "parameters": {}}
+    effect: dict[str, Any] = {"id": ident, "location": None, "probability": 0.95, "parameters": {}}
     return {**BLANK, "verdict": "named", "effects": [effect], "seconds": 1.0}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -36,7 +37,7 @@ def read(
     """Response -> (2, n) as the rig's wrong sensors give it, absolute. static: response -> (2,) at rest."""
     out = dict(channels)
     for response, gain in _options(hidden, "rig_channel_gain").items():
-        zero = 0.0 if response == TYRE_LOAD else static[response][:, None]
+        zero = static[response][:, None] * (response != TYRE_LOAD)
         out[response] = zero + float(gain) * (out[response] - zero)
     if case.id == "roll" and _options(hidden, "roll_technique").get("technique") == "wheel_to_ground":
         # the right side goes down: the road leans the left wheel's top inwards, the right one's outwards
@@ -44,5 +45,5 @@ def read(
     return out
 
 
-def _options(hidden: Sequence[Hidden], ident: str) -> Mapping[str, object]:
+def _options(hidden: Sequence[Hidden], ident: str) -> Mapping[str, Any]:
     return next((h.options for h in hidden if h.id == ident), {})

@@ -25,12 +25,13 @@ SD = {
     "static.camber": 0.1,
     "bump_stop.clearance": 1.0,
     "rebound_stop.clearance": 1.0,
-    "ride_height": 0.3,
     "spring.rate": 0.02,
     "tyre.rate": 0.02,
     "arb.radius": 0.01,  # 4 % of its rate
 }
 """mm and deg; of the logarithm for stiffnesses, rates and radii."""
+EFFECTS_THEMSELVES = ("ride_height",)
+"""Variables that are a hidden effect in other words: its size is drawn with the effects."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +55,11 @@ ANGLE_SIDES = 0.02
 
 
 def scattered(axle: Axle, rng: np.random.Generator, spread: Spread) -> dict[str, float]:
-    """Path -> absolute value of every variable that a correlation tunes by default."""
+    """Path -> absolute value of what a correlation tunes by default."""
     more = rng.random() < MORE_SHARE
     out = {}
     for parameter in design_parameters(axle):
-        if not in_model(parameter):
+        if not in_model(parameter) or parameter.path in EFFECTS_THEMSELVES:
             continue
         sd = MORE_SD if more and parameter.group == "BUSHINGS" else _sd(parameter)
         step = spread.width * sd * cut_normal(rng) + spread.shift * sd * sign(rng)

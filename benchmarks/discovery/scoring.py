@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from benchmarks.discovery.answer import Answer, Named
+from benchmarks.discovery.sides import numbers, place
 from benchmarks.discovery.truth import TrueEffect, Truth
 
 
@@ -34,12 +35,12 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Score:
-    """exact: the names are the hidden effects, no more and no less. found: all are named. top: the first name is a hidden effect.
-    in_class: every hidden effect is named or in a class. wrong: some name is not what is there; trace: some
-    name is clutter, rightly sized but too small to matter. missed: answered that nothing is missing.
-    placed: an unexplained deviation is reported where it is. located: right places over places asked.
-    closed, decoy: share of the gap that the named effects, and the best other one, close; nan where the
-    answer gives none.
+    """exact: the names are the hidden effects, no more and no less. found: all of these are named. top: the
+    first name is one of them. in_class: each is named or in a class. wrong: some name is not what is there;
+    trace: some name is clutter, rightly sized but too small to matter. missed: answered that nothing is
+    missing. placed: an unexplained deviation is reported where it is. located: right places over places
+    asked. closed, decoy: share of the gap that the named effects, and the best other one, close; nan where
+    the answer gives none.
     """
 
     name: str
@@ -95,7 +96,7 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         first=answer.first,
         verdict=answer.verdict,
         names=answer.names,
-        exact=names == truth.ids and answer.verdict not in ("unexplained", "failed"),
+        exact=names == truth.ids and not truth.outside and answer.verdict not in ("unexplained", "failed"),
         found=bool(truth.ids) and truth.ids <= names,
         top=answer.first in truth.ids,
         in_class=bool(truth.ids) and truth.ids <= answer.offered,
@@ -122,15 +123,16 @@ def _traced(truth: Truth, named: Named) -> bool:
 
 
 def _located(pairs: list[tuple[TrueEffect, Named]]) -> tuple[int, int]:
-    asked = [(t.location.lower(), (n.location or "").lower()) for t, n in pairs if t.location]
+    asked = [(place(t.id, t.location), place(t.id, n.location or "")) for t, n in pairs if t.location]
     return sum(t == n for t, n in asked), len(asked)
 
 
 def _estimates(pairs: list[tuple[TrueEffect, Named]]) -> Iterator[Estimate]:
     for t, n in pairs:
-        for name, (value, sd) in n.parameters.items():
-            if name in t.parameters:
-                yield Estimate(t.id, name, t.parameters[name], value, sd, t.approximate)
+        true = numbers(t.id, {name: (value, 0.0) for name, value in t.parameters.items()})
+        for name, (value, sd) in numbers(t.id, n.parameters).items():
+            if name in true:
+                yield Estimate(t.id, name, true[name][0], value, sd, t.approximate)
 
 
 def _believed(truth: Truth, answer: Answer) -> tuple[tuple[float, bool], ...]:

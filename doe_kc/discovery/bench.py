@@ -14,6 +14,7 @@ from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.ledger import Arrays, Ledger, fingerprint, key_of
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
+from doe_kc.discovery.scan import Scan, scan
 from doe_kc.discovery.screen import Screened, screen
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
@@ -65,11 +66,16 @@ class Bench:
             self.watch("screening effects", len(part))
         return [out[i] for i in range(len(hypotheses))]
 
-    def fitted(self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str) -> list[Fit | None]:
-        """Fits from several starts; None where the start has no equilibrium."""
+    def fitted(
+        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
+    ) -> list[Fit | None]:
+        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step."""
         keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
         out: dict[int, Fit | None] = {}
-        tasks = [(m, z, self._ledger.get(key)) for (m, z), key in zip(starts, keys, strict=True)]
+        tasks = [
+            (m, z, tuning[:, : m.dimension], self._ledger.get(key))
+            for (m, z), key in zip(starts, keys, strict=True)
+        ]
         for i, result in self._run(_fit_one, tasks):
             out[i] = result
             self._ledger.put(keys[i], _packed_fit(result))
@@ -84,6 +90,15 @@ class Bench:
             found[i] = result
             self.watch("load cases held out", 1)
         return tuple(found[i] for i in range(len(cases)))
+
+    def scanned(self, tuned: Fit, temper: float) -> Scan | None:
+        """The generic scan at a model; None when its axle has no equilibrium with the instruments in."""
+        try:
+            found = scan(tuned, projection(tuned), temper=temper)
+        except NotConverged:
+            found = None
+        self.watch("scanning every interface", 1)
+        return found
 
     def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
         """(place, result) of every task as it is done; in this process one is done before the next begins."""
@@ -101,14 +116,14 @@ def _screen_many(found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]
     return [screen(found, project, h) for h in hypotheses]
 
 
-def _fit_one(model: EffectModel, start: FloatArray, known: Arrays | None) -> Fit | None:
+def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray, known: Arrays | None) -> Fit | None:
     """The fit, from what the ledger says of it where it says anything."""
     if known is not None:
         if not known["z"].size:
             return None
         return restored(model, known["z"], int(known["evaluations"]), bool(known["converged"]))
     try:
-        return fit(model, start)
+        return fit(model, start, tuning=tuning)
     except NotConverged:
         return None
 

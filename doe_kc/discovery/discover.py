@@ -39,13 +39,15 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
     predicted = bench.held_out(found.tuned, found.plain) if relevant else ()
     judged = verdict(relevant, remaining, predicted, found.tuned, found.plain)
+    before = remaining_map(shapes, found.tuned.residual, projection(found.tuned))
+    somewhere = None if before.agrees else bench.scanned(found.tuned, max(1.0, remaining.mean_square))
     decoy = best_decoy(found, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
     stands = _standings(found, project, every, len(library))
     ambiguous = classes(relevant) if judged.kind == "class" else ()
     return Discovery(
         verdict=judged.kind,
-        sentences=sentences(judged, relevant, whole, remaining),
+        sentences=sentences(judged, relevant, whole, remaining, somewhere),
         findings=relevant,
         traces=tuple(f for f in every if not f.relevant),
         classes=ambiguous,
@@ -55,7 +57,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         decoy=decoy,
         nominal=nominal,
         raw=raw_map(shapes, nominal),
-        tuned=remaining_map(shapes, found.tuned.residual, projection(found.tuned)),
+        tuned=before,
         final=remaining,
         gap=whole,
         gaps=each,
@@ -63,6 +65,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         returned=returned(found.tuned, found.plain) if relevant else (),
         next_tests=next_tests(judged, relevant, ambiguous, stands),
         seconds=time.perf_counter() - started,
+        scan=somewhere,
     )
 
 

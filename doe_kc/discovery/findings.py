@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import logsumexp
+from scipy.special import log_ndtr, logsumexp
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import projection
@@ -18,6 +18,8 @@ from doe_kc.typing import FloatArray
 
 RELEVANT = 0.1
 """Amplitude, in typical sizes, below which an effect is a trace: seen, but not worth a name."""
+CONFIDENT = 2.0
+"""Standard deviations by which an effect must be above that."""
 UNLISTED = 0.02
 """Prior odds that an effect outside the library, which looks like the one named, is at work instead."""
 MENTIONED = 0.01
@@ -33,12 +35,12 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
     final = found.final
     step = accepted_at(found, hypothesis)
     shares = probabilities(step.trials, step.temper, unexplained)
-    amplitudes = final.z[place]
+    amplitudes = found.plain.z[place]
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, amplitudes, strict=True)]
-    largest = max((abs(a) for s, a in sizes if s.growth != "shape"), default=1.0)
     sd = np.sqrt(np.diag(final.covariance))[place]
     own = next(s for s in step.screened if s.hypothesis == hypothesis)
-    detectability = _detectability(final, place) if sizes else own.detectability
+    detectability = _detectability(found.plain, place) if sizes else own.detectability
+    counted = [(abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if s.growth != "shape"]
     rivals = tuple(
         Rival(effect, p)
         for effect, p in sorted(shares.items(), key=lambda item: -item[1])
@@ -52,8 +54,8 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
         gain=next(t.gain for t in step.trials if t.hypothesis == hypothesis),
         detectability=detectability,
         wrong_name=_wrong_name(step, own, detectability),
-        largest=largest,
-        relevant=largest >= RELEVANT,
+        largest=max((a for a, _ in counted), default=1.0),
+        relevant=not counted or any(a - CONFIDENT * e >= RELEVANT for a, e in counted),
     )
 
 
@@ -83,7 +85,14 @@ def probabilities(trials: Sequence[Trial], temper: float, unexplained: float) ->
 
 
 def estimate(size: Size, amplitude: float, sd: float) -> Estimate:
-    """A size at its value, with the standard deviation of the value to first order."""
+    """A size at its value, with the standard deviation of the value to first order.
+
+    A size that cannot be negative is taken at the mean of its half-line's Gaussian, so that one that the
+    data do not see is not given as exactly nothing.
+    """
+    if not (size.signed or size.growth == "shape") and sd > 0.0:
+        inverse_mills = float(np.exp(-0.5 * (amplitude / sd) ** 2 - log_ndtr(amplitude / sd)))
+        amplitude += sd * inverse_mills / float(np.sqrt(2.0 * np.pi))
     step = min(0.01, 0.1 * sd)
     floor = 0.0 if size.signed or size.growth == "shape" else step
     at = max(amplitude, floor)

@@ -20,6 +20,8 @@ from doe_kc.typing import FloatArray
 
 CONVERGED = 0.02
 """Predicted decrease of the sum of squares below which a fit stands."""
+SMALL = 1.0
+"""Predicted decrease below which a step is the last, its derivatives those of the step before."""
 POOR, GOOD = 0.25, 0.75
 STEPS = 14
 SMALLEST = 1e-4
@@ -87,16 +89,15 @@ class Fit:
         return total
 
 
-def fit(model: EffectModel, start: FloatArray, *, steps: int = STEPS, known: Fit | None = None) -> Fit:
-    """The most probable point reached from `start` (d + m,); known: expansion of the same model there.
+def fit(
+    model: EffectModel, start: FloatArray, *, steps: int = STEPS, tuning: FloatArray | None = None
+) -> Fit:
+    """The most probable point reached from `start` (d + m,). NotConverged when the start has no solution.
 
-    NotConverged when the start has no solution.
+    tuning: (M, d) derivatives at a model nearby, good enough for the first step.
     """
     z = np.clip(start, model.lower, model.upper)
-    if known is not None:
-        current = replace(known, model=model, cost=cost_of(model, z, known.residual))
-    else:
-        current = _expanded(model, z, model.residual(z), 1)
+    current = _expanded(model, z, model.residual(z), 1, tuning)
     radius = 1.0
     for _ in range(steps):
         gradient = current.gradient
@@ -120,10 +121,9 @@ def fit(model: EffectModel, start: FloatArray, *, steps: int = STEPS, known: Fit
         elif ratio > GOOD:
             radius = min(LARGEST_RADIUS, 2.0 * radius)
         if residual is not None and cost < current.cost:
-            gained = current.cost - cost
+            if predicted < SMALL:
+                return replace(current, z=trial, residual=residual, cost=cost, converged=True)
             current = _expanded(model, trial, residual, current.evaluations)
-            if gained < CONVERGED:
-                return replace(current, converged=True)
         if radius < SMALLEST:
             return current
     return current
@@ -141,9 +141,27 @@ def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     return float(seen @ seen + np.sum(((z - model.centre) / model.prior_sd) ** 2))
 
 
-def _expanded(model: EffectModel, z: FloatArray, residual: FloatArray, evaluations: int) -> Fit:
+def rewhitened(found: Fit, model: EffectModel) -> Fit:
+    """The fit's point against the same records with other errors, those of `model`; nothing is solved."""
+    residual, jacobian = found.residual.copy(), found.jacobian.copy()
+    pairs = zip(found.model.likelihood.slices(), model.likelihood.curves, strict=True)
+    for (before, place), now in pairs:
+        residual[place] = now.whitened(before.root @ residual[place])
+        jacobian[place] = now.whitened(before.root @ jacobian[place])
+    return replace(
+        found, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, found.z, residual)
+    )
+
+
+def _expanded(
+    model: EffectModel,
+    z: FloatArray,
+    residual: FloatArray,
+    evaluations: int,
+    tuning: FloatArray | None = None,
+) -> Fit:
     growth = model.growth(z, residual)
-    jacobian = np.hstack([model.tuning(z), growth])
+    jacobian = np.hstack([model.tuning(z) if tuning is None else tuning, growth])
     cost = cost_of(model, z, residual)
     return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
 

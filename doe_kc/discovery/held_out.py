@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, fit, followed
+from doe_kc.discovery.fit import Fit, followed
 from doe_kc.typing import FloatArray
 
 
@@ -36,13 +36,9 @@ class HeldOut:
 
 def held_out(tuned: Fit, final: Fit, case: str) -> HeldOut:
     """One load case of the records, predicted from all the others."""
-    without = fit(replace(tuned.model, left_out=case), tuned.z, steps=REFITS, known=tuned)
+    without = followed(tuned, replace(tuned.model, left_out=case))
     with_effect = followed(final, replace(final.model, left_out=case))
     return HeldOut(case, _prediction(without), _prediction(with_effect))
-
-
-REFITS = 2
-"""Steps of the re-tuned model without the effect: it follows its data further, as it fits them badly."""
 
 
 def _prediction(found: Fit) -> Prediction:

@@ -77,7 +77,7 @@ class EffectModel:
     @property
     def dimension(self) -> int:
         """d, parameters and nuisances: all that tuning may move."""
-        return self.space.dimension + self.nuisances.shape[1]
+        return self.space.dimension + int(self.nuisances.shape[1])
 
     @cached_property
     def prior_sd(self) -> FloatArray:

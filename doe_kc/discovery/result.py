@@ -10,6 +10,7 @@ from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
+from doe_kc.discovery.scan import Scan
 from doe_kc.discovery.search import Search, Trial
 from doe_kc.discovery.standing import Standing
 from doe_kc.effects.hypothesis import Hypothesis
@@ -99,6 +100,7 @@ class Discovery:
     findings: effects worth naming, largest first; leads where the verdict is unexplained. traces: effects
     that the data show but too small to matter. sentences: the verdict in words. raw: map of the nominal
     axle; tuned: after re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
+    scan: places of the generic scan at the re-tuned axle, None where noise explains what remains there.
     """
 
     verdict: VerdictKind
@@ -120,12 +122,12 @@ class Discovery:
     returned: tuple[Returned, ...]
     next_tests: tuple[str, ...]
     seconds: float
-    notes: tuple[str, ...] = ()
+    scan: Scan | None = None
 
     @property
     def fitted(self) -> Fit:
         """The most probable axle, with the effects."""
-        return self.search.final
+        return self.search.plain
 
     @property
     def held_out_by_case(self) -> Mapping[str, HeldOut]:

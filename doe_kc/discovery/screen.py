@@ -23,6 +23,8 @@ from doe_kc.typing import FloatArray
 PROBE = 0.3
 """First size at which an effect is solved for, in typical sizes."""
 STEPS = 4
+HOPELESS = 1.0
+"""ln likelihood that a step must promise over the model without the effect, or the effect is given up."""
 ENOUGH = 0.1
 """Decrease of the sum of squares below which an amplitude stands."""
 SHAPES = (0.0, -2.0, 2.0)
@@ -95,36 +97,61 @@ def _starts(hypothesis: Hypothesis) -> list[FloatArray]:
 
 @dataclass(frozen=True)
 class _Followed:
-    """amplitudes (m,), columns (M, m) and change (M,) there."""
+    """amplitudes (m,), columns (M, m) and change (M,) there; reduced: (M + d,) what re-tuning leaves.
+
+    followed: False where amplitudes and cost are those that a first step promises, which is nothing.
+    """
 
     amplitudes: FloatArray
     columns: FloatArray
     change: FloatArray
+    reduced: FloatArray
     cost: float
+    followed: bool = True
 
 
 def _followed(model: EffectModel, found: Fit, project: Projection, start: FloatArray) -> _Followed:
-    """Gauss-Newton steps of the amplitudes on true solutions."""
+    """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing."""
     place = slice(found.z.size, found.z.size + start.size)
     low, high = model.lower[place], model.upper[place]
-    a, best = start, None
-    for _ in range(STEPS):
-        z = np.concatenate([found.z, a])
-        residual = model.residual(z)
-        reduced = project.residual(residual)
-        cost = float(reduced @ reduced + a @ a)
-        gained = np.inf if best is None else best.cost - cost
-        if gained <= 0.0:
+    plain = project.residual(found.residual)
+    without = float(plain @ plain)
+    best = _solved(model, found, project, start, place, None)
+    for _ in range(STEPS if start.size else 0):
+        projected = project(best.columns)
+        hessian = projected.T @ projected + np.eye(start.size)
+        slope = projected.T @ best.reduced + best.amplitudes
+        step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
+        predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
+        if without - predicted < 2.0 * HOPELESS:
+            return replace(best, amplitudes=best.amplitudes + step, cost=predicted, followed=False)
+        trial = _solved(model, found, project, best.amplitudes + step, place, best.columns)
+        if trial.cost >= best.cost:
             break
-        columns = model.growth(z, residual, which=place)
-        best = _Followed(a, columns, residual - found.residual, cost)
-        if gained < ENOUGH or not a.size:
+        gained, best = best.cost - trial.cost, trial
+        if gained < ENOUGH:
             break
-        projected = project(columns)
-        hessian = projected.T @ projected + np.eye(a.size)
-        a = a + bounded_step(hessian, projected.T @ reduced + a, low - a, high - a)
-    assert best is not None
+        best = _solved(model, found, project, best.amplitudes, place, None, known=best)
     return best
+
+
+def _solved(
+    model: EffectModel,
+    found: Fit,
+    project: Projection,
+    amplitudes: FloatArray,
+    place: slice,
+    columns: FloatArray | None,
+    known: _Followed | None = None,
+) -> _Followed:
+    """The true solution at some amplitudes; columns: None has them computed."""
+    z = np.concatenate([found.z, amplitudes])
+    residual = known.change + found.residual if known is not None else model.residual(z)
+    if columns is None:
+        columns = model.growth(z, residual, which=place)
+    reduced = known.reduced if known is not None else project.residual(residual)
+    cost = float(reduced @ reduced + amplitudes @ amplitudes)
+    return _Followed(amplitudes, columns, residual - found.residual, reduced, cost)
 
 
 def _summary(
@@ -160,7 +187,7 @@ def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
     columns = project(known.columns if known.amplitudes.size else known.change[:, None])
     hessian = columns.T @ columns + np.eye(columns.shape[1])
     slope = columns.T @ plain
-    amplitudes = -np.linalg.solve(hessian, slope)
+    amplitudes = np.asarray(-np.linalg.solve(hessian, slope), dtype=np.float64)
     gain = 0.5 * float(-slope @ amplitudes) - 0.5 * float(np.linalg.slogdet(hessian)[1])
     whole = float(known.change @ known.change)
     return replace(
@@ -168,7 +195,7 @@ def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
         amplitudes=amplitudes if known.amplitudes.size else known.amplitudes,
         sd=np.sqrt(np.diag(np.linalg.inv(hessian)))[: known.amplitudes.size],
         gain=gain,
-        score=float(np.sqrt(max(0.0, -slope @ amplitudes))),
+        score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
         detectability=float(np.linalg.norm(seen)),
         absorbed=1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
     )

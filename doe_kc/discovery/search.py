@@ -7,26 +7,33 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
-from doe_kc.discovery.fit import Fit, fit, restored
+from doe_kc.discovery.fit import Fit, fit, followed, rewhitened
 from doe_kc.discovery.granted import granted
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
+from doe_kc.discovery.projection import Projection, projection
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.typing import FloatArray
 
 MOST = 6
 """Effects, named ones and traces, after which the search ends."""
 LEADERS = 5
 """Hypotheses refitted jointly at each step."""
+RIVAL = 0.3
+"""|correlation| of what two effects explain from which they are rivals."""
 WORTH = 0.2
 """Share of the best screened gain below which a hypothesis is not refitted."""
 OF_ONE_KIND = 2
 """Places of the same effect that are refitted at most."""
-FALSE_ALARM = 0.05
+FALSE_ALARM = 0.01
+"""Chance that noise alone brings in any effect at a step."""
+TRACE = 0.1
+"""Typical sizes below which an effect is no more than a trace, and needs no decoy."""
 PROMISING = 1.0
 """ln evidence to first order from which a hypothesis is screened anew at a later step."""
 SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
@@ -61,7 +68,7 @@ class Step:
 class Search:
     """tuned: without any effect. final: with all accepted ones, the shape of their laws granted.
 
-    plain: the same point, against the records' own errors.
+    plain: fitted to the records' own errors alone, from there: what is handed over, with the smallest gap.
     """
 
     tuned: Fit
@@ -84,9 +91,19 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
         if not step.accepted or len(step.trials[0].fit.model.members) > MOST:
             break
         current = pruned(step.trials[0].fit, threshold(len(library)), bench)
-        current = fit(granted(current.model, model.likelihood, current.z), current.z)
-    plain = replace(current.model, likelihood=model.likelihood)
-    return Search(tuned, tuple(steps), current, restored(plain, current.z, current.evaluations, True))
+        current = with_open_laws(current, model.likelihood)
+    own = replace(current.model, likelihood=model.likelihood)
+    return Search(tuned, tuple(steps), current, followed(rewhitened(current, own), own))
+
+
+def with_open_laws(current: Fit, likelihood: Likelihood) -> Fit:
+    """The fit with the laws of its effects left open, unless they explain the records as they are."""
+    model = replace(current.model, likelihood=likelihood)
+    exact = followed(rewhitened(current, model), model)
+    if remaining_map(contrasts(likelihood), exact.residual, projection(exact)).agrees:
+        return exact
+    wider = granted(model, likelihood, exact.z)
+    return followed(rewhitened(exact, wider), wider)
 
 
 def tune(model: EffectModel) -> Fit:
@@ -122,7 +139,7 @@ def _step(
     full = {s.hypothesis.name: s for s in bench.screened(current, again)}
     screened = [full.get(h.name) or quick[h.name] for h in candidates]
     screened.sort(key=lambda s: -s.gain)
-    trials = tried(current, leaders(screened, threshold(len(library)) / 2.0), bench)
+    trials = tried(current, leaders(screened, project, threshold(len(library)) / 2.0), bench)
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
     after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
@@ -131,17 +148,34 @@ def _step(
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
 
 
-def leaders(screened: Sequence[Screened], least: float) -> list[Screened]:
-    """Those worth a refit, best first; a decoy of another kind is always among them."""
-    out: list[Screened] = []
-    for s in screened:
+def leaders(screened: Sequence[Screened], project: Projection, least: float) -> list[Screened]:
+    """The best and its rivals, which would explain the same; a decoy of another kind is among them.
+
+    Effects that explain something else are no rivals: they have their own step.
+    """
+    if not screened or screened[0].gain <= least:
+        return []
+    best = screened[0]
+    out = [best]
+    own = _explained(best, project)
+    for s in screened[1:]:
+        if s.gain <= max(least, WORTH * best.gain) or len(out) == LEADERS:
+            break
         kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
-        enough = s.gain > least and s.gain > WORTH * screened[0].gain
-        if enough and kind < OF_ONE_KIND and len(out) < LEADERS:
+        if kind < OF_ONE_KIND and abs(float(own @ _explained(s, project))) > RIVAL:
             out.append(s)
-    if out and all(s.hypothesis.effect == out[0].hypothesis.effect for s in out):
-        out += [s for s in screened if s.hypothesis.effect != out[0].hypothesis.effect and not s.failed][:1]
+    small = best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < TRACE
+    if not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
+        out += [s for s in screened if s.hypothesis.effect != best.hypothesis.effect and not s.failed][:1]
     return out
+
+
+def _explained(screened: Screened, project: Projection) -> FloatArray:
+    """(M + d,) direction of what the effect does at its size, after re-tuning."""
+    change = screened.columns @ screened.amplitudes if screened.amplitudes.size else screened.change
+    seen = project(change)
+    length = float(np.linalg.norm(seen))
+    return np.asarray(seen / length if length > 0.0 else seen)
 
 
 def compatible(model: EffectModel, hypothesis: Hypothesis) -> bool:
@@ -164,7 +198,7 @@ def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Tria
     starts = [
         (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
     ]
-    fits = bench.fitted(starts, "refitting leaders")
+    fits = bench.fitted(starts, "refitting leaders", current.jacobian)
     trials = [
         Trial(s.hypothesis, f, f.evidence - current.evidence)
         for s, f in zip(screened, fits, strict=True)
@@ -178,7 +212,11 @@ def pruned(found: Fit, least: float, bench: Bench) -> Fit:
     while len(found.model.members) > 1:
         members = list(found.model.places())[:-1]
         starts = [(found.model.without(h), np.delete(found.z, np.r_[place])) for h, place in members]
-        fewer = [f for f in bench.fitted(starts, "taking effects out") if f is not None]
+        fewer = [
+            f
+            for f in bench.fitted(starts, "taking effects out", found.jacobian[:, : found.model.dimension])
+            if f is not None
+        ]
         best = max(fewer, key=lambda f: f.evidence, default=None)
         if best is None or found.evidence - best.evidence > least:
             return found

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Finding, Gap
+from doe_kc.discovery.scan import Scan
 from doe_kc.discovery.standing import Standing
 from doe_kc.discovery.verdict import Verdict
 from doe_kc.effects import EFFECTS
@@ -14,7 +15,9 @@ ADVISED = 6
 """Tests that are listed at most."""
 
 
-def sentences(verdict: Verdict, findings: Sequence[Finding], gap: Gap, remaining: Map) -> tuple[str, ...]:
+def sentences(
+    verdict: Verdict, findings: Sequence[Finding], gap: Gap, remaining: Map, scan: Scan | None
+) -> tuple[str, ...]:
     """Verdict first, then each effect, then how far the gap shrank."""
     out = [_opening(verdict, findings)]
     out += [_one(f) for f in findings]
@@ -24,6 +27,8 @@ def sentences(verdict: Verdict, findings: Sequence[Finding], gap: Gap, remaining
             f"Unexplained: {c.load_case}, {c.response}, {c.shape} ({c.wheels}), {z:+.1f} standard deviations."
             for c, z in remaining.worst(3)
         ]
+        if scan is not None and scan.interface is not None:
+            out.append(f"The data point to {scan.places[0].words}.")
     out.append(
         f"Whitened RMS of all deviations: {gap.nominal:.2f} nominal, {gap.tuned:.2f} re-tuned without an "
         f"effect, {gap.with_effect:.2f} with what was found; {gap.noise_floor:.2f} is noise."

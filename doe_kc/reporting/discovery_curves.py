@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,16 +12,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from doe_kc.correlation.likelihood import Branches
 from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
-from doe_kc.discovery.contrasts import LOOP_SHAPES
 from doe_kc.discovery.result import Discovery
 from doe_kc.reporting import style
 from doe_kc.reporting.correlation_characteristics import case_label
 from doe_kc.reporting.correlation_curves import BAND, response_name
 from doe_kc.reporting.discovery_gaps import COLOURS
-from doe_kc.reporting.discovery_heat_map import signed
-from doe_kc.reporting.discovery_views import ModelView, model_views
+from doe_kc.reporting.discovery_views import ModelView, model_views, view_gaps
 from doe_kc.typing import FloatArray
 
 SHOWN = 6
@@ -37,19 +34,22 @@ SIDE_WORDS = ("left wheel", "right wheel")
 
 @dataclass(frozen=True)
 class WorstView:
-    """A curve of one wheel. half: measured half-width for the branches of a mean curve, (n,), else None."""
+    """A curve of one wheel. gaps: whitened RMS of both wheels by model. half: measured half-width for the
+    branches of a mean curve, (n,), else None."""
 
     view: ModelView
     side: int
-    shape: str
-    z: float
+    gaps: Mapping[str, float]
     half: FloatArray | None
 
     @property
     def title(self) -> str:
-        """Load case and wheel, and what disagrees by how much."""
+        """Load case and wheel, and the gap."""
         place = f"{case_label(self.view.load_case)}, {SIDE_WORDS[self.side]}"
-        return f"{place}\n{self.shape}, z = {signed(self.z)} after re-tuning"
+        gap = f"{self.gaps['tuned']:.1f} re-tuned"
+        if "with_effect" in self.gaps:
+            gap += f", {self.gaps['with_effect']:.1f} with the effect"
+        return f"{place}\ngap {gap}"
 
     @property
     def label(self) -> str:
@@ -62,27 +62,22 @@ class WorstView:
 
 
 def worst_views(found: Discovery) -> list[WorstView]:
-    """Largest disagreements after re-tuning; a curve's wheel is the one that the re-tuned model misses more.
-
-    At most two curves of a load case; where nothing disagrees, the largest deviations there are.
-    """
+    """Curves with the largest gaps after re-tuning, at most two of a load case, each of its worse wheel."""
     views = model_views(found)
-    order = np.argsort(-np.nan_to_num(np.abs(found.tuned.z)))
+    gaps = view_gaps(found)
     out: list[WorstView] = []
     taken: dict[str, int] = {}
-    for i in order:
-        contrast, z = found.tuned.names[i], float(found.tuned.z[i])
-        branches: Branches = "half_width" if contrast.shape in LOOP_SHAPES else "mean"
-        view = views.get((contrast.load_case, contrast.response, branches))
-        if view is None or any(w.view is view for w in out) or taken.get(contrast.load_case, 0) >= PER_CASE:
+    for key in sorted(gaps, key=lambda k: -gaps[k]["tuned"]):
+        view = views[key]
+        if taken.get(view.load_case, 0) >= PER_CASE:
             continue
+        loop = views.get((view.load_case, view.response, "half_width"))
         side = int(np.argmax(np.mean(view.deviation("tuned") ** 2, axis=1)))
-        loop = views.get((contrast.load_case, contrast.response, "half_width"))
         half = None
-        if branches == "mean" and loop is not None:
+        if view.branches == "mean" and loop is not None:
             half = np.interp(view.input, loop.input, loop.measured[side])
-        out.append(WorstView(view, side, contrast.shape, z, half))
-        taken[contrast.load_case] = taken.get(contrast.load_case, 0) + 1
+        out.append(WorstView(view, side, gaps[key], half))
+        taken[view.load_case] = taken.get(view.load_case, 0) + 1
         if len(out) == SHOWN:
             break
     return out

@@ -56,7 +56,8 @@ def held_out_figure(cases: Sequence[HeldOut], study: str) -> Figure:
 
 def gain_words(gain: float) -> str:
     """ln predictive density won, with its sign."""
-    return f"{gain:+,.{1 if abs(gain) < 100 else 0}f}".replace("-", "−").replace(",", " ")
+    text = f"{gain:+,.{1 if abs(gain) < 100 else 0}f}".replace(",", " ")
+    return text.replace("-0.0", "0.0").replace("+0.0", "0.0").replace("-", "−")
 
 
 def _handles() -> list[Line2D]:

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.standing import Status
@@ -53,7 +54,7 @@ def isolability(found: Discovery) -> Isolability:
     """In the order of the library; the axle re-tuned about the final model, sizes of its effects known."""
     order = list(EFFECTS)
     stands = sorted(found.standings, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
-    changes = {s.hypothesis.name: s.change for step in found.search.steps for s in step.screened}
+    changes = _changes(found)
     remaining = projection(found.fitted, effects=False)(
         np.array([changes[s.hypothesis.name] for s in stands]).T
     )
@@ -68,6 +69,25 @@ def isolability(found: Discovery) -> Isolability:
         np.array([s.detectable for s in stands]),
         correlation,
     )
+
+
+def _changes(found: Discovery) -> dict[str, FloatArray]:
+    """(M,) change of each hypothesis as screened last, in units of the final model's errors."""
+    final = found.fitted.model.likelihood
+    last = {s.hypothesis.name: (s, step) for step in found.search.steps for s in step.screened}
+    return {
+        name: rewhitened(s.change, step.before.model.likelihood, final) for name, (s, step) in last.items()
+    }
+
+
+def rewhitened(rows: FloatArray, before: Likelihood, after: Likelihood) -> FloatArray:
+    """(M,) of the same data, from units of one likelihood's errors to those of another."""
+    if before is after:
+        return rows
+    out = rows.copy()
+    for (old, place), new in zip(before.slices(), after.curves, strict=True):
+        out[place] = new.whitened(old.root @ rows[place])
+    return out
 
 
 def isolability_figure(table: Isolability, study: str) -> Figure:

@@ -68,7 +68,7 @@ def _arrow(ax: Axes, y: float, p: TunedParameter) -> None:
     start, end = p.tuned_distance, p.with_effect_distance
     ax.plot([start], [y], "o", color=COLOURS["tuned"], mfc="white", ms=4, mew=1.2, zorder=3)
     if np.isfinite(end):
-        look = {"arrowstyle": "-|>", "color": _colour(p), "lw": 1.1, "mutation_scale": 7, "shrinkA": 2}
+        look = {"arrowstyle": "-|>", "color": arrow_colour(p), "lw": 1.1, "mutation_scale": 7, "shrinkA": 2}
         ax.annotate("", (end, y), (start, y), arrowprops={**look, "shrinkB": 0})
     ax.text(1.02, y, values_words(p), transform=ax.get_yaxis_transform(), fontsize=6.2, va="center")
 
@@ -80,7 +80,8 @@ def values_words(p: TunedParameter) -> str:
     return f"{text}{unit_words(p.unit)}"
 
 
-def _colour(p: TunedParameter) -> str:
+def arrow_colour(p: TunedParameter) -> str:
+    """Blue where the effect brings it back, red where further off."""
     change = _away(p)
     return STILL if abs(change) < NEITHER else RETURNS if change < 0 else LEAVES
 

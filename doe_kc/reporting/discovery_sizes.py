@@ -44,7 +44,7 @@ class FoundSize:
 def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
     sd = np.sqrt(np.diag(found.fitted.covariance))
-    place = next(p for h, p in found.fitted.model.places() if h is finding.hypothesis)
+    place = next(p for h, p in found.fitted.model.places() if h == finding.hypothesis)
     for size, estimate, i in zip(
         finding.hypothesis.sizes, finding.estimates, range(place.start, place.stop), strict=True
     ):

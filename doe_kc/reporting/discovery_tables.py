@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from doe_kc.effects import EFFECTS
 from doe_kc.reporting.discovery_words import (
     STATUS_WORDS,
     effect_label,
+    hypothesis_label,
     limit_words,
     mistaken_words,
     place_of,
@@ -21,30 +23,43 @@ from doe_kc.reporting.discovery_words import (
 )
 
 
-def disagreement_frame(found: Discovery) -> pd.DataFrame:
-    """One row a contrast; z in standard deviations, nan where re-tuning absorbs it wholly, + = model above.
+@dataclass(frozen=True)
+class DisagreementRow:
+    """One contrast; z in standard deviations, nan where re-tuning absorbs it wholly, + = model above.
 
-    z_nominal counts the noise alone; the others what re-tuning cannot absorb.
+    z_nominal counts the noise alone; the others what re-tuning cannot absorb; nan without an effect.
     """
+
+    load_case: str
+    response: str
+    shape: str
+    wheels: str
+    z_nominal: float
+    z_tuned: float
+    z_with_effect: float
+
+
+def disagreement_rows(found: Discovery) -> list[DisagreementRow]:
+    """Every contrast of the records."""
     after = found.final.z if found.fitted.model.members else np.full(len(found.final.names), np.nan)
-    rows = [
-        {
-            "load_case": c.load_case,
-            "response": c.response,
-            "shape": c.shape,
-            "wheels": c.wheels,
-            "z_nominal": found.raw.z[i],
-            "z_tuned": found.tuned.z[i],
-            "z_with_effect": after[i],
-        }
+    return [
+        DisagreementRow(
+            c.load_case, c.response, c.shape, c.wheels,
+            float(found.raw.z[i]), float(found.tuned.z[i]), float(after[i]),
+        )
         for i, c in enumerate(found.raw.names)
-    ]
-    return pd.DataFrame(rows)
+    ]  # fmt: skip
+
+
+def disagreement_frame(found: Discovery) -> pd.DataFrame:
+    """One row a contrast, as `DisagreementRow`."""
+    return pd.DataFrame([vars(r) for r in disagreement_rows(found)])
 
 
 def library_frame(found: Discovery) -> pd.DataFrame:
     """One row a hypothesis, found ones first; detectable in words and as a multiple of the typical size."""
-    return pd.DataFrame([_library(s) for s in ordered_standings(found)])
+    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in found.standings}
+    return pd.DataFrame([_library(s, labels) for s in ordered_standings(found)])
 
 
 STATUS_ORDER = tuple(STATUS_WORDS)
@@ -63,7 +78,7 @@ def ordered_standings(found: Discovery) -> list[Standing]:
     )
 
 
-def _library(standing: Standing) -> dict[str, object]:
+def _library(standing: Standing, labels: Mapping[str, str]) -> dict[str, object]:
     h = standing.hypothesis
     return {
         "effect": h.effect,
@@ -75,7 +90,7 @@ def _library(standing: Standing) -> dict[str, object]:
         "typical": typical_words(h),
         "absorbed_percent": 100.0 * standing.absorbed,
         "hidden_by": hidden_words(standing),
-        "looks_like": alike_words(standing),
+        "looks_like": alike_words(standing, labels),
         "mistaken_for": mistaken_words(h.effect),
         "physics": EFFECTS[h.effect].physics,
         "shown_by": EFFECTS[h.effect].shown_by,
@@ -87,9 +102,9 @@ def hidden_words(standing: Standing) -> str:
     return ", ".join(f"{path} ({move:+.1f} sd)" for path, move in standing.hidden_by)
 
 
-def alike_words(standing: Standing) -> str:
-    """Hypotheses whose remaining change is the same, with the correlation."""
-    return ", ".join(f"{name} ({r:+.2f})" for name, r in standing.alike)
+def alike_words(standing: Standing, labels: Mapping[str, str]) -> str:
+    """Hypotheses whose remaining change is the same, with the correlation. labels: by their names."""
+    return "; ".join(f"{labels.get(name, name)} ({r:+.2f})" for name, r in standing.alike)
 
 
 def gap_frame(found: Discovery) -> pd.DataFrame:

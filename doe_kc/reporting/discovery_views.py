@@ -38,37 +38,66 @@ class ModelView:
         return np.asarray(np.sqrt(np.mean((self.models[model] - self.measured) ** 2, axis=1)))
 
 
-def residuals(found: Discovery) -> dict[str, FloatArray]:
-    """(M,) whitened residual of every model that there is, by the names of `Gap`."""
-    out = {"nominal": found.nominal, "tuned": found.search.tuned.residual}
+def model_names(found: Discovery) -> list[str]:
+    """Models that there are, by the names of `Gap`."""
+    names = ["nominal", "tuned"]
     if found.fitted.model.members:
-        out["with_effect"] = found.fitted.residual
+        names.append("with_effect")
+    return names if found.decoy is None else [*names, "best_decoy"]
+
+
+def model_values(found: Discovery) -> dict[str, list[FloatArray]]:
+    """Every model's curves in their units, in the order of the records'.
+
+    Each fit's residual is in units of its own errors: those of a model with effects grant the shape of
+    their laws.
+    """
+    tuned = found.search.tuned
+    fits = {"nominal": (tuned.model.likelihood, found.nominal)}
+    each = {"tuned": tuned, "with_effect": found.fitted}
     if found.decoy is not None:
-        out["best_decoy"] = found.decoy.fit.residual
-    return out
+        each["best_decoy"] = found.decoy.fit
+    fits |= {name: (fit.model.likelihood, fit.residual) for name, fit in each.items()}
+    return {
+        name: [curve.value + curve.root @ residual[place] for curve, place in likelihood.slices()]
+        for name, (likelihood, residual) in fits.items()
+        if name in model_names(found)
+    }
 
 
 def model_views(found: Discovery) -> dict[tuple[str, str, Branches], ModelView]:
     """Every load case and response of the records, by (load case, response, branches)."""
-    pairs: dict[tuple[str, str, Branches], list[tuple[CurveData, slice]]] = {}
-    for curve, place in found.fitted.model.likelihood.slices():
-        pairs.setdefault((curve.load_case, curve.response, curve.branches), []).append((curve, place))
-    each = residuals(found)
-    cases = found.fitted.model.axle.load_cases
-    labels = {name: f"{case.input_label} [{case.unit}]" for name, case in cases.items()}
-    return {key: _view(key, labels[key[0]], members, each) for key, members in pairs.items()}
+    model = found.search.tuned.model
+    pairs: dict[tuple[str, str, Branches], list[tuple[int, CurveData]]] = {}
+    for i, curve in enumerate(model.likelihood.curves):
+        pairs.setdefault((curve.load_case, curve.response, curve.branches), []).append((i, curve))
+    values = model_values(found)
+    labels = {name: f"{case.input_label} [{case.unit}]" for name, case in model.axle.load_cases.items()}
+    return {key: _view(key, labels[key[0]], members, values) for key, members in pairs.items()}
+
+
+def view_gaps(found: Discovery) -> dict[tuple[str, str, Branches], dict[str, float]]:
+    """Whitened RMS of both wheels, in units of the records' own errors, by model."""
+    likelihood = found.search.tuned.model.likelihood
+    squares: dict[tuple[str, str, Branches], dict[str, list[FloatArray]]] = {}
+    for name, values in model_values(found).items():
+        for curve, value in zip(likelihood.curves, values, strict=True):
+            key = (curve.load_case, curve.response, curve.branches)
+            each = squares.setdefault(key, {}).setdefault(name, [])
+            each.append(curve.whitened(value - curve.value) ** 2)
+    return {
+        key: {name: float(np.sqrt(np.mean(np.concatenate(parts)))) for name, parts in models.items()}
+        for key, models in squares.items()
+    }
 
 
 def _view(
     key: tuple[str, str, Branches],
     label: str,
-    members: list[tuple[CurveData, slice]],
-    each: Mapping[str, FloatArray],
+    members: list[tuple[int, CurveData]],
+    values: Mapping[str, list[FloatArray]],
 ) -> ModelView:
-    curves = [c for c, _ in members]
-    models = {
-        name: np.array([c.value + c.root @ residual[place] for c, place in members])
-        for name, residual in each.items()
-    }
+    curves = [c for _, c in members]
+    models = {name: np.array([each[i] for i, _ in members]) for name, each in values.items()}
     measured, level = np.array([c.value for c in curves]), np.array([c.level for c in curves])
     return ModelView(*key, label, curves[0].input, measured, level, models)

@@ -24,7 +24,7 @@ STATUS_WORDS: dict[Status, str] = {
     "found": "found",
     "trace": "seen, too small to matter",
     "excluded": "excluded",
-    "not testable": "not testable with these records",
+    "not testable": "not testable",
     "no solution": "has no equilibrium in this axle",
 }
 SIDE_WORDS = {"L": "left", "R": "right"}

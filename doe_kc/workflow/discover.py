@@ -56,6 +56,11 @@ def discover_study(
         return discover(model, library, Bench(executor, ledger, watch, workers=count))
 
 
+def expected_steps(study: Study) -> int:
+    """Steps that a discovery reports, about: one for each screening, refit and held-out load case."""
+    return len(effect_library(study.axle)) + 2 * len(study.axle.load_cases) + 10
+
+
 def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis, ...]:
     """Every place of every effect that the axle does not have yet; InputError for an unknown id."""
     for ident in exclude:

@@ -45,13 +45,19 @@ def study_records(study: Study, solution: Solution | None = None) -> Reduced | N
     return reduce_records(study, solution if solution is not None else solve(study.axle))
 
 
-def reduce_records(study: Study, solution: Solution) -> Reduced:
-    """The study's records, and their ride height relative to the solved model."""
+def study_measurement(study: Study) -> Measurement:
+    """The study's reduced records; InputError when it names none. Warns where the set-up differs."""
     measurement = reduce_measurement(
         study.measured(), windows=study.windows, half_track=study.axle.half_track
     )
     for sentence in setup_differences(study.axle, measurement.manifest):
         log.warning(sentence)
+    return measurement
+
+
+def reduce_records(study: Study, solution: Solution) -> Reduced:
+    """The study's records, and their ride height relative to the solved model."""
+    measurement = study_measurement(study)
     height = None
     if "vertical" in measurement.curves.cases and "vertical" in solution.cases:
         height = infer_ride_height(

@@ -1,4 +1,4 @@
-"""Small cars of which one thing is hidden: nominal axle, scatter, an effect, noise; and what is found in them.
+"""Small cars of which one thing is hidden: nominal axle, scatter, an effect, noise; and what is found in it.
 
 Four load cases, thirteen tunable parameters, a library of a dozen hypotheses: a search takes a second or two.
 """

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from doe_kc.reporting.page.correlation import correlation_sections, write_correlation_page
+from doe_kc.reporting.page.discovery import discovery_sections, write_discovery_page
 from doe_kc.reporting.page.section import Section, embedded, page_html, render
 
 __all__ = [
     "Section",
     "correlation_sections",
+    "discovery_sections",
     "embedded",
     "page_html",
     "render",
     "write_correlation_page",
+    "write_discovery_page",
 ]

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from markupsafe import Markup
 
 from doe_kc.comparison.deviation import rms_deviation
 from doe_kc.correlation.result import Correlation
@@ -14,6 +17,22 @@ from doe_kc.reporting.correlation_characteristics import case_label
 from doe_kc.reporting.correlation_curves import BAND, CaseView, case_views, response_name
 from doe_kc.reporting.page.section import Section, embedded, render
 
+
+@dataclass(frozen=True)
+class ShownModel:
+    """A model's curve: key of its set, name, colour and SVG dash pattern; shown: from the start."""
+
+    id: str
+    label: str
+    colour: str
+    dash: str = ""
+    shown: bool = True
+
+
+MODELS = (
+    ShownModel("baseline", "baseline", "#e69f00", "7 4"),
+    ShownModel("final", "final", "#0072b2"),
+)
 LEAD = "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
 
 
@@ -23,9 +42,27 @@ def curves_section(found: Correlation, measurement: Measurement | None) -> list[
     if not views:
         return []
     cases = {view.load_case: _case(view) for view in views}
-    data = {"cases": cases, "responses": {r: _response(r) for r in RIG_RESPONSES}, "band": BAND}
-    html = render("curves.html", data=embedded(data), cases=cases, responses=data["responses"])
-    return [Section("Curves", html, LEAD)]
+    responses = {r: _response(r) for r in RIG_RESPONSES}
+    return [Section("Curves", curves_html("curves", cases, responses, MODELS), LEAD)]
+
+
+def curves_html(
+    prefix: str,
+    cases: Mapping[str, Mapping[str, Any]],
+    responses: Mapping[str, Mapping[str, str]],
+    models: Sequence[ShownModel],
+) -> Markup:
+    """A chart of curves to choose from.
+
+    prefix: of its anchors, one for each chart of a page. cases: id -> label, input, unit, measured (x, y,
+    half, sd), a set (x, y) for each model's id, and rms of each side and model; x: for all responses or by
+    response, the case's own where a set has none. responses: id -> label, axis, unit.
+    """
+    shown = [vars(m) for m in models]
+    data = {"cases": cases, "responses": responses, "models": shown, "band": BAND}
+    return render(
+        "curves.html", prefix=prefix, data=embedded(data), cases=cases, responses=responses, models=models
+    )
 
 
 def _response(response: str) -> dict[str, str]:

@@ -1,0 +1,43 @@
+"""`doe-kc discover`: names the effect that the axle lacks."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from doe_kc.cli._app import app
+from doe_kc.cli.given import Given, takes_study
+from doe_kc.cli.progress import described_bar
+from doe_kc.output import write_json
+from doe_kc.workflow.discover import discover_study, expected_steps
+from doe_kc.workflow.discovery_handover import discovery_document, discovery_lines, write_discovery
+from doe_kc.workflow.measure import study_measurement
+
+
+@app.command()
+@takes_study
+def discover(
+    given: Given,
+    exclude: Annotated[
+        list[str] | None, typer.Option(help="Id of an effect not to look for; can be given several times.")
+    ] = None,
+) -> None:
+    """Find where model and records disagree, name the missing effect, add it, show the gap shrink."""
+    found = given.read()
+    records = study_measurement(found)
+    with described_bar("discovery", expected_steps(found)) as advance:
+        discovery = discover_study(
+            found,
+            records,
+            exclude=exclude or (),
+            workers=given.workers,
+            watch=lambda words, steps: advance(steps, words),
+        )
+    folder = found.out / "discover"
+    written = write_discovery(found, discovery, records, folder, workers=given.workers)
+    if given.json is not None:
+        write_json(given.json, discovery_document(discovery, folder / "axle.toml"))
+    for line in discovery_lines(discovery):
+        typer.echo(line)
+    typer.echo(f"{len(written)} files in {folder}", err=True)

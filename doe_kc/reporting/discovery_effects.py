@@ -1,0 +1,89 @@
+"""The effects that a discovery asks for as rows: one for each of their numbers."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import pandas as pd
+
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.effects import EFFECTS
+from doe_kc.reporting.discovery_sizes import FoundSize, found_sizes
+from doe_kc.reporting.discovery_words import effect_label, mistaken_words, place_of
+
+
+@dataclass(frozen=True)
+class EffectRow:
+    """One number of one effect; size is None for an effect that is there or not.
+
+    kind: found, lead (the verdict is unexplained) or trace (seen, too small to matter).
+    """
+
+    finding: Finding
+    kind: str
+    size: FoundSize | None
+
+    @property
+    def label(self) -> str:
+        """Name of the effect."""
+        return effect_label(self.finding.hypothesis.effect)
+
+    @property
+    def place(self) -> str:
+        """Where or how, in words."""
+        return place_of(self.finding.hypothesis)
+
+
+def effect_rows(found: Discovery) -> list[EffectRow]:
+    """Findings, largest first, then traces."""
+    kind = "lead" if found.verdict == "unexplained" else "found"
+    out: list[EffectRow] = []
+    for finding in (*found.findings, *found.traces):
+        own = kind if finding.relevant else "trace"
+        sizes: list[FoundSize | None] = list(found_sizes(found, finding))
+        out += [EffectRow(finding, own, size) for size in sizes or [None]]
+    return out
+
+
+def rival_words(finding: Finding) -> str:
+    """What it could be instead, with the probabilities."""
+    return ", ".join(f"{effect_label(r.effect)} {100.0 * r.probability:.1f} %" for r in finding.rivals)
+
+
+def effect_frame(found: Discovery) -> pd.DataFrame:
+    """One row a number of an effect: value, sd, unit, probability, rivals, physics."""
+    return pd.DataFrame([_record(r) for r in effect_rows(found)], columns=list(COLUMNS))
+
+
+COLUMNS = (
+    "effect", "label", "place", "kind", "probability", "size", "value", "sd", "unit", "typical",
+    "times_typical", "in_words", "gain_ln_evidence", "detectability_sd", "wrong_name_chance", "rivals",
+    "physics", "shown_by", "mistaken_for",
+)  # fmt: skip
+
+
+def _record(row: EffectRow) -> dict[str, object]:
+    f, s = row.finding, row.size
+    ident = f.hypothesis.effect
+    return {
+        "effect": ident,
+        "label": row.label,
+        "place": row.place,
+        "kind": row.kind,
+        "probability": f.probability,
+        "size": s.size.name if s else "",
+        "value": s.estimate.value if s else math.nan,
+        "sd": s.estimate.sd if s else math.nan,
+        "unit": s.size.unit if s else "",
+        "typical": s.size.typical if s else math.nan,
+        "times_typical": s.times if s else math.nan,
+        "in_words": s.words if s else "present",
+        "gain_ln_evidence": f.gain,
+        "detectability_sd": f.detectability,
+        "wrong_name_chance": f.wrong_name,
+        "rivals": rival_words(f),
+        "physics": EFFECTS[ident].physics,
+        "shown_by": EFFECTS[ident].shown_by,
+        "mistaken_for": mistaken_words(ident),
+    }

@@ -1,0 +1,75 @@
+"""The sheet of the discovery workbook that says how to read the others."""
+
+from __future__ import annotations
+
+from openpyxl.workbook import Workbook
+
+from doe_kc.discovery.findings import RELEVANT
+from doe_kc.reporting.workbook_cells import frame, page, put, title, widths
+
+LEGEND = {
+    "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0.",
+    "Signs": "Toe-in +, camber top outwards +, caster top rearwards +; forces as their load case has them.",
+    "Verdict": (
+        "Effect named: the records ask for it, noise explains what remains, held-out load cases are "
+        "predicted better. One of several: an effect is missing, but these records cannot tell which. No "
+        "effect missing: re-tuning explains all records. Unexplained: something is missing, but no effect"
+        " of the library is convincing; what is listed are leads."
+    ),
+    "Nominal": "The axle as it is in its file.",
+    "Re-tuned": "The most probable axle without any effect: parameters within their production scatter.",
+    "With effect": "The most probable axle with the effects found, all parameters re-tuned with them.",
+    "Best decoy": (
+        "The best other effect in place of the one found, refitted alike: a gap that a decoy closes as "
+        "well is no evidence for a name."
+    ),
+    "Gap": (
+        "RMS of model minus measured in units of the records' noise, correlations of the noise respected;"
+        " 1 is noise. Noise floor: what the right model would reach, as its parameters follow the noise."
+    ),
+    "Disagreement": (
+        "How much of one shape a curve's deviation holds, in standard deviations. Gradient: slope at "
+        "static; curvature: even; progression: odd and cubic; dead band: a step about zero; loop width "
+        "and loop tilt: of the half-width of the loop, (falling - rising) / 2; offset: constant, tyre "
+        "load only."
+    ),
+    "Re-tuned z": "Only what no re-tuning can absorb. With effect: its law's shape is granted 5 %.",
+    "Wheels": "Both alike: sum of both wheels; left against right: their difference.",
+    "Size, sd": (
+        "Most probable value and its standard deviation, all parameters free together. 'Not told from "
+        "rigid / none': the limit that the value passes with a chance of 5 %."
+    ),
+    "Probability": (
+        "That it is this effect, in whatever place, among those refitted, none and an effect outside the "
+        "library."
+    ),
+    "Trace": f"The records show it, but it is less than {RELEVANT:g} of its typical size.",
+    "ln evidence": "Gained over the model without it; the price of its extra freedom is paid.",
+    "Detectability": "Standard deviations that the effect makes after re-tuning.",
+    "Detectable size": (
+        "Would be found in four of five cars; of several numbers all together. For a stiffness 'below': a"
+        " softer part would have been found."
+    ),
+    "Absorbed": (
+        "Share of the effect that re-tuning hides. Hidden by: the parameters that move most for it at its"
+        " typical size, in standard deviations of their prior."
+    ),
+    "Looks like": "Hypotheses that change the records nearly alike after re-tuning, with the correlation.",
+    "Held out": (
+        "Each load case is left out of the fit and predicted; RMS in standard deviations of the "
+        "prediction. Gain: ln predictive density won by the effect."
+    ),
+}
+
+
+def legend_sheet(book: Workbook, study: str) -> None:
+    """How to read the other sheets."""
+    ws = book.create_sheet("Legend")
+    title(ws, f"Legend: {study}", "How to read this workbook.")
+    for row, (key, text) in enumerate(LEGEND.items(), start=4):
+        put(ws, row, 1, key, bold=True, vertical="top")
+        put(ws, row, 2, text, wrap=True, vertical="top")
+        ws.row_dimensions[row].height = 14.5 * (1 + len(text) // 125)
+    frame(ws, range(4, 4 + len(LEGEND)), range(1, 3))
+    widths(ws, [22, 120])
+    page(ws, study)

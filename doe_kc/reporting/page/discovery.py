@@ -1,0 +1,50 @@
+"""The report page of a discovery: what the model lacks, how that was found, what to test next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from doe_kc.discovery.result import Discovery
+from doe_kc.measurement import Measurement
+from doe_kc.output import write_whole
+from doe_kc.reporting.page.discovery_candidates import (
+    candidates_section,
+    held_out_section,
+    scan_section,
+    tests_section,
+)
+from doe_kc.reporting.page.discovery_curves import curves_section, gap_section
+from doe_kc.reporting.page.discovery_library import library_section
+from doe_kc.reporting.page.discovery_maps import maps_section
+from doe_kc.reporting.page.discovery_parameters import parameters_section
+from doe_kc.reporting.page.discovery_verdict import verdict_section
+from doe_kc.reporting.page.section import Section, page_html
+
+
+def discovery_sections(
+    found: Discovery, measurement: Measurement | None, *, notes: Mapping[str, str] | None = None
+) -> list[Section]:
+    """In the order of a test engineer's questions. notes: further lines of the first section."""
+    made = {"Measurement": measurement.manifest.name} if measurement is not None else {}
+    sections = [verdict_section(found, {**made, **(notes or {})}), maps_section(found)]
+    sections += [candidates_section(found), *scan_section(found), *curves_section(found), gap_section(found)]
+    if found.held_out:
+        sections.append(held_out_section(found))
+    return [*sections, parameters_section(found), library_section(found), tests_section(found)]
+
+
+def write_discovery_page(
+    path: Path,
+    found: Discovery,
+    measurement: Measurement | None,
+    *,
+    study: str,
+    date: str,
+    notes: Mapping[str, str] | None = None,
+    more: Sequence[Section] = (),
+) -> Path:
+    """Write the page; `more` sections follow the discovery's. RunError when it cannot be written."""
+    sections = [*discovery_sections(found, measurement, notes=notes), *more]
+    html = page_html(f"Missing effects: {study}", sections, subtitle=date)
+    return write_whole(path, lambda p: p.write_text(html, encoding="utf-8"))

@@ -1,0 +1,128 @@
+"""A discovery as data, for `--json` and for callers; and its summary for a terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.standing import Standing
+from doe_kc.effects.hypothesis import Size
+from doe_kc.reporting.discovery_sizes import size_words
+from doe_kc.reporting.discovery_words import HEADLINES, contrast_words, effect_label, hypothesis_label
+
+HIDDEN = ("not testable", "no solution")
+
+
+def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, Any]:
+    """What `discover --json` writes; numbers that are not finite are None.
+
+    effects: those that the verdict names, or the most probable of a class; leads: in their place where the
+    verdict is unexplained; traces: seen, too small to matter. parameters: value, sd, unit of each option,
+    lists for a list option. excluded: places whose size would have been found from `above` on (stiffnesses:
+    below it). not_testable: ids of which no place is testable. gap: whitened RMS of all records.
+    """
+    findings = [effect_entry(f) for f in found.findings]
+    open_ = found.verdict == "unexplained"
+    document = {
+        "verdict": found.verdict,
+        "effects": [] if open_ else findings,
+        "leads": findings if open_ else [],
+        "traces": [effect_entry(f) for f in found.traces],
+        "classes": [list(c) for c in found.classes],
+        "excluded": [_excluded(s) for s in found.standings if s.status == "excluded"],
+        "not_testable": not_testable(found.standings),
+        "unexplained_at": [
+            {"load_case": c.load_case, "response": c.response, "shape": c.shape, "z": z}
+            for c, z in found.unexplained
+        ],
+        "gap": dict(vars(found.gap)),
+        "held_out": {
+            h.load_case: {"tuned": h.tuned.rms, "with_effect": h.with_effect.rms} for h in found.held_out
+        },
+        "next_test": list(found.next_tests),
+        "axle": None if axle_path is None else str(axle_path),
+    }
+    return {key: _finite(value) for key, value in document.items()}
+
+
+def effect_entry(finding: Finding) -> dict[str, Any]:
+    """id, location, probability and parameters of one effect."""
+    parameters: dict[str, dict[str, Any]] = {}
+    length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
+    for e in finding.estimates:
+        if e.index is None:
+            parameters[e.key] = {"value": e.value, "sd": e.sd, "unit": e.unit}
+            continue
+        entry = parameters.setdefault(e.key, {"value": [0.0] * length, "sd": [0.0] * length, "unit": e.unit})
+        entry["value"][e.index], entry["sd"][e.index] = e.value, e.sd
+    hypothesis = finding.hypothesis
+    if hypothesis.location is None:  # what is fixed then says which of several ways it is, as a technique
+        parameters |= {k: {"value": v, "sd": None, "unit": ""} for k, v in hypothesis.fixed.items()}
+    return {
+        "id": hypothesis.effect,
+        "location": hypothesis.location,
+        "probability": finding.probability,
+        "parameters": parameters,
+    }
+
+
+def _excluded(standing: Standing) -> dict[str, Any]:
+    h = standing.hypothesis
+    sizes = [s for s in h.sizes if s.growth != "shape"]
+    above = {s.key: {"value": _limit(s, h.sizes, standing.detectable), "unit": s.unit} for s in sizes}
+    return {"id": h.effect, "location": h.location, "above": above}
+
+
+def _limit(size: Size, sizes: Iterable[Size], amplitude: float) -> float | list[float]:
+    """The option's number at the detectable amplitude; of a list all components."""
+    if size.index is None:
+        return size.value(amplitude)
+    return [s.value(amplitude) for s in sizes if s.key == size.key]
+
+
+def not_testable(standings: Iterable[Standing]) -> list[str]:
+    """Ids of effects that cannot be tested in any place."""
+    statuses: dict[str, list[str]] = {}
+    for s in standings:
+        statuses.setdefault(s.hypothesis.effect, []).append(s.status)
+    return [ident for ident, each in statuses.items() if all(status in HIDDEN for status in each)]
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {k: _finite(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(v) for v in value]
+    if hasattr(value, "item"):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def discovery_lines(found: Discovery) -> list[str]:
+    """The outcome for a terminal."""
+    lines = [f"{HEADLINES[found.verdict]}. {found.sentences[0]}"]
+    word = "lead" if found.verdict == "unexplained" else "effect"
+    lines += [f"{word}: {_line(found, f)}" for f in found.findings]
+    lines += [f"trace: {_line(found, f)}; too small to matter" for f in found.traces]
+    for group in found.classes:
+        lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")
+    lines += [f"unexplained: {contrast_words(c)}, {z:+.1f} sd" for c, z in found.unexplained[:3]]
+    gap = found.gap
+    steps = [f"{gap.nominal:.2f} nominal", f"{gap.tuned:.2f} re-tuned"]
+    if found.fitted.model.members:
+        steps.append(f"{gap.with_effect:.2f} with effect")
+    lines.append(f"gap: {' -> '.join(steps)} (noise floor {gap.noise_floor:.2f})")
+    if found.held_out:
+        better = sum(h.gain > 0.0 for h in found.held_out)
+        lines.append(f"held out: {better} of {len(found.held_out)} load cases predicted better")
+    if found.next_tests:
+        lines.append(f"next test: {found.next_tests[0]}")
+    return lines
+
+
+def _line(found: Discovery, finding: Finding) -> str:
+    sizes = f": {size_words(found, finding)}" if finding.hypothesis.sizes else ""
+    return f"{hypothesis_label(finding.hypothesis)}{sizes}, probability {100.0 * finding.probability:.1f} %"

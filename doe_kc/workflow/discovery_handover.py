@@ -1,0 +1,75 @@
+"""Handover of a discovery: everything that it leaves to the engineer."""
+
+from __future__ import annotations
+
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from doe_kc.axle.write import write_axle
+from doe_kc.discovery.result import Discovery
+from doe_kc.measurement import Measurement
+from doe_kc.output import write_csv
+from doe_kc.reporting.discovery_effects import effect_frame
+from doe_kc.reporting.discovery_figures import write_discovery_figures
+from doe_kc.reporting.discovery_tables import (
+    disagreement_frame,
+    gap_frame,
+    held_out_frame,
+    library_frame,
+    parameter_frame,
+)
+from doe_kc.reporting.discovery_words import HEADLINES, hypothesis_label
+from doe_kc.reporting.discovery_workbook import write_discovery_workbook
+from doe_kc.reporting.page import write_discovery_page
+from doe_kc.study import Study
+from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
+
+TABLES = {
+    "disagreement.csv": disagreement_frame,
+    "effects.csv": effect_frame,
+    "library.csv": library_frame,
+    "gap.csv": gap_frame,
+    "held_out.csv": held_out_frame,
+    "parameters.csv": parameter_frame,
+}
+AXLE = "axle.toml"
+
+
+def write_discovery(
+    study: Study,
+    found: Discovery,
+    measurement: Measurement,
+    folder: Path,
+    *,
+    workers: int | None = None,
+) -> list[Path]:
+    """axle.toml (refitted, with the effects), six tables, discovery.xlsx, report.html and the figures.
+
+    Returns the paths. workers: processes that draw. RunError when the folder cannot be written.
+    """
+    axle = found.fitted.model.axle_at(found.fitted.z)
+    written = write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(found))
+    notes = {
+        "Axle": f"{axle.name}: {AXLE}, from {study.axle_path.name}",
+        "Run time": f"{found.seconds:.0f} s",
+    }
+    words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
+    known = {"Measurement": measurement.manifest.name, **notes}
+    return [
+        written,
+        *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
+        write_discovery_workbook(folder / "discovery.xlsx", found, notes=known, **words),
+        write_discovery_page(folder / "report.html", found, measurement, notes=notes, **words),
+        *write_discovery_figures(found, folder, study=study.name, workers=workers),
+    ]
+
+
+def axle_note(found: Discovery) -> str:
+    """First line of the axle file: the verdict, and what the file holds beyond the nominal axle."""
+    members = ", ".join(hypothesis_label(h).lower() for h in found.fitted.model.members)
+    lead = "leads, not confirmed: " if found.verdict == "unexplained" else ""
+    return f"{HEADLINES[found.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")
+
+
+__all__ = ["discovery_document", "discovery_lines", "write_discovery"]

@@ -1,0 +1,142 @@
+"""The scoring, on analysers that know the key, nothing, or luck."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.discovery import pretend
+from benchmarks.discovery.answer import read_answer
+from benchmarks.discovery.detectability import wrong_name
+from benchmarks.discovery.report import Run, write
+from benchmarks.discovery.scoring import Predicted, Score, score
+from benchmarks.discovery.statistics import brier, calibration_error, reliability, wilson
+from benchmarks.discovery.truth import TrueEffect, Truth
+
+RUN = Run("python x", "example", 1, "abc", "a machine")
+
+
+def _truth(name: str, suite: str, *ids: str, outside: str = "") -> Truth:
+    effects = tuple(TrueEffect(i, 1.0, "", {"force_N": 250.0}, False) for i in ids)
+    shows = frozenset({("brake", "spin")}) if outside else frozenset()
+    return Truth(name, suite, effects, {"strut_friction": {"force_N": 4.0}}, outside, shows)
+
+
+TRUTHS = (
+    _truth("a", "null"),
+    _truth("b", "single", "steering_friction"),
+    _truth("c", "single", "hub_compliance"),
+    _truth("d", "two", "steering_friction", "hub_compliance"),
+    _truth("e", "library_deleted", "strut_bending"),
+    _truth("f", "outside", outside="kink"),
+)
+
+
+def _scores(analyser: Callable[[Truth], dict[str, Any]]) -> list[Score]:
+    return [score(t, read_answer(analyser(t)), Predicted(50.0, 0.001)) for t in TRUTHS]
+
+
+def test_the_perfect_analyser_is_always_right(tmp_path: Path) -> None:
+    found = _scores(pretend.perfect)
+    assert all(s.exact for s in found if s.suite in ("null", "single", "two"))
+    assert all(s.unexplained for s in found if s.suite in ("library_deleted", "outside"))
+    assert not any(s.wrong or s.missed or s.trace for s in found)
+    assert found[5].placed
+    assert found[3].found and found[3].in_class
+    assert all(e.z == 0.0 for s in found for e in s.estimates)
+    assert found[1].closed == pytest.approx(1.0) and found[1].decoy == pytest.approx(0.5)
+    text = "\n".join(write(found, RUN, tmp_path))
+    assert "| single | 2 | 100 (34-100) |" in text
+    assert (tmp_path / "discovery.png").stat().st_size > 10_000
+    assert (tmp_path / "discovery_confusion.csv").read_text().startswith("hidden,")
+
+
+def test_finding_nothing_is_right_for_null_cars_only() -> None:
+    found = _scores(pretend.always_none)
+    assert [s.exact for s in found] == [True, False, False, False, False, False]
+    assert [s.missed for s in found] == [False, True, True, True, True, True]
+    assert not any(s.wrong for s in found)
+
+
+def test_luck_names_wrongly_and_is_sure() -> None:
+    found = [s for seed in range(20) for s in _scores(lambda t, at=seed: pretend.lucky(t, at))]
+    assert sum(s.wrong for s in found) / len(found) > 0.7
+    assert calibration_error([b for s in found for b in s.believed]) > 0.6
+
+
+def test_a_class_is_no_name() -> None:
+    effects = [{"id": "strut_bending", "location": None, "probability": 0.6, "parameters": {}}]
+    classes = [["strut_bending", "hub_compliance"]]
+    answer = read_answer({"verdict": "class", "effects": effects, "classes": classes})
+    found = score(TRUTHS[2], answer)
+    assert answer.names == ()
+    assert found.in_class and not found.exact and not found.wrong and not found.top
+    assert score(TRUTHS[1], answer).in_class is False
+
+
+def test_a_trace_counts_as_such_only_in_its_own_size() -> None:
+    def answer(force: float) -> Score:
+        numbers = {"force_N": {"value": force, "sd": 1.0, "unit": "N"}}
+        effect = {"id": "strut_friction", "probability": 0.99, "parameters": numbers}
+        return score(TRUTHS[0], read_answer({"verdict": "named", "effects": [effect]}))
+
+    assert answer(5.0).trace and not answer(5.0).wrong
+    assert answer(80.0).wrong and not answer(80.0).trace
+
+
+def test_leads_of_an_unexplained_verdict_are_no_names() -> None:
+    effect = {"id": "hub_compliance", "probability": 0.99, "parameters": {}}
+    found = score(TRUTHS[1], read_answer({"verdict": "unexplained", "effects": [effect]}))
+    assert not found.wrong and found.unexplained and found.first == "unexplained"
+
+
+def test_an_analysis_that_broke_off_is_no_answer() -> None:
+    found = score(TRUTHS[0], read_answer(None))
+    assert found.verdict == "failed" and not found.exact
+
+
+def test_location_and_numbers() -> None:
+    effect = TrueEffect("bushing_preload", 1.0, "LLR", {"LLR[1]": 600.0}, False)
+    truth = Truth("x", "single", (effect,), {}, "", frozenset())
+    numbers = {"LLR[1]": {"value": 660.0, "sd": 40.0, "unit": "N"}}
+    named = {"id": "bushing_preload", "location": "llr", "probability": 0.95, "parameters": numbers}
+    found = score(truth, read_answer({"verdict": "named", "effects": [named]}))
+    assert found.located == (1, 1)
+    assert found.estimates[0].z == pytest.approx(1.5)
+    assert found.estimates[0].relative == pytest.approx(0.1)
+
+
+def test_a_stiffer_left_is_a_softer_right() -> None:
+    effect = TrueEffect("left_right_asymmetry", 1.0, "LLR_L", {"LLR_L": 1.25}, False)
+    truth = Truth("x", "single", (effect,), {}, "", frozenset())
+    numbers = {"LLR_R": {"value": 0.78, "sd": 0.02, "unit": "-"}}
+    named = {"id": effect.id, "location": "LLR_R", "probability": 0.95, "parameters": numbers}
+    found = score(truth, read_answer({"verdict": "named", "effects": [named]}))
+    assert found.located == (1, 1)
+    assert found.estimates[0].true == pytest.approx(0.8)
+    assert found.estimates[0].z == pytest.approx(-1.0)
+
+
+def test_wilson_interval() -> None:
+    """59 of 60 and 0 of 120, as tabulated."""
+    assert wilson(59, 60) == pytest.approx((0.911, 0.997), abs=1e-3)
+    assert wilson(0, 120) == pytest.approx((0.0, 0.031), abs=1e-3)
+    assert wilson(0, 0) == (0.0, 1.0)
+
+
+def test_calibration() -> None:
+    honest = [(0.8, True)] * 8 + [(0.8, False)] * 2
+    assert calibration_error(honest) == pytest.approx(0.0)
+    assert brier(honest) == pytest.approx(0.16)
+    assert reliability([(1.0, True), (0.2, False)])[-1].right.hits == 1
+    assert math.isnan(brier([]))
+
+
+def test_chance_of_a_wrong_name() -> None:
+    """10.4 standard deviations tell apart two effects that correlate by 0.9, 99 times in 100."""
+    assert wrong_name(10.42, 0.9) == pytest.approx(0.01, abs=5e-4)
+    assert wrong_name(5.0, 1.0) == pytest.approx(0.5)

@@ -1,0 +1,108 @@
+"""The whole chain on small cars: each kind of verdict, and controls that must not pass."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.correlation.likelihood import Likelihood, record_likelihood
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.discover import discover
+from doe_kc.discovery.ledger import Ledger
+from doe_kc.discovery.model import EffectModel
+from tests.discovery.cases import discovery, known_to, library, model, nominal, records, space
+
+
+def test_nothing_hidden_nothing_named() -> None:
+    found = discovery("none")
+    assert found.verdict == "none"
+    assert found.findings == ()
+    assert found.gap.tuned == pytest.approx(1.0, abs=0.06)
+
+
+@pytest.mark.parametrize(
+    ("car", "effect", "key", "value"),
+    [
+        ("named", "hub_compliance", "camber_Nm_deg", 5000.0),
+        ("friction", "steering_friction", "force_N", 200.0),
+    ],
+)
+def test_one_effect_is_named_with_its_size(car: str, effect: str, key: str, value: float) -> None:
+    found = discovery(car)
+    assert found.verdict == "named"
+    (finding,) = found.findings
+    assert finding.hypothesis.effect == effect
+    assert finding.probability > 0.9
+    size = next(e for e in finding.estimates if e.key == key)
+    assert abs(size.value - value) < 3.0 * size.sd
+    assert size.sd < 0.1 * value
+
+
+@pytest.mark.parametrize("car", ["named", "friction"])
+def test_the_gap_closes_on_load_cases_held_out_and_a_decoy_does_not_close_it(car: str) -> None:
+    found = discovery(car)
+    tuned = np.sqrt(np.mean([h.tuned.rms**2 for h in found.held_out]))
+    after = np.sqrt(np.mean([h.with_effect.rms**2 for h in found.held_out]))
+    assert 1.0 - (after - 1.0) / (tuned - 1.0) > 0.9
+    assert found.gap.with_effect < 1.1 < found.gap.best_decoy
+
+
+def test_two_effects_are_both_found() -> None:
+    found = discovery("two")
+    assert {f.hypothesis.effect for f in found.findings} == {"strut_friction", "rig_channel_gain"}
+
+
+def test_effects_that_look_alike_are_a_class() -> None:
+    found = discovery("class")
+    assert found.verdict == "class"
+    assert {"steer_arm_compliance", "tie_rod_compliance"} <= set(found.classes[0])
+
+
+def test_an_effect_outside_the_library_is_not_given_another_name() -> None:
+    found = discovery("unexplained")
+    assert found.verdict == "unexplained"
+    assert found.unexplained
+    assert found.scan is not None
+    assert "tie rod" in found.scan.places[0].interface or "steer" in found.scan.places[0].interface
+
+
+def test_records_of_other_load_cases_are_noticed() -> None:
+    """Negative control: lateral and lateral_opposite exchanged, as by a wrong file name."""
+    car = model("none")
+    other = {"lateral": "lateral_opposite", "lateral_opposite": "lateral"}
+    curves = tuple(replace(c, load_case=other.get(c.load_case, c.load_case)) for c in car.likelihood.curves)
+    found = discover(replace(car, likelihood=Likelihood(curves, car.likelihood.figures)), library())
+    assert found.verdict == "unexplained"
+    assert "lateral" in {c.load_case for c, _ in found.unexplained} | {"lateral_opposite"}
+
+
+def test_white_noise_assumed_where_it_is_not_does_not_pass_for_agreement() -> None:
+    """Negative control: offset, gain and smooth errors denied, so that noise itself looks like structure."""
+    measured = records("none")
+    noise = {
+        case: {
+            r: replace(m, components=replace(m.components, offset=0.0, gain=0.0, smooth=0.0), loop=0.0)
+            for r, m in of.items()
+        }
+        for case, of in measured.noise.items()
+    }
+    likelihood = record_likelihood(nominal(), replace(measured, noise=noise))
+    found = discover(EffectModel(nominal(), space(), likelihood), library())
+    assert found.tuned.mean_square > 1.5
+    assert not found.tuned.agrees
+
+
+def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    path = tmp_path / "discovery.sqlite"
+    told: list[str] = []
+    with Ledger(path) as ledger:
+        first = discover(model("named"), known_to("named"), Bench(ledger=ledger))
+    with Ledger(path) as ledger:
+        again = discover(
+            model("named"), known_to("named"), Bench(ledger=ledger, watch=lambda words, _: told.append(words))
+        )
+    assert "screening effects" not in told
+    assert again.sentences == first.sentences
+    assert np.array_equal(again.fitted.z, first.fitted.z)

@@ -1,0 +1,89 @@
+"""The joint fit: gradient and Jacobian against differences, evidence against the closed form."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal, norm
+
+from doe_kc.discovery.fit import Fit, cost_of, fit, followed, restored
+from doe_kc.discovery.model import EffectModel
+from tests.discovery.cases import library, model
+
+
+@pytest.fixture(scope="module")
+def with_hub() -> Fit:
+    (hub,) = library("hub_compliance")
+    extended = model("named").extended(hub)
+    return fit(extended, extended.centre)
+
+
+def test_residual_and_its_derivatives_agree(with_hub: Fit) -> None:
+    model = with_hub.model
+    step = 1e-4 * np.array([(-1.0) ** i for i in range(with_hub.z.size)]) * model.prior_sd
+    there = with_hub.z + np.abs(step[-2:]).sum() * 0.0 + step
+    there[-2:] = with_hub.z[-2:] + 1e-4
+    change = model.residual(there) - with_hub.residual
+    expected = with_hub.jacobian @ (there - with_hub.z)
+    assert np.linalg.norm(change - expected) < 0.02 * np.linalg.norm(expected)
+
+
+def test_the_minimum_is_one(with_hub: Fit) -> None:
+    assert with_hub.converged
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        near = with_hub.z + 0.3 * rng.standard_normal(with_hub.z.size) * np.sqrt(np.diag(with_hub.covariance))
+        near = np.clip(near, with_hub.model.lower, with_hub.model.upper)
+        assert cost_of(with_hub.model, near, with_hub.model.residual(near)) > with_hub.cost - 0.5
+
+
+def test_the_hidden_size_is_recovered(with_hub: Fit) -> None:
+    sd = np.sqrt(np.diag(with_hub.covariance))[-2:]
+    found = with_hub.amplitudes
+    assert abs(found[0] - 6000.0 / 5000.0) < 3.0 * sd[0]
+    assert abs(found[1] - 1.0) < 3.0 * sd[1]
+
+
+class Linear(EffectModel):
+    """y = A z + noise of sd 1; evidence in closed form."""
+
+
+def test_evidence_is_that_of_the_linear_gaussian_model() -> None:
+    rng = np.random.default_rng(5)
+    (hub,) = library("hub_compliance")
+    nominal = model("named")
+    rows, count = 40, nominal.dimension
+    jacobian = rng.standard_normal((rows, count))
+    data = rng.standard_normal(rows)
+    prior = nominal.prior_sd
+    hessian = jacobian.T @ jacobian + np.diag(prior**-2.0)
+    z = nominal.centre - np.linalg.solve(hessian, jacobian.T @ data)
+    residual = data + jacobian @ (z - nominal.centre)
+
+    class Small(EffectModel):
+        used = np.ones(rows, dtype=bool)
+
+    small = Small(nominal.axle, nominal.space, nominal.likelihood)
+    found = Fit(small, z, residual, jacobian, cost_of(small, z, residual), 1, True)
+    covariance = np.eye(rows) + (jacobian * prior**2) @ jacobian.T
+    exact = multivariate_normal(np.zeros(rows), covariance).logpdf(data)
+    assert found.evidence - rows * norm.logpdf(0.0) == pytest.approx(exact, abs=1e-8) or (
+        found.evidence == pytest.approx(exact + 0.5 * rows * np.log(2.0 * np.pi), abs=1e-8)
+    )
+    del hub
+
+
+def test_restored_is_the_same_fit(with_hub: Fit) -> None:
+    again = restored(with_hub.model, with_hub.z, with_hub.evaluations, with_hub.converged)
+    assert again.cost == with_hub.cost
+    assert np.array_equal(again.residual, with_hub.residual)
+
+
+def test_followed_goes_most_of_the_way_of_a_fit(with_hub: Fit) -> None:
+    without = replace(with_hub.model, left_out="lateral")
+    near, full = followed(with_hub, without), fit(without, with_hub.z)
+    start = cost_of(without, with_hub.z, with_hub.residual)
+    assert full.cost <= near.cost < start
+    assert near.cost - full.cost < 0.2 * (start - full.cost) + 0.5

@@ -1,0 +1,36 @@
+"""Projection: what tuning can do is taken out, as with the marginal covariance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.projection import projection
+from tests.discovery.cases import model
+
+
+@pytest.fixture(scope="module")
+def tuned() -> Fit:
+    nominal = model("none")
+    return fit(nominal, nominal.centre)
+
+
+def test_inner_products_are_those_of_the_marginal_covariance(tuned: Fit) -> None:
+    rows = np.random.default_rng(1).standard_normal((tuned.residual.size, 2))
+    seen = projection(tuned)(rows)
+    prior = tuned.model.prior_sd
+    inverse = np.linalg.inv(np.eye(rows.shape[0]) + (tuned.jacobian * prior**2) @ tuned.jacobian.T)
+    assert np.allclose(seen.T @ seen, rows.T @ inverse @ rows, rtol=1e-6)
+
+
+def test_a_column_that_a_parameter_makes_is_absorbed(tuned: Fit) -> None:
+    visible = int(np.argmax(np.linalg.norm(tuned.jacobian[:, : tuned.model.parameters], axis=0)))
+    column = tuned.jacobian[:, visible]
+    seen = projection(tuned)(column)
+    assert seen @ seen < 1e-3 * (column @ column)
+
+
+def test_the_residual_of_the_minimum_keeps_its_cost(tuned: Fit) -> None:
+    seen = projection(tuned).residual(tuned.residual)
+    assert float(seen @ seen) == pytest.approx(tuned.cost, rel=1e-3)

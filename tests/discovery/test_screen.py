@@ -1,0 +1,64 @@
+"""Screening: the score test in closed form where effects are linear, sizes where they are not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.projection import projection
+from doe_kc.discovery.screen import rescreened, screen
+from doe_kc.discovery.standing import wrong_name_chance
+from tests.discovery.cases import library, model
+
+
+@pytest.fixture(scope="module")
+def tuned() -> Fit:
+    car = model("named")
+    return fit(car, car.centre)
+
+
+def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
+    project = projection(tuned)
+    gains = {h.name: screen(tuned, project, h).gain for h in library("hub_compliance", "strut_friction")}
+    assert gains["hub_compliance"] > 50.0
+    assert gains["strut_friction"] < 3.0
+
+
+def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
+    (hub,) = library("hub_compliance")
+    project = projection(tuned)
+    found = screen(tuned, project, hub)
+    again = rescreened(tuned, project, found)
+    prior = tuned.model.prior_sd
+    marginal = np.eye(tuned.residual.size) + (tuned.jacobian * prior**2) @ tuned.jacobian.T
+    weighted = np.linalg.solve(marginal, found.columns)
+    hessian = found.columns.T @ weighted + np.eye(2)
+    offset = tuned.residual - tuned.jacobian @ (tuned.z - tuned.model.centre)
+    expected = -np.linalg.solve(hessian, weighted.T @ offset)
+    assert np.allclose(again.amplitudes, expected, rtol=1e-5, atol=1e-6)
+
+
+def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned: Fit) -> None:
+    project = projection(tuned)
+    by_name = {h.name: screen(tuned, project, h) for h in library("bushing_progression")}
+    weak = by_name["bushing_progression SFR"]
+    assert weak.detectability < 1.0
+    assert 0.0 <= weak.absorbed <= 1.0
+
+
+@pytest.mark.parametrize(("strength", "correlation"), [(2.0, 0.5), (4.0, 0.9), (6.0, 0.95)])
+def test_wrong_name_chance_against_monte_carlo(strength: float, correlation: float) -> None:
+    rng = np.random.default_rng(2)
+    first = strength + rng.standard_normal(400_000)
+    rest = rng.standard_normal(first.size)
+    second = correlation * first + np.sqrt(1.0 - correlation**2) * rest
+    frequency = float(np.mean(np.abs(second) > np.abs(first)))
+    assert wrong_name_chance(strength, correlation) == pytest.approx(frequency, abs=0.003)
+
+
+def test_ninety_nine_per_cent_right_needs_the_strength_of_the_closed_form() -> None:
+    for correlation in (0.9, 0.95, 0.99):
+        strength = norm.ppf(0.99) * np.sqrt(2.0 / (1.0 - correlation))
+        assert wrong_name_chance(float(strength), correlation) == pytest.approx(0.01, abs=1e-3)

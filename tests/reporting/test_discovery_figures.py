@@ -1,0 +1,132 @@
+"""Pictures of a discovery: all written, everything labelled, nothing off its axis."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doe_kc.errors import RunError
+from doe_kc.reporting.discovery_curves import curve_figure, worst_views
+from doe_kc.reporting.discovery_evidence import evidence_figure, evidence_steps
+from doe_kc.reporting.discovery_figures import discovery_jobs, write_discovery_figures
+from doe_kc.reporting.discovery_gaps import gap_figure, gap_rows
+from doe_kc.reporting.discovery_grid import discovery_grids
+from doe_kc.reporting.discovery_heat_map import heat_map_figure, signed
+from doe_kc.reporting.discovery_held_out import gain_words, held_out_figure
+from doe_kc.reporting.discovery_isolability import isolability, isolability_figure
+from doe_kc.reporting.discovery_parameters import moved_parameters, parameter_figure
+from doe_kc.reporting.discovery_tables import tuned_parameters
+from tests.discovery.cases import LOAD_CASES, discovery
+
+CARS = ["none", "named", "class", "unexplained", "lead", "two"]
+NAMES = ["disagreement", "gap", "evidence", "worst_curves", "isolability", "parameters", "held_out"]
+
+
+@pytest.mark.parametrize("car", CARS)
+def test_every_verdict_is_drawn(car: str, tmp_path: Path) -> None:
+    found = discovery(car)
+    jobs = discovery_jobs(found, tmp_path, "S $x_1$")
+    assert [path.name for path, _ in jobs] == (NAMES if found.held_out else NAMES[:-1])
+    for _, make in jobs:
+        fig = make()
+        assert fig.get_suptitle().endswith("S $x_1$")
+        assert all(ax.get_title() != "" or ax.has_data() or not ax.axison for ax in fig.axes)
+
+
+def test_both_kinds_of_files_are_written(tmp_path: Path) -> None:
+    paths = write_discovery_figures(discovery("none"), tmp_path / "new", study="S $x_1$", workers=1)
+    assert [p.name for p in paths] == [f"{n}{s}" for n in NAMES[:-1] for s in (".png", ".svg")]
+    assert all(p.stat().st_size > 3000 for p in paths)
+
+
+def test_makers_hold_only_what_they_draw(tmp_path: Path) -> None:
+    jobs = discovery_jobs(discovery("named"), tmp_path, "S")
+    assert max(len(pickle.dumps(job)) for job in jobs) < 300_000
+
+
+def test_heat_map_shows_every_cell_with_its_sign_and_shape() -> None:
+    grids = discovery_grids(discovery("named"))
+    fig = heat_map_figure(grids, "S")
+    for ax, grid in zip(fig.axes[:3], grids, strict=True):
+        texts = [t.get_text() for t in ax.texts]
+        assert texts.count("gradient") + texts.count("gradient, L−R") > 0
+        for cell in grid.cells.values():
+            assert signed(cell.z) in texts
+        assert ax.get_title(loc="left").startswith(grid.title)
+    assert (signed(-3.14), signed(123.4)) == ("−3.1", "+123")
+
+
+def test_gap_marks_stay_on_the_axis_and_noise_is_one() -> None:
+    rows = gap_rows(discovery("named"))
+    fig = gap_figure(rows, "S")
+    for ax in fig.axes:
+        low, high = ax.get_xlim()
+        xs = np.concatenate([np.atleast_1d(line.get_xdata()) for line in ax.lines]).astype(float)
+        assert (low <= xs).all() and (xs <= high).all()
+        assert "noise" in ax.get_xlabel()
+    labels = [t.get_text() for t in fig.legends[0].get_texts()]
+    assert labels[-1] == "noise floor" and len(labels) == 5
+    fewer = [t.get_text() for t in gap_figure(gap_rows(discovery("none")), "S").legends[0].get_texts()]
+    assert len(fewer) == 3
+
+
+def test_evidence_has_a_panel_a_step_and_the_price_of_a_name() -> None:
+    steps = evidence_steps(discovery("two"))
+    fig = evidence_figure(steps, "S")
+    assert len(fig.axes) == len(steps)
+    for ax, step in zip(fig.axes, steps, strict=True):
+        assert [t.get_text() for t in ax.get_yticklabels()] == [c.label for c in step.candidates]
+        assert any(float(np.atleast_1d(x.get_xdata())[0]) == step.needed for x in ax.lines)
+
+
+def test_worst_curves_come_first_and_have_units() -> None:
+    worst = worst_views(discovery("named"))
+    gaps = [w.gaps["tuned"] for w in worst]
+    assert gaps == sorted(gaps, reverse=True) and len(worst) == 6
+    assert worst[0].gaps["with_effect"] < 1.5 < worst[0].gaps["tuned"]
+    fig = curve_figure(worst, "S")
+    labels = [ax.get_ylabel() for ax in fig.axes]
+    assert sum("sd of the noise" in text for text in labels) == 6
+    assert all(text.endswith("]") for text in labels)
+    assert all(ax.get_xlabel().endswith("]") for ax in fig.axes[3:6])
+
+
+def test_friction_shows_as_half_width_of_the_loop() -> None:
+    worst = worst_views(discovery("two"))
+    assert worst[0].view.branches == "half_width"
+    assert worst[0].label == "tyre load, half-width of the loop [N]"
+    assert worst[0].half is None
+
+
+def test_isolability_bars_and_matrix_share_their_rows() -> None:
+    table = isolability(discovery("named"))
+    fig = isolability_figure(table, "S")
+    matrix, sizes = fig.axes[:2]
+    assert matrix.get_ylim() == sizes.get_ylim() == (len(table.labels), 0.0)
+    labels = [t.get_text() for t in matrix.get_yticklabels()]
+    assert labels[0] == f"{table.labels[0]}  1"
+    assert len(sizes.patches) == len(table.labels)
+
+
+def test_held_out_has_a_row_a_load_case() -> None:
+    cases = discovery("named").held_out
+    ax = held_out_figure(cases, "S").axes[0]
+    assert len(ax.get_yticklabels()) == len(LOAD_CASES)
+    assert [gain_words(v) for v in (-0.04, 12.34, 12345.0)] == ["0.0", "+12.3", "+12 345"]
+
+
+def test_parameters_that_return_come_first() -> None:
+    rows = moved_parameters(tuned_parameters(discovery("named")))
+    change = [abs(p.with_effect_distance) - abs(p.tuned_distance) for p in rows]
+    assert change == sorted(change)
+    ax = parameter_figure(tuned_parameters(discovery("named")), "S").axes[0]
+    assert [t.get_text() for t in ax.get_yticklabels()] == [p.path for p in rows]
+
+
+def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("a file")
+    with pytest.raises(RunError, match="out"):
+        write_discovery_figures(discovery("none"), tmp_path / "out", study="S", workers=1)
