@@ -190,7 +190,9 @@ def _half_widths(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
     """Inside the ends of the loops, where both branches meet."""
     for case in measurement.curves.cases.values():
         keep = reached(axle, case)
-        keep[np.flatnonzero(keep)[[0, -1]]] = False
+        keep[np.flatnonzero(keep)[:1]] = keep[np.flatnonzero(keep)[-1:]] = False
+        if not keep.any():
+            continue
         for response in RIG_RESPONSES:
             noise = measurement.noise[case.load_case][response]
             floor = SOLVER_FLOOR * noise.white**2 * np.eye(int(keep.sum()))

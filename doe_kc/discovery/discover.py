@@ -13,7 +13,7 @@ from doe_kc.discovery.disagreement import raw_map, remaining_map
 from doe_kc.discovery.findings import findings
 from doe_kc.discovery.gaps import gaps, returned
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import Projection, projection
+from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import Search, Trial, accepted_steps, search, threshold
@@ -38,12 +38,12 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     every = findings(found, remaining.chance)
     relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
     predicted = bench.held_out(found.tuned, found.plain) if relevant else ()
-    judged = verdict(relevant, remaining, predicted, found.tuned, found.plain)
     before = remaining_map(shapes, found.tuned.residual, projection(found.tuned))
+    judged = verdict(relevant, before, remaining, predicted, found.tuned, found.plain)
     somewhere = None if before.agrees else bench.scanned(found.tuned, max(1.0, remaining.mean_square))
     decoy = best_decoy(found, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
-    stands = _standings(found, project, every, len(library))
+    stands = _standings(found, every, len(library))
     ambiguous = classes(relevant) if judged.kind == "class" else ()
     return Discovery(
         verdict=judged.kind,
@@ -79,9 +79,7 @@ def best_decoy(found: Search, relevant: Sequence[Finding]) -> Trial | None:
     return None
 
 
-def _standings(
-    found: Search, project: Projection, every: Sequence[Finding], count: int
-) -> tuple[Standing, ...]:
+def _standings(found: Search, every: Sequence[Finding], count: int) -> tuple[Standing, ...]:
     critical = float(np.sqrt(2.0 * threshold(count)))
     members: list[tuple[Screened, Status]] = []
     for f in every:
@@ -91,4 +89,5 @@ def _standings(
                 members.append((own, "found" if f.relevant else "trace"))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
-    return standings(found.final, project, others, members, critical)
+    tunable = projection(found.plain, effects=False)
+    return standings(found.plain, tunable, others, members, critical)

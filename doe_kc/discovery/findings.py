@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
@@ -22,6 +22,10 @@ CONFIDENT = 2.0
 """Standard deviations by which an effect must be above that."""
 UNLISTED = 0.02
 """Prior odds that an effect outside the library, which looks like the one named, is at work instead."""
+ALIKE = 0.05
+"""Chance of a wrong name from which two effects are alike to the records."""
+DECISIVE = 4.6
+"""ln evidence, a hundred to one, that settles even between effects that are alike."""
 MENTIONED = 0.01
 """Probability from which a rival is listed."""
 
@@ -41,6 +45,7 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
     own = next(s for s in step.screened if s.hypothesis == hypothesis)
     detectability = _detectability(found.plain, place) if sizes else own.detectability
     counted = [(abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if s.growth != "shape"]
+    chances = _wrong_names(step, own, detectability)
     rivals = tuple(
         Rival(effect, p)
         for effect, p in sorted(shares.items(), key=lambda item: -item[1])
@@ -53,7 +58,8 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
         rivals=rivals,
         gain=next(t.gain for t in step.trials if t.hypothesis == hypothesis),
         detectability=detectability,
-        wrong_name=_wrong_name(step, own, detectability),
+        wrong_name=max(chances.values(), default=0.0),
+        alike=_alike(step, own, chances),
         largest=max((a for a, _ in counted), default=1.0),
         relevant=not counted or any(a - CONFIDENT * e >= RELEVANT for a, e in counted),
     )
@@ -108,16 +114,27 @@ def _detectability(final: Fit, place: slice) -> float:
     return float(np.sqrt(max(0.0, float(amplitudes @ information @ amplitudes))))
 
 
-def _wrong_name(step: Step, own: Screened, detectability: float) -> float:
-    """Of the closest rival, from the remaining changes where the search stood."""
+def _wrong_names(step: Step, own: Screened, detectability: float) -> dict[str, float]:
+    """Effect id -> chance that noise names it instead, from the remaining changes where the search stood."""
     project = projection(step.before)
     direction = _unit(project(own.change))
-    chances = [
-        wrong_name_chance(detectability, float(direction @ _unit(project(s.change))))
-        for s in step.screened
-        if s.hypothesis.effect != own.hypothesis.effect and not s.failed
-    ]
-    return max(chances, default=0.0)
+    out: dict[str, float] = {}
+    for s in step.screened:
+        effect = s.hypothesis.effect
+        if effect != own.hypothesis.effect and not s.failed:
+            chance = wrong_name_chance(detectability, float(direction @ _unit(project(s.change))))
+            out[effect] = max(out.get(effect, 0.0), chance)
+    return out
+
+
+def _alike(step: Step, own: Screened, chances: Mapping[str, float]) -> tuple[str, ...]:
+    """Effects that the records hardly tell from this one and whose evidence is not decisively less."""
+    gains: dict[str, float] = {}
+    for t in step.trials:
+        gains[t.hypothesis.effect] = max(gains.get(t.hypothesis.effect, -np.inf), t.gain)
+    best = gains[own.hypothesis.effect]
+    close = (e for e, g in gains.items() if (best - g) / step.temper < DECISIVE)
+    return tuple(e for e in close if chances.get(e, 0.0) > ALIKE)
 
 
 def _unit(seen: FloatArray) -> FloatArray:

@@ -44,7 +44,8 @@ class Finding:
 
     probability: that it is this effect, in whatever place. rivals: most probable first. gain: ln of the
     evidence over the model without it. detectability: standard deviations that it makes after re-tuning.
-    wrong_name: chance that noise names its closest rival instead. largest: its largest amplitude, in
+    wrong_name: chance that noise names its closest rival instead. alike: effects that the records hardly
+    tell from it, whatever their odds. largest: its largest amplitude, in
     typical sizes. relevant: whether that is worth naming.
     """
 
@@ -55,6 +56,7 @@ class Finding:
     gain: float
     detectability: float
     wrong_name: float
+    alike: tuple[str, ...]
     largest: float
     relevant: bool
 

@@ -17,6 +17,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection, projection
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
 
@@ -42,7 +43,7 @@ SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetr
 
 @dataclass(frozen=True)
 class Trial:
-    """A hypothesis refitted jointly. gain: ln evidence over the model without it."""
+    """A hypothesis refitted jointly. gain: ln of the evidence over the model without it, times its odds."""
 
     hypothesis: Hypothesis
     fit: Fit
@@ -200,7 +201,9 @@ def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Tria
     ]
     fits = bench.fitted(starts, "refitting leaders", current.jacobian)
     trials = [
-        Trial(s.hypothesis, f, f.evidence - current.evidence)
+        Trial(
+            s.hypothesis, f, f.evidence - current.evidence + float(np.log(EFFECTS[s.hypothesis.effect].odds))
+        )
         for s, f in zip(screened, fits, strict=True)
         if f is not None
     ]

@@ -60,8 +60,9 @@ def _one(finding: Finding) -> str:
         f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {e.value:.4g} ± {e.sd:.2g} {e.unit}"
         for e in finding.estimates
     )
-    rivals = ", ".join(f"{r.effect} {r.probability:.0%}" for r in finding.rivals)
-    text = f"{_label(finding).capitalize()}: probability {finding.probability:.1%}"
+    rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
+    label = _label(finding)
+    text = f"{label[0].upper()}{label[1:]}: probability {finding.probability:.1%}"
     text += f"; {sizes}" if sizes else ""
     return text + (f"; else {rivals}." if rivals else ".")
 
@@ -73,19 +74,19 @@ def next_tests(
     standings: Sequence[Standing],
 ) -> tuple[str, ...]:
     """What would separate a class, confirm a name, or show what is not testable here."""
-    out: list[str] = []
+    out: dict[str, str] = {}
     for members in ambiguous:
-        out += [f"To tell {_known(m)} from its rivals: {EFFECTS[m].shown_by}." for m in members]
+        for m in members:
+            out.setdefault(m, f"To tell {_known(m)} from its rivals: {EFFECTS[m].shown_by}.")
     if verdict.kind in ("named", "unexplained"):
-        out += [
-            f"To confirm {_known(f.hypothesis.effect)}: {EFFECTS[f.hypothesis.effect].shown_by}."
-            for f in findings
-        ]
+        for f in findings:
+            ident = f.hypothesis.effect
+            out.setdefault(ident, f"To confirm {_known(ident)}: {EFFECTS[ident].shown_by}.")
     hidden = [s for s in standings if s.status == "not testable"]
     for effect in dict.fromkeys(s.hypothesis.effect for s in hidden):
         if all(s.status == "not testable" for s in standings if s.hypothesis.effect == effect):
-            out.append(f"Not testable here, {_known(effect)}: {EFFECTS[effect].shown_by}.")
-    return tuple(out[:ADVISED])
+            out.setdefault(effect, f"Not testable here, {_known(effect)}: {EFFECTS[effect].shown_by}.")
+    return tuple(list(out.values())[:ADVISED])
 
 
 def _known(effect: str) -> str:

@@ -20,6 +20,13 @@ CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
 CLEAR = 5.0
 """Standard deviations of a sum of squares beyond which a gap is clear of noise."""
+REMAINDER = 0.2
+"""Share of the largest disagreement, before, that may remain of a gap that is all but closed: laws differ."""
+ALL_BUT_CLOSED = 0.95
+MANY = 2
+"""Effects at once from which more are believed only if all of them are clear."""
+VISIBLE = 12.0
+"""Standard deviations, after re-tuning, that make an effect clear."""
 HARM = 6.0
 """ln predictive density that a held-out load case may lose to chance."""
 HARM_SHARE = 0.02
@@ -35,13 +42,22 @@ class Verdict:
 
 
 def verdict(
-    findings: Sequence[Finding], remaining: Map, held_out: Sequence[HeldOut], tuned: Fit, final: Fit
+    findings: Sequence[Finding],
+    before: Map,
+    remaining: Map,
+    held_out: Sequence[HeldOut],
+    tuned: Fit,
+    final: Fit,
 ) -> Verdict:
-    """findings: the relevant ones. remaining: map of the final model, the effects' shape granted."""
-    agrees = remaining.chance >= NOISE
+    """findings: the relevant ones. before, remaining: maps of the re-tuned and of the final model."""
+    closed = _closed(tuned, final)
+    small = remaining.largest <= REMAINDER * before.largest and closed >= ALL_BUT_CLOSED
+    agrees = remaining.chance >= NOISE or small
     if not findings:
         return Verdict("none") if agrees else Verdict("unexplained")
-    objections = [*_implausible(findings), *_harmed(held_out), *_open(tuned, final)]
+    objections = [*_implausible(findings), *_harmed(held_out), *_crowded(findings)]
+    if closed < CLOSED:
+        objections.append(f"it closes only {closed:.0%} of the gap that re-tuning leaves")
     if not agrees:
         worst, z = remaining.worst(1)[0]
         objections.append(
@@ -50,13 +66,20 @@ def verdict(
         )
     if objections:
         return Verdict("unexplained", tuple(objections))
-    return Verdict("named" if all(f.probability >= SURE for f in findings) else "class")
+    return Verdict("class" if any(map(ambiguous, findings)) else "named")
+
+
+def ambiguous(finding: Finding) -> bool:
+    """Whether the effect cannot be told from others."""
+    return finding.probability < SURE or bool(finding.alike)
 
 
 def classes(findings: Sequence[Finding]) -> tuple[tuple[str, ...], ...]:
     """For every effect that is not sure: it and the rivals that it cannot be told from."""
     return tuple(
-        (f.hypothesis.effect, *(r.effect for r in f.rivals)) for f in findings if f.probability < SURE
+        tuple(dict.fromkeys((f.hypothesis.effect, *(r.effect for r in f.rivals), *f.alike)))
+        for f in findings
+        if ambiguous(f)
     )
 
 
@@ -80,10 +103,16 @@ def _harmed(held_out: Sequence[HeldOut]) -> list[str]:
     ]
 
 
-def _open(tuned: Fit, final: Fit) -> list[str]:
+def _closed(tuned: Fit, final: Fit) -> float:
+    """Share of the gap beyond noise that is closed; 1 where there is no clear gap."""
     expected = float(tuned.residual.size)
     before, after = tuned.misfit - expected, final.misfit - expected
     if before < CLEAR * (2.0 * expected) ** 0.5:
+        return 1.0
+    return 1.0 - max(0.0, after) / before
+
+
+def _crowded(findings: Sequence[Finding]) -> list[str]:
+    if len(findings) <= MANY or all(f.detectability >= VISIBLE for f in findings):
         return []
-    closed = 1.0 - max(0.0, after) / before
-    return [] if closed >= CLOSED else [f"it closes only {closed:.0%} of the gap that re-tuning leaves"]
+    return [f"{len(findings)} effects at once, not all of them clear, would have to act together"]

@@ -42,9 +42,15 @@ class Effect(ABC):
     """Numbers by which the effect grows, where it has one place only."""
     replaces: ClassVar[tuple[str, ...]] = ()
     """Parameter paths that are this effect in other words: held while it is looked for."""
+    odds: ClassVar[float] = 1.0
+    """How much likelier than other effects it is before any measurement."""
     on_rig: ClassVar[bool] = False
     """True for a fault of the measurement: the axle stays as it is, `observe` changes what is read (and
     `extend` at most how a load case is run). Axle files do not hold such effects."""
+
+    def present(self, axle: Axle) -> bool:
+        """Whether the axle has the effect already, so that it is not looked for."""
+        return self.id in axle.effects
 
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """The places and sizes in which the effect is looked for."""

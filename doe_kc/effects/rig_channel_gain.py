@@ -23,6 +23,7 @@ class RigChannelGain(Effect):
     id: ClassVar[str] = "rig_channel_gain"
     label: ClassVar[str] = "Wrong gain of a measuring channel"
     on_rig: ClassVar[bool] = True
+    odds: ClassVar[float] = 0.05
 
     physics: ClassVar[str] = "The rig's sensor of one response is calibrated wrongly."
     mistaken_for: ClassVar[tuple[str, ...]] = ("rig_input_gain", "steering_ratio", "roll_technique")

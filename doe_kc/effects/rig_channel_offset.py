@@ -22,6 +22,7 @@ class RigChannelOffset(Effect):
     id: ClassVar[str] = "rig_channel_offset"
     label: ClassVar[str] = "Offset of the static alignment"
     on_rig: ClassVar[bool] = True
+    odds: ClassVar[float] = 0.05
 
     physics: ClassVar[str] = (
         "The rig's zero of an angle is off, so that the static alignment is read wrongly."

@@ -24,6 +24,7 @@ class RigInputGain(Effect):
     id: ClassVar[str] = "rig_input_gain"
     label: ClassVar[str] = "Wrong input of a load case"
     on_rig: ClassVar[bool] = True
+    odds: ClassVar[float] = 0.05
 
     physics: ClassVar[str] = "The rig applied more or less than it recorded in one load case."
     mistaken_for: ClassVar[tuple[str, ...]] = ("rig_channel_gain", "steering_ratio", "arb.radius")

@@ -29,6 +29,9 @@ class SteerArmCompliance(Effect):
     sizes: ClassVar[tuple[Size, ...]] = (Size("radius_mm", 14.0, "mm", "compliance", power=4.0),)
     replaces: ClassVar[tuple[str, ...]] = ("steer_arm.radius",)
 
+    def present(self, axle: Axle) -> bool:
+        return axle.topology.steer_arm
+
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(both("steer_arm.radius", options["radius_mm"]))
         return replace(changed, topology=replace(axle.topology, steer_arm=True))

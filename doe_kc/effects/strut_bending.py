@@ -33,6 +33,9 @@ class StrutBending(Effect):
     )
     replaces: ClassVar[tuple[str, ...]] = ("strut.flexibility",)
 
+    def present(self, axle: Axle) -> bool:
+        return axle.topology.strut_bending
+
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         changed = axle.changed(
             both("strut.flexibility", 1.0)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.verdict import SURE
 from doe_kc.effects import EFFECTS
 from doe_kc.reporting.discovery_sizes import FoundSize, found_sizes
 from doe_kc.reporting.discovery_words import effect_label, mistaken_words, place_of
@@ -15,10 +16,7 @@ from doe_kc.reporting.discovery_words import effect_label, mistaken_words, place
 
 @dataclass(frozen=True)
 class EffectRow:
-    """One number of one effect; size is None for an effect that is there or not.
-
-    kind: found, lead (the verdict is unexplained) or trace (seen, too small to matter).
-    """
+    """One number of one effect; size is None for an effect that is there or not. kind: as `kind_of`."""
 
     finding: Finding
     kind: str
@@ -37,13 +35,22 @@ class EffectRow:
 
 def effect_rows(found: Discovery) -> list[EffectRow]:
     """Findings, largest first, then traces."""
-    kind = "lead" if found.verdict == "unexplained" else "found"
     out: list[EffectRow] = []
     for finding in (*found.findings, *found.traces):
-        own = kind if finding.relevant else "trace"
+        own = kind_of(found, finding)
         sizes: list[FoundSize | None] = list(found_sizes(found, finding))
         out += [EffectRow(finding, own, size) for size in sizes or [None]]
     return out
+
+
+def kind_of(found: Discovery, finding: Finding) -> str:
+    """found; most likely, of several that cannot be told apart; lead only, where the verdict is unexplained;
+    trace, seen but too small to matter."""
+    if finding not in found.findings:
+        return "trace"
+    if found.verdict == "unexplained":
+        return "lead only"
+    return "found" if finding.probability >= SURE else "most likely"
 
 
 def rival_words(finding: Finding) -> str:

@@ -40,6 +40,11 @@ class FoundSize:
             return f"not told from rigid (above {limit}, 95 %)"
         return f"not told from none (below {limit}, 95 %)"
 
+    @property
+    def sentence(self) -> str:
+        """The option's name with `words`."""
+        return f"{self.size.name} {'= ' if self.seen else ''}{self.words}"
+
 
 def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
@@ -68,4 +73,4 @@ def value_sd(value: float, sd: float) -> str:
 
 def size_words(found: Discovery, finding: Finding) -> str:
     """All sizes of a finding in one line."""
-    return "; ".join(f"{s.size.name} = {s.words}" for s in found_sizes(found, finding))
+    return "; ".join(s.sentence for s in found_sizes(found, finding))

@@ -10,7 +10,13 @@ from doe_kc import __version__
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.effects import EFFECTS
 from doe_kc.reporting.discovery_sizes import size_words
-from doe_kc.reporting.discovery_words import HEADLINES, contrast_words, effect_label, hypothesis_label
+from doe_kc.reporting.discovery_words import (
+    HEADLINES,
+    contrast_words,
+    effect_label,
+    hypothesis_label,
+    own_sentences,
+)
 from doe_kc.reporting.workbook_cells import FLAGGED, frame, page, put, title, widths
 
 PLACES = 3
@@ -39,7 +45,7 @@ def verdict_sheet(book: Workbook, found: Discovery, study: str, date: str, notes
 def verdict_lines(found: Discovery) -> list[tuple[str, str]]:
     """(head, sentence): the verdict, each effect, what stays open, what to test next; heads only once."""
     out = [("Verdict", f"{HEADLINES[found.verdict]}. {found.sentences[0]}")]
-    out += _headed("In words", found.sentences[1:])
+    out += _headed("In words", own_sentences(found)[1:])
     head = "Lead" if found.verdict == "unexplained" else "Effect"
     out += _headed(head, [finding_words(found, f) for f in found.findings])
     traces = [f"{hypothesis_label(f.hypothesis)}: {size_words(found, f)}" for f in found.traces]

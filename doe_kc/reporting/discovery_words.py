@@ -6,7 +6,7 @@ import math
 
 from doe_kc.curves import RESPONSE_UNITS
 from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.result import VerdictKind
+from doe_kc.discovery.result import Discovery, VerdictKind
 from doe_kc.discovery.standing import Standing, Status
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -35,6 +35,11 @@ MODELS = {
     "best_decoy": "best decoy",
 }
 """Names of the four models that are compared, by their field in `Gap`."""
+
+
+def own_sentences(found: Discovery) -> list[str]:
+    """The verdict in words; without what remains unexplained where that is listed in full beside it."""
+    return [s for s in found.sentences if not (found.unexplained and s.startswith("Unexplained:"))]
 
 
 def effect_label(ident: str) -> str:

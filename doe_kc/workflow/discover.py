@@ -68,7 +68,7 @@ def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis,
             raise InputError(
                 f"--exclude {ident}: is no effect; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
             )
-    wanted = [e for e in EFFECTS.values() if e.id not in exclude and e.id not in axle.effects]
+    wanted = [e for e in EFFECTS.values() if e.id not in exclude and not e.present(axle)]
     return tuple(h for e in wanted for h in e.hypotheses())
 
 

@@ -22,7 +22,8 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
     effects: those that the verdict names, or the most probable of a class; leads: in their place where the
     verdict is unexplained; traces: seen, too small to matter. parameters: value, sd, unit of each option,
     lists for a list option. excluded: places whose size would have been found from `above` on (stiffnesses:
-    below it). not_testable: ids of which no place is testable. gap: whitened RMS of all records.
+    below it). points_to: interface and law of the generic scan, where the verdict is unexplained.
+    not_testable: ids of which no place is testable. gap: whitened RMS of all records.
     """
     findings = [effect_entry(f) for f in found.findings]
     open_ = found.verdict == "unexplained"
@@ -42,6 +43,7 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
         "held_out": {
             h.load_case: {"tuned": h.tuned.rms, "with_effect": h.with_effect.rms} for h in found.held_out
         },
+        "points_to": _place(found),
         "next_test": list(found.next_tests),
         "axle": None if axle_path is None else str(axle_path),
     }
@@ -66,6 +68,21 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
         "location": hypothesis.location,
         "probability": finding.probability,
         "parameters": parameters,
+    }
+
+
+def _place(found: Discovery) -> dict[str, Any] | None:
+    """What the generic scan says where no effect of the library is named."""
+    if found.verdict != "unexplained" or found.scan is None or found.scan.interface is None:
+        return None
+    best = found.scan.places[0]
+    return {
+        "interface": best.interface,
+        "law": best.law,
+        "side": best.side,
+        "dofs": list(best.dofs),
+        "probability": best.probability,
+        "words": best.words,
     }
 
 

@@ -101,7 +101,14 @@ def test_held_out_has_a_row_a_load_case() -> None:
 
 
 @pytest.mark.parametrize(
-    ("car", "kinds"), [("none", []), ("named", ["found"]), ("lead", ["lead"]), ("two", ["found"])]
+    ("car", "kinds"),
+    [
+        ("none", []),
+        ("named", ["found"]),
+        ("lead", ["lead only"]),
+        ("class", ["most likely"]),
+        ("two", ["found"]),
+    ],
 )
 def test_effects_have_a_row_for_each_number(car: str, kinds: list[str]) -> None:
     found = discovery(car)

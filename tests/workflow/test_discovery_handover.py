@@ -25,7 +25,8 @@ from tests.discovery.cases import AXLE, LOAD_CASES, discovery, records
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 KEYS = [
     "verdict", "effects", "leads", "traces", "classes", "excluded", "not_testable", "unexplained_at", "gap",
-    "held_out", "next_test", "axle",
+    "held_out", "points_to",
+    "next_test", "axle",
 ]  # fmt: skip
 
 

@@ -7,12 +7,16 @@ from typing import Any
 
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.effects import EFFECTS
-from doe_kc.reporting.discovery_effects import rival_words
+from doe_kc.reporting.discovery_effects import kind_of, rival_words
 from doe_kc.reporting.discovery_sizes import found_sizes
-from doe_kc.reporting.discovery_words import HEADLINES, contrast_words, effect_label, hypothesis_label
+from doe_kc.reporting.discovery_words import (
+    HEADLINES,
+    contrast_words,
+    effect_label,
+    hypothesis_label,
+    own_sentences,
+)
 from doe_kc.reporting.page.section import Section, render
-
-KINDS = {"found": "found", "lead": "lead only", "trace": "seen, too small to matter"}
 
 
 def verdict_section(found: Discovery, notes: Mapping[str, str]) -> Section:
@@ -28,7 +32,7 @@ def verdict_section(found: Discovery, notes: Mapping[str, str]) -> Section:
         has_effect=bool(found.fitted.model.members),
         better=better,
         cases=len(found.held_out),
-        sentences=found.sentences,
+        sentences=own_sentences(found),
         effects=[_effect(found, f) for f in (*found.findings, *found.traces)],
         alike=[" or ".join(effect_label(e) for e in group) for group in found.classes],
         unexplained=[(contrast_words(c), z) for c, z in found.unexplained],
@@ -39,13 +43,13 @@ def verdict_section(found: Discovery, notes: Mapping[str, str]) -> Section:
 
 def _effect(found: Discovery, finding: Finding) -> dict[str, Any]:
     ident = finding.hypothesis.effect
-    kind = "trace" if not finding.relevant else "lead" if found.verdict == "unexplained" else "found"
+    kind = kind_of(found, finding)
     return {
         "label": hypothesis_label(finding.hypothesis),
-        "kind": KINDS[kind],
+        "kind": "seen, too small to matter" if kind == "trace" else kind,
         "quiet": kind == "trace",
         "probability": finding.probability,
-        "sizes": [(s.size.name, s.words, s.times) for s in found_sizes(found, finding)],
+        "sizes": [s.sentence for s in found_sizes(found, finding)],
         "rivals": rival_words(finding) or "–",
         "physics": EFFECTS[ident].physics,
         "shown_by": EFFECTS[ident].shown_by,
