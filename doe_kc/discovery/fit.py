@@ -20,6 +20,8 @@ from doe_kc.typing import FloatArray
 
 CONVERGED = 0.02
 """Predicted decrease of the sum of squares below which a fit stands."""
+NEAR = 3000.0
+"""Decrease of the sum of squares below which the parameters have moved too little for new derivatives."""
 SMALL = 1.0
 """Predicted decrease below which a step is the last, its derivatives those of the step before."""
 POOR, GOOD = 0.25, 0.75
@@ -123,7 +125,9 @@ def fit(
         if residual is not None and cost < current.cost:
             if predicted < SMALL:
                 return replace(current, z=trial, residual=residual, cost=cost, converged=True)
-            current = _expanded(model, trial, residual, current.evaluations)
+            near = current.cost - cost < NEAR
+            kept = current.jacobian[:, : model.dimension] if near else None
+            current = _expanded(model, trial, residual, current.evaluations, kept)
         if radius < SMALLEST:
             return current
     return current

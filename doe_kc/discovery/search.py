@@ -13,32 +13,22 @@ from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, followed, rewhitened
 from doe_kc.discovery.granted import granted
+from doe_kc.discovery.leaders import compatible, leaders
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import Projection, projection
+from doe_kc.discovery.projection import projection
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.typing import FloatArray
 
 MOST = 6
 """Effects, named ones and traces, after which the search ends."""
-LEADERS = 5
-"""Hypotheses refitted jointly at each step."""
-RIVAL = 0.3
-"""|correlation| of what two effects explain from which they are rivals."""
-WORTH = 0.2
-"""Share of the best screened gain below which a hypothesis is not refitted."""
-OF_ONE_KIND = 2
-"""Places of the same effect that are refitted at most."""
+DOUBTFUL = 10.0
+"""Times the threshold: a member that carries more is not tried without."""
 FALSE_ALARM = 0.01
 """Chance that noise alone brings in any effect at a step."""
-TRACE = 0.1
-"""Typical sizes below which an effect is no more than a trace, and needs no decoy."""
 PROMISING = 1.0
 """ln evidence to first order from which a hypothesis is screened anew at a later step."""
-SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
-"""Effects that a model may have in several places at once."""
 
 
 @dataclass(frozen=True)
@@ -149,79 +139,37 @@ def _step(
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
 
 
-def leaders(screened: Sequence[Screened], project: Projection, least: float) -> list[Screened]:
-    """The best and its rivals, which would explain the same; a decoy of another kind is among them.
-
-    Effects that explain something else are no rivals: they have their own step.
-    """
-    if not screened or screened[0].gain <= least:
-        return []
-    best = screened[0]
-    out = [best]
-    own = _explained(best, project)
-    for s in screened[1:]:
-        if s.gain <= max(least, WORTH * best.gain) or len(out) == LEADERS:
-            break
-        kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
-        if kind < OF_ONE_KIND and abs(float(own @ _explained(s, project))) > RIVAL:
-            out.append(s)
-    small = best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < TRACE
-    if not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
-        out += [s for s in screened if s.hypothesis.effect != best.hypothesis.effect and not s.failed][:1]
-    return out
-
-
-def _explained(screened: Screened, project: Projection) -> FloatArray:
-    """(M + d,) direction of what the effect does at its size, after re-tuning."""
-    change = screened.columns @ screened.amplitudes if screened.amplitudes.size else screened.change
-    seen = project(change)
-    length = float(np.linalg.norm(seen))
-    return np.asarray(seen / length if length > 0.0 else seen)
-
-
-def compatible(model: EffectModel, hypothesis: Hypothesis) -> bool:
-    """Whether the model can take the effect besides those it has."""
-    for member in model.members:
-        if member.effect == hypothesis.effect:
-            if member.effect not in SEVERAL_PLACES:
-                return False
-            if _bushing(member) == _bushing(hypothesis):
-                return False
-    return True
-
-
-def _bushing(hypothesis: Hypothesis) -> str:
-    return (hypothesis.location or "").partition("_")[0]
-
-
 def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:
     """The joint refits from the screened sizes, best first; those without a solution are left out."""
     starts = [
         (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
     ]
     fits = bench.fitted(starts, "refitting leaders", current.jacobian)
-    trials = [
-        Trial(
-            s.hypothesis, f, f.evidence - current.evidence + float(np.log(EFFECTS[s.hypothesis.effect].odds))
-        )
-        for s, f in zip(screened, fits, strict=True)
-        if f is not None
-    ]
+    trials = []
+    for s, found in zip(screened, fits, strict=True):
+        if found is not None:
+            odds = float(np.log(EFFECTS[s.hypothesis.effect].odds))
+            trials.append(Trial(s.hypothesis, found, found.evidence - current.evidence + odds))
     return sorted(trials, key=lambda t: -t.gain)
 
 
 def pruned(found: Fit, least: float, bench: Bench) -> Fit:
     """Backward elimination: members that the later ones have made needless are taken out."""
     while len(found.model.members) > 1:
-        members = list(found.model.places())[:-1]
+        members = [(h, p) for h, p in list(found.model.places())[:-1] if _loss(found, p) < DOUBTFUL * least]
         starts = [(found.model.without(h), np.delete(found.z, np.r_[place])) for h, place in members]
-        fewer = [
-            f
-            for f in bench.fitted(starts, "taking effects out", found.jacobian[:, : found.model.dimension])
-            if f is not None
-        ]
+        tuning = found.jacobian[:, : found.model.dimension]
+        fewer = [f for f in bench.fitted(starts, "taking effects out", tuning) if f is not None]
         best = max(fewer, key=lambda f: f.evidence, default=None)
         if best is None or found.evidence - best.evidence > least:
             return found
         found = best
     return found
+
+
+def _loss(found: Fit, place: slice) -> float:
+    """ln likelihood that a member's sizes carry, to second order (Wald); 0 for one without sizes."""
+    amplitudes = found.z[place]
+    if not amplitudes.size:
+        return 0.0
+    return 0.5 * float(amplitudes @ np.linalg.inv(found.covariance[place, place]) @ amplitudes)

@@ -82,8 +82,10 @@ def _status(screened: Screened, detectable: float) -> Status:
 
 
 def _moves(found: Fit, changes: FloatArray) -> FloatArray:
-    """(d + m, k) how the fitted point would follow each change."""
-    return np.asarray(-cho_solve(cho_factor(found.hessian), found.jacobian.T @ changes))
+    """(d, k) how the tunable parameters would follow each change, the sizes of the effects held."""
+    count = found.model.dimension
+    hessian, jacobian = found.hessian[:count, :count], found.jacobian[:, :count]
+    return np.asarray(-cho_solve(cho_factor(hessian), jacobian.T @ changes))
 
 
 def _hiding(found: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, float], ...]:

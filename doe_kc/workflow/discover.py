@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
@@ -42,18 +43,24 @@ def discover_study(
             f"{study.source}: discovery needs exact sensitivities, which an outside solver does not give; "
             "remove [solver] command."
         )
-    axle = study.axle
+    axle = recorded(study.axle, measurement)
     library = effect_library(axle, exclude)
     likelihood = record_likelihood(axle, measurement)
     if not likelihood.curves:
         raise InputError(
             f"{study.source}: no load case of the records is among the axle's; "
-            f"expected one of {', '.join(axle.load_cases)}."
+            f"expected one of {', '.join(study.axle.load_cases)}."
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
     count = workers or available_cores()
     with processes(count) as executor, Ledger(study.out / "discovery.sqlite") as ledger:
         return discover(model, library, Bench(executor, ledger, watch, workers=count))
+
+
+def recorded(axle: Axle, measurement: Measurement) -> Axle:
+    """The axle with the load cases that were measured: the others need not be solved."""
+    cases = {k: c for k, c in axle.load_cases.items() if k in measurement.curves.cases}
+    return replace(axle, load_cases=cases)
 
 
 def expected_steps(study: Study) -> int:
@@ -90,13 +97,14 @@ def discover_folder(
     """An axle file against a folder of records, without a study file; the answer as data."""
     from doe_kc.axle import read_axle
     from doe_kc.measurement import reduce_measurement
-    from doe_kc.workflow.discovery_handover import discovery_document
+    from doe_kc.workflow.discovery_document import discovery_document
 
     axle = read_axle(axle_path)
     measurement = reduce_measurement(measurement_dir, half_track=axle.half_track)
+    axle = recorded(axle, measurement)
     library = effect_library(axle, exclude)
     space = discovery_space(axle, VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
     with processes(workers) as executor, Ledger(out / "discovery.sqlite") as ledger:
         found = discover(model, library, Bench(executor, ledger, workers=workers))
-    return discovery_document(found, None)
+    return dict(discovery_document(found, None))

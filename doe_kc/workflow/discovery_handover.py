@@ -23,7 +23,6 @@ from doe_kc.reporting.discovery_words import HEADLINES, hypothesis_label
 from doe_kc.reporting.discovery_workbook import write_discovery_workbook
 from doe_kc.reporting.page import write_discovery_page
 from doe_kc.study import Study
-from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
 
 TABLES = {
     "disagreement.csv": disagreement_frame,
@@ -34,6 +33,7 @@ TABLES = {
     "parameters.csv": parameter_frame,
 }
 AXLE = "axle.toml"
+EFFECTS_ONLY = "axle_effects_only.toml"
 
 
 def write_discovery(
@@ -46,10 +46,14 @@ def write_discovery(
 ) -> list[Path]:
     """axle.toml (refitted, with the effects), six tables, discovery.xlsx, report.html and the figures.
 
+    Where there are effects, axle_effects_only.toml is the study's axle with them and nothing else changed.
     Returns the paths. workers: processes that draw. RunError when the folder cannot be written.
     """
     axle = found.fitted.model.axle_at(found.fitted.z)
-    written = write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(found))
+    written = [write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(found))]
+    if found.fitted.model.members:
+        extended = found.fitted.model.with_effects(found.fitted.z)
+        written.append(write_axle(extended, study.axle_path, folder / EFFECTS_ONLY, note="effects only"))
     notes = {
         "Axle": f"{axle.name}: {AXLE}, from {study.axle_path.name}",
         "Run time": f"{found.seconds:.0f} s",
@@ -57,7 +61,7 @@ def write_discovery(
     words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
     known = {"Measurement": measurement.manifest.name, **notes}
     return [
-        written,
+        *written,
         *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
         write_discovery_workbook(folder / "discovery.xlsx", found, notes=known, **words),
         write_discovery_page(folder / "report.html", found, measurement, notes=notes, **words),
@@ -70,6 +74,3 @@ def axle_note(found: Discovery) -> str:
     members = ", ".join(hypothesis_label(h).lower() for h in found.fitted.model.members)
     lead = "leads, not confirmed: " if found.verdict == "unexplained" else ""
     return f"{HEADLINES[found.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")
-
-
-__all__ = ["discovery_document", "discovery_lines", "write_discovery"]

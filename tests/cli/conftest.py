@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.workflow import compare, handover, influence, measure
+from doe_kc.workflow import compare, discovery_handover, handover, influence, measure
 
 
 @pytest.fixture(autouse=True)
@@ -24,3 +24,4 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compare, "write_comparison_figures", nothing)
     monkeypatch.setattr(influence, "write_influence_figures", nothing)
     monkeypatch.setattr(handover, "write_correlation_figures", nothing)
+    monkeypatch.setattr(discovery_handover, "write_discovery_figures", nothing)

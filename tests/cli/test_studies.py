@@ -185,7 +185,7 @@ def test_run_does_the_whole_chain(tmp_path: Path) -> None:
     study = write_study(tmp_path, records=LATERAL, tables=SHORT)
     outcome = succeeds("run", study, "--json", tmp_path / "r.json", "--workers", 1, "--seed", 3)
     document = json.loads((tmp_path / "r.json").read_text())
-    assert set(document) == {"simulate", "reduce", "compare", "influence", "correlate", "seconds"}
+    assert set(document) == {"simulate", "reduce", "compare", "influence", "correlate", "discover", "seconds"}
     check_influence(document["influence"], outcome.out)
     assert len(document["simulate"]["characteristics"]) == 30
     files = {str(p.relative_to(study / "out")) for p in (study / "out").rglob("*") if p.is_file()}
@@ -197,10 +197,14 @@ def test_run_does_the_whole_chain(tmp_path: Path) -> None:
         "influence/influence.xlsx",
         "correlate/axle.toml",
         "correlate/report.html",
+        "discover/axle.toml",
+        "discover/discovery.xlsx",
+        "discover/report.html",
         "evaluations.sqlite",
     } <= files
     assert "outside their constraint interval" in outcome.out and "lateral.toe_change" in outcome.out
-    unlisted = {"correlate/run.json", "evaluations.sqlite", "evaluations.sqlite.lock"}
+    assert document["discover"]["verdict"] in {"named", "class", "none", "unexplained"}
+    unlisted = {"correlate/run.json", "evaluations.sqlite", "evaluations.sqlite.lock", "discovery.sqlite"}
     assert f"{len(files - unlisted)} files under" in outcome.out and not leftovers(tmp_path)
 
 

@@ -7,12 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from doe_kc.axle import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.ledger import Ledger
 from doe_kc.discovery.model import EffectModel
-from tests.discovery.cases import discovery, known_to, library, model, nominal, records, space
+from doe_kc.measurement import reduce_measurement
+from doe_kc.variables import VariableOptions
+from doe_kc.workflow.discover import discovery_space
+from tests.discovery.cases import AXLE, RIG, discovery, known_to, library, model, nominal, records, space
 
 
 def test_nothing_hidden_nothing_named() -> None:
@@ -106,3 +110,19 @@ def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ign
     assert "screening effects" not in told
     assert again.sentences == first.sentences
     assert np.array_equal(again.fitted.z, first.fitted.z)
+
+
+def test_a_measured_car_with_all_its_load_cases_and_parameters() -> None:
+    """Strut bending hidden beside production scatter of 72 parameters; hub compliance looks much like it."""
+    axle = read_axle(AXLE)
+    car = reduce_measurement(RIG / "car_c", half_track=axle.half_track)
+    tunable = discovery_space(axle, VariableOptions(), "test")
+    full = EffectModel(axle, tunable, record_likelihood(axle, car))
+    found = discover(full, library("strut_bending", "hub_compliance", "ball_joint_compliance"))
+    assert found.verdict == "named"
+    (finding,) = found.findings
+    assert finding.hypothesis.effect == "strut_bending"
+    stiffness = finding.estimates[0]
+    assert abs(stiffness.value - 6500.0) < 3.0 * stiffness.sd < 0.3 * 6500.0
+    assert max(h.with_effect.rms for h in found.held_out) < 1.1
+    assert all(h.gain > 0.0 for h in found.held_out)

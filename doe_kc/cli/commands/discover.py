@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Annotated
 
 import typer
@@ -9,9 +10,13 @@ import typer
 from doe_kc.cli._app import app
 from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.progress import described_bar
+from doe_kc.discovery.result import Discovery
+from doe_kc.measurement import Measurement
 from doe_kc.output import write_json
+from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study, expected_steps
-from doe_kc.workflow.discovery_handover import discovery_document, discovery_lines, write_discovery
+from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
+from doe_kc.workflow.discovery_handover import AXLE, write_discovery
 from doe_kc.workflow.measure import study_measurement
 
 
@@ -26,18 +31,25 @@ def discover(
     """Find where model and records disagree, name the missing effect, add it, show the gap shrink."""
     found = given.read()
     records = study_measurement(found)
-    with described_bar("discovery", expected_steps(found)) as advance:
-        discovery = discover_study(
-            found,
-            records,
-            exclude=exclude or (),
-            workers=given.workers,
-            watch=lambda words, steps: advance(steps, words),
-        )
+    discovery = discovered(found, records, exclude=exclude or (), workers=given.workers)
     folder = found.out / "discover"
     written = write_discovery(found, discovery, records, folder, workers=given.workers)
     if given.json is not None:
-        write_json(given.json, discovery_document(discovery, folder / "axle.toml"))
+        write_json(given.json, discovery_document(discovery, folder / AXLE))
     for line in discovery_lines(discovery):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {folder}", err=True)
+
+
+def discovered(
+    study: Study, records: Measurement, *, exclude: Sequence[str] = (), workers: int | None = None
+) -> Discovery:
+    """The discovery, its progress shown."""
+    with described_bar("discovery", expected_steps(study)) as advance:
+        return discover_study(
+            study,
+            records,
+            exclude=exclude,
+            workers=workers,
+            watch=lambda words, steps: advance(steps, words),
+        )

@@ -8,6 +8,7 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.commands.correlate import correlated
+from doe_kc.cli.commands.discover import discovered
 from doe_kc.cli.commands.influence import influence_lines
 from doe_kc.cli.commands.reduce import ride_height_line
 from doe_kc.cli.given import Given, takes_study
@@ -23,6 +24,8 @@ from doe_kc.workflow.compare import (
     comparison_lines,
     write_comparison,
 )
+from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
+from doe_kc.workflow.discovery_handover import AXLE, write_discovery
 from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.influence import (
     influence_document,
@@ -37,7 +40,7 @@ from doe_kc.workflow.recall import write_run
 @app.command()
 @takes_study
 def run(given: Given, scheduler: SchedulerOption = None) -> None:
-    """The whole chain: simulate, reduce, compare, influence matrix, correlate; everything under out."""
+    """The whole chain: simulate, reduce, compare, influence matrix, correlate, discover; all under out."""
     started = time.perf_counter()
     found = given.read()
     found.measured()
@@ -62,6 +65,13 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
     write_run(correlation, folder)
     written += write_correlation(found, correlation, reduced.measurement, folder, workers=given.workers)
 
+    discovery = None
+    if not found.solver.command:
+        discovery = discovered(found, reduced.measurement, workers=given.workers)
+        written += write_discovery(
+            found, discovery, reduced.measurement, found.out / "discover", workers=given.workers
+        )
+
     if given.json is not None:
         write_json(
             given.json,
@@ -71,11 +81,16 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
                 "compare": comparison_document(comparison),
                 "influence": influence_document(influence.matrix),
                 "correlate": correlation_document(correlation, folder / "axle.toml"),
+                "discover": None
+                if discovery is None
+                else discovery_document(discovery, found.out / "discover" / AXLE),
                 "seconds": time.perf_counter() - started,
             },
         )
     blocks = [comparison_lines(comparison), influence_lines(influence.matrix), correlation_lines(correlation)]
-    for line in [*blocks[0], "", *blocks[1], "", *blocks[2]]:
+    if discovery is not None:
+        blocks.append(discovery_lines(discovery))
+    for line in [line for block in blocks for line in (*block, "")][:-1]:
         typer.echo(line)
     if reduced.ride_height is not None:
         typer.echo(ride_height_line(reduced.ride_height))

@@ -1,0 +1,52 @@
+"""The ledger: exact, refuses what is no ledger, and tells models apart."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.ledger import Ledger, fingerprint, key_of
+from doe_kc.errors import InputError
+from tests.discovery.cases import library, model
+
+
+def test_arrays_come_back_exactly(tmp_path: Path) -> None:
+    arrays = {"a": np.array([np.pi, np.inf, -0.0]), "b": np.zeros((0, 3))}
+    with Ledger(tmp_path / "sub" / "discovery.sqlite") as ledger:
+        assert ledger.get("k") is None
+        ledger.put("k", arrays)
+    with Ledger(tmp_path / "sub" / "discovery.sqlite") as ledger:
+        found = ledger.get("k")
+    assert found is not None
+    assert all(np.array_equal(found[k], v) and found[k].shape == v.shape for k, v in arrays.items())
+
+
+def test_a_file_that_is_none_is_refused_with_a_remedy(tmp_path: Path) -> None:
+    path = tmp_path / "discovery.sqlite"
+    path.write_bytes(b"not a database, surely not one at all" * 40)
+    with pytest.raises(InputError, match=r"discovery\.sqlite.*move it away"), Ledger(path) as ledger:
+        ledger.get("k")
+
+
+def test_whatever_changes_the_answer_changes_the_fingerprint() -> None:
+    base = model("none")
+    curves = base.likelihood.curves
+    other = replace(curves[0], value=curves[0].value + 1e-9)
+    changed = [
+        base.extended(library("hub_compliance")[0]),
+        replace(base, left_out="lateral"),
+        replace(base, axle=base.axle.changed({"tyre.static_load": 4301.0})),
+        replace(base, likelihood=replace(base.likelihood, curves=(other, *curves[1:]))),
+        replace(base, sides=np.zeros((base.likelihood.size, 1))),
+    ]
+    prints = {fingerprint(m) for m in (base, *changed)}
+    assert len(prints) == 1 + len(changed)
+    assert fingerprint(base) == fingerprint(model("none"))
+
+
+def test_keys_depend_on_every_part() -> None:
+    z = np.array([1.0, 2.0])
+    assert len({key_of("a", z), key_of("b", z), key_of("a", z + 1e-12), key_of("a")}) == 4
