@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,10 +19,11 @@ def tuned() -> Fit:
 
 
 def test_inner_products_are_those_of_the_marginal_covariance(tuned: Fit) -> None:
-    rows = np.random.default_rng(1).standard_normal((tuned.residual.size, 2))
-    seen = projection(tuned)(rows)
+    few = replace(tuned, jacobian=tuned.jacobian[::20])
+    rows = np.random.default_rng(1).standard_normal((few.jacobian.shape[0], 2))
+    seen = projection(few)(rows)
     prior = tuned.model.prior_sd
-    inverse = np.linalg.inv(np.eye(rows.shape[0]) + (tuned.jacobian * prior**2) @ tuned.jacobian.T)
+    inverse = np.linalg.inv(np.eye(rows.shape[0]) + (few.jacobian * prior**2) @ few.jacobian.T)
     assert np.allclose(seen.T @ seen, rows.T @ inverse @ rows, rtol=1e-6)
 
 

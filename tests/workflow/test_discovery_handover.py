@@ -43,11 +43,21 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 def test_everything_is_written(written: list[Path]) -> None:
     names = [p.name for p in written]
-    assert names[: 3 + len(TABLES)] == ["axle.toml", *TABLES, "discovery.xlsx", "report.html"]
-    assert {Path(n).stem for n in names[3 + len(TABLES) :]} == {
+    first = ["axle.toml", "axle_effects_only.toml", *TABLES, "discovery.xlsx", "report.html"]
+    assert names[: len(first)] == first
+    assert {Path(n).stem for n in names[len(first) :]} == {
         "disagreement", "gap", "evidence", "worst_curves", "isolability", "parameters", "held_out",
     }  # fmt: skip
     assert all(p.stat().st_size > 100 for p in written)
+
+
+def test_the_axle_with_nothing_but_the_effects_differs_by_a_few_lines(written: list[Path]) -> None:
+    before = AXLE.read_text(encoding="utf-8").splitlines()
+    after = written[1].read_text(encoding="utf-8").splitlines()
+    added = [line for line in after if line not in before]
+    assert any(line.startswith("[effects.strut_friction]") for line in added)
+    assert len(added) <= 6
+    assert all(line in after for line in before)
 
 
 def test_the_axle_is_the_fitted_one(written: list[Path]) -> None:
