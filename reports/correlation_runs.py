@@ -97,9 +97,12 @@ def problem_of(measurement: Measurement, options: VariableOptions | None = None)
 
 
 def solve_run(problem: Problem, method: str, seed: int, budget: int, first: int | None = None) -> Run:
-    """One run of a method, every design solved in this process. first: designs of the opening sample."""
+    """One run of a method, every design solved in this process. first: designs of the opening sample.
+
+    Without the solver's exact sensitivities, so that what is found holds for outside solvers too.
+    """
     solver = AxleSolver(problem.axle, problem.windows).prepare([])
-    made = METHODS[method](problem, Settings(seed=seed, budget=budget, first=first))
+    made = METHODS[method](problem, Settings(seed=seed, budget=budget, first=first, gradients=False))
     return run_method(problem, made, lambda designs: [solver.evaluate(d) for d in designs], budget=budget)
 
 
