@@ -15,8 +15,8 @@ HEAD = """# How the set-up of a correlation bears on its convergence
 Figures 5 to 9 of E. Wendeberg, *Using optimization to auto-correlate suspension characteristics to K&C
 measurements*, Chalmers 2013, repeated on `examples/front_axle`: the records of car_a, which the model
 cannot match fully. Budget {budget} evaluations (the baseline among them), {seeds} seeds a configuration.
-Everything that a figure does not vary is as shipped: `ego` (with `gradients = false`), all variables, standard
-bounds, 101 levels,
+Everything that a figure does not vary is as shipped: `ego` (`gradients = false`), all variables,
+standard bounds, 101 levels,
 uniform; but every method opens with a sample of a third of the variables, at least 20 designs. Targets,
 objectives and constraints are the same throughout (but in 9b), so ratings compare. Made by
 `python reports/configurations.py`, which also asserts what is stated.
