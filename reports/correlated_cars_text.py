@@ -20,7 +20,8 @@ correlated from the example's nominal axle with all {d} default variables. Made 
 ## The rating: `ego`
 
 Default settings but `gradients = false`, as for an outside solver (the built-in solver's exact
-sensitivities halve the evaluations to feasibility: `docs/methods.md`); budget {budget} evaluations, {seeds} seeds a
+sensitivities halve the evaluations to feasibility: `docs/methods.md`);
+budget {budget} evaluations, {seeds} seeds a
 car. Improvement: of the active
 characteristics that count (baseline more than three standard errors from its target), 100 % = target met.
 Median (lowest to highest). A run takes {seconds} s of one core.
