@@ -19,7 +19,7 @@ from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import Search, Trial, accepted_steps, search, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
 from doe_kc.discovery.standing import Standing, Status, standings
-from doe_kc.discovery.verdict import classes, verdict
+from doe_kc.discovery.verdict import classes, law_explains, verdict
 from doe_kc.effects.hypothesis import Hypothesis
 
 WORST = 8
@@ -35,10 +35,11 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     project = projection(found.final)
     remaining = remaining_map(contrasts(found.final.model.likelihood), found.final.residual, project)
     shapes = contrasts(model.likelihood)
-    every = findings(found, remaining.chance)
+    before = remaining_map(shapes, found.tuned.residual, projection(found.tuned))
+    small = law_explains(before, remaining, found.tuned, found.plain)
+    every = findings(found, 1.0 if small else remaining.chance)
     relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
     predicted = bench.held_out(found.tuned, found.plain) if relevant else ()
-    before = remaining_map(shapes, found.tuned.residual, projection(found.tuned))
     judged = verdict(relevant, before, remaining, predicted, found.tuned, found.plain)
     somewhere = None if before.agrees else bench.scanned(found.tuned, max(1.0, remaining.mean_square))
     decoy = best_decoy(found, relevant)

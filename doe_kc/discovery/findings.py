@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
@@ -20,6 +21,10 @@ RELEVANT = 0.1
 """Amplitude, in typical sizes, below which an effect is a trace: seen, but not worth a name."""
 CONFIDENT = 2.0
 """Standard deviations by which an effect must be above that."""
+WEAK, STRONG = 6.0, 10.0
+"""Standard deviations below which an effect is never named, and from which it is named beside any other."""
+BESIDE = 0.01
+"""Share of the largest gain from which an effect between the two is named."""
 UNLISTED = 0.02
 """Prior odds that an effect outside the library, which looks like the one named, is at work instead."""
 ALIKE = 0.05
@@ -32,7 +37,15 @@ MENTIONED = 0.01
 
 def findings(found: Search, unexplained: float) -> tuple[Finding, ...]:
     """Every member of the final model. unexplained: chance that noise alone leaves what remains."""
-    return tuple(_finding(found, h, place, unexplained) for h, place in found.final.model.places())
+    every = [_finding(found, h, place, unexplained) for h, place in found.final.model.places()]
+    most = max((f.gain for f in every), default=0.0)
+    return tuple(replace(f, relevant=f.relevant and _stands_out(f, most)) for f in every)
+
+
+def _stands_out(finding: Finding, most: float) -> bool:
+    """Whether the effect is more than what the law of a much larger one could leave behind."""
+    strength = min(finding.detectability, float(np.sqrt(2.0 * max(0.0, finding.gain))))
+    return strength >= STRONG or (strength >= WEAK and finding.gain >= BESIDE * most)
 
 
 def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: float) -> Finding:

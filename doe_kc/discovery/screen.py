@@ -23,6 +23,8 @@ from doe_kc.typing import FloatArray
 PROBE = 0.3
 """First size at which an effect is solved for, in typical sizes."""
 STEPS = 4
+SHARES = (1.0, 0.5, 0.2, 0.05)
+"""Of a step, tried one after the other until one gains."""
 HOPELESS = 1.0
 """ln likelihood that a step must promise over the model without the effect, or the effect is given up."""
 ENOUGH = 0.1
@@ -79,9 +81,13 @@ def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
 
 
 def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArray:
-    """(M,) change of the data at typical size."""
-    amplitudes = [0.0 if s.growth == "shape" else 1.0 for s in hypothesis.sizes]
-    return model.residual(np.concatenate([found.z, amplitudes])) - found.residual
+    """(M,) change of the data at typical size; to first order where the axle has no equilibrium there."""
+    amplitudes = np.array([0.0 if s.growth == "shape" else 1.0 for s in hypothesis.sizes])
+    try:
+        return model.residual(np.concatenate([found.z, amplitudes])) - found.residual
+    except NotConverged:
+        small = model.residual(np.concatenate([found.z, PROBE * amplitudes])) - found.residual
+        return np.asarray(small / PROBE)
 
 
 def _starts(hypothesis: Hypothesis) -> list[FloatArray]:
@@ -125,14 +131,28 @@ def _followed(model: EffectModel, found: Fit, project: Projection, start: FloatA
         predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
         if without - predicted < 2.0 * HOPELESS:
             return replace(best, amplitudes=best.amplitudes + step, cost=predicted, followed=False)
-        trial = _solved(model, found, project, best.amplitudes + step, place, best.columns)
-        if trial.cost >= best.cost:
+        trial = _better(model, found, project, best, step, place)
+        if trial is None:
             break
         gained, best = best.cost - trial.cost, trial
         if gained < ENOUGH:
             break
         best = _solved(model, found, project, best.amplitudes, place, None, known=best)
     return best
+
+
+def _better(
+    model: EffectModel, found: Fit, project: Projection, best: _Followed, step: FloatArray, place: slice
+) -> _Followed | None:
+    """The longest of the shortened steps that gains, None when none does or has an equilibrium."""
+    for share in SHARES:
+        try:
+            trial = _solved(model, found, project, best.amplitudes + share * step, place, best.columns)
+        except NotConverged:
+            continue
+        if trial.cost < best.cost:
+            return trial
+    return None
 
 
 def _solved(

@@ -23,6 +23,10 @@ from doe_kc.effects.hypothesis import Hypothesis
 
 MOST = 6
 """Effects, named ones and traces, after which the search ends."""
+LARGEST_BELIEVED = 3.0
+"""Typical sizes."""
+CONFIDENT = 2.0
+"""Standard deviations beyond them from which an effect is not believed."""
 DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""
 FALSE_ALARM = 0.01
@@ -131,12 +135,21 @@ def _step(
     screened = [full.get(h.name) or quick[h.name] for h in candidates]
     screened.sort(key=lambda s: -s.gain)
     trials = tried(current, leaders(screened, project, threshold(len(library)) / 2.0), bench)
+    trials = [t for t in trials if plausible(t)] + [t for t in trials if not plausible(t)]
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
     after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
     temper = max(1.0, after.mean_square)
-    passes = trials[0].gain / temper > threshold(len(library))
+    passes = plausible(trials[0]) and trials[0].gain / temper > threshold(len(library))
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
+
+
+def plausible(trial: Trial) -> bool:
+    """Whether the effect's sizes are believed: none surely beyond three typical ones."""
+    sd = np.sqrt(np.diag(trial.fit.covariance))
+    count = len(trial.hypothesis.sizes)
+    sizes = zip(trial.hypothesis.sizes, trial.fit.z[-count:], sd[-count:], strict=True) if count else ()
+    return not any(s.growth != "shape" and abs(a) - CONFIDENT * e > LARGEST_BELIEVED for s, a, e in sizes)
 
 
 def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:

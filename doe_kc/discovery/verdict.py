@@ -11,10 +11,10 @@ from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.result import Finding, VerdictKind
 
 SURE = 0.9
-"""Probability from which an effect is named by itself."""
+"""Probability against its rivals from which an effect is named by itself."""
 NOISE = 0.01
 """Chance of a map's largest disagreement below which noise does not explain it."""
-PLAUSIBLE = 3.0
+PLAUSIBLE = 3.5
 """Typical sizes beyond which an effect is not believed."""
 CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
@@ -51,8 +51,7 @@ def verdict(
 ) -> Verdict:
     """findings: the relevant ones. before, remaining: maps of the re-tuned and of the final model."""
     closed = _closed(tuned, final)
-    small = remaining.largest <= REMAINDER * before.largest and closed >= ALL_BUT_CLOSED
-    agrees = remaining.chance >= NOISE or small
+    agrees = remaining.chance >= NOISE or law_explains(before, remaining, tuned, final)
     if not findings:
         return Verdict("none") if agrees else Verdict("unexplained")
     objections = [*_implausible(findings), *_harmed(held_out), *_crowded(findings)]
@@ -69,9 +68,16 @@ def verdict(
     return Verdict("class" if any(map(ambiguous, findings)) else "named")
 
 
+def law_explains(before: Map, remaining: Map, tuned: Fit, final: Fit) -> bool:
+    """Whether what remains is small beside what is explained: the shape of a law, not another effect."""
+    small = remaining.largest <= REMAINDER * before.largest
+    return small and _closed(tuned, final) >= ALL_BUT_CLOSED
+
+
 def ambiguous(finding: Finding) -> bool:
-    """Whether the effect cannot be told from others."""
-    return finding.probability < SURE or bool(finding.alike)
+    """Whether the effect cannot be told from others of the library."""
+    others = sum(r.probability for r in finding.rivals)
+    return finding.probability < SURE * (finding.probability + others) or bool(finding.alike)
 
 
 def classes(findings: Sequence[Finding]) -> tuple[tuple[str, ...], ...]:
