@@ -48,7 +48,8 @@ class Trial:
 class Step:
     """One step of the search. before: the model that it began with, its map and the screening there.
 
-    trials: best first. temper: what ln evidence is divided by, because what remains is not noise alone.
+    trials: best first, those of a size that is believed before others. temper: what ln evidence is divided
+    by, because what remains is not noise alone.
     """
 
     before: Fit
@@ -135,12 +136,13 @@ def _step(
     screened = [full.get(h.name) or quick[h.name] for h in candidates]
     screened.sort(key=lambda s: -s.gain)
     trials = tried(current, leaders(screened, project, threshold(len(library)) / 2.0), bench)
-    trials = [t for t in trials if plausible(t)] + [t for t in trials if not plausible(t)]
+    least = threshold(len(library))
+    trials.sort(key=lambda t: t.gain > least and plausible(t), reverse=True)
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
     after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
     temper = max(1.0, after.mean_square)
-    passes = plausible(trials[0]) and trials[0].gain / temper > threshold(len(library))
+    passes = trials[0].gain / temper > least
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
 
 

@@ -53,7 +53,7 @@ def test_nothing_found_and_nothing_left_needs_nothing() -> None:
     [
         ({"after": 20.0}, "still disagrees by 20.0"),
         ({"final": 2.0}, "closes only"),
-        ({"findings": (replace(CLEAR, largest=3.5),)}, "3.5 times its typical size"),
+        ({"findings": (replace(CLEAR, largest=4.0),)}, "4.0 times its typical size"),
         (
             {"held_out": (*BETTER, HeldOut("steer", Prediction(1.0, -10.0), Prediction(4.0, -200.0)))},
             "steer is predicted worse",
