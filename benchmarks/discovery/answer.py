@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -95,11 +95,20 @@ def read_answer(data: Mapping[str, Any] | None) -> Answer:
 
 def _named(effect: Mapping[str, Any]) -> Named:
     parameters = {
-        name: (float(p["value"]), float(p["sd"]))
-        for name, p in (effect.get("parameters") or {}).items()
-        if p.get("value") is not None and p.get("sd") is not None
+        name: numbers
+        for key, p in (effect.get("parameters") or {}).items()
+        for name, numbers in _numbers(key, p.get("value"), p.get("sd"))
     }
     probability = effect.get("probability")
     return Named(
         effect["id"], effect.get("location"), 1.0 if probability is None else float(probability), parameters
     )
+
+
+def _numbers(key: str, value: Any, sd: Any) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Name with value and sd; the members of a list option by their places, `LLR[1]`."""
+    if isinstance(value, list) and isinstance(sd, list):
+        for i, (one, its) in enumerate(zip(value, sd, strict=True)):
+            yield from _numbers(f"{key}[{i}]", one, its)
+    elif isinstance(value, int | float) and isinstance(sd, int | float):
+        yield key, (float(value), float(sd))

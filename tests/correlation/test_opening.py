@@ -54,7 +54,7 @@ def test_an_evened_sample_is_a_latin_hypercube_too() -> None:
 def test_size() -> None:
     space = problem("car_b").space
     assert space.dimension == 72
-    assert [o.size(space) for o in (OPENING, WITH_SLOPES, BROAD)] == [8, 4, 24]
+    assert [o.size(space) for o in (OPENING, WITH_SLOPES, BROAD)] == [8, 2, 24]
     few = problem("car_b", VariableOptions(use=["LLF.?"])).space
-    assert [o.size(few) for o in (OPENING, WITH_SLOPES, BROAD)] == [8, 4, 20]
+    assert [o.size(few) for o in (OPENING, WITH_SLOPES, BROAD)] == [8, 2, 20]
     assert [o.size(space, 7) for o in (OPENING, WITH_SLOPES, BROAD)] == [7, 7, 7]

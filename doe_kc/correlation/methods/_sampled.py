@@ -35,9 +35,13 @@ class Sampled(Method):
         if missing > 0:
             seed = int(rng.integers(2**31)) if self._opened else self._settings.seed
             self._opened = True
-            return self._opening.sample(self._problem.space, missing, seed)
+            return self._opening_designs(missing, seed)
         self._opened = True
         return self._round(rng)
+
+    def _opening_designs(self, count: int, seed: int) -> Sequence[Candidate]:
+        """The designs that a search learns from before it proposes."""
+        return self._opening.sample(self._problem.space, count, seed)
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers, failures among them."""

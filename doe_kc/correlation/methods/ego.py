@@ -1,9 +1,10 @@
 """`ego`: composite efficient global optimization inside a trust region.
 
 Every characteristic and curve score has its own surrogate, the rating is computed on them. After an opening
-sample three kinds of proposals take turns, each kept while it gains: Gauss-Newton on the expected rating,
-bolder while it succeeds; expected improvement; Gauss-Newton on the bare predictions in a small trust region.
-Every candidate is confirmed by the true solver, which also calibrates the predicted errors.
+sample, led by a first-order step where slopes are exact, three kinds of proposals take turns, each kept while
+it gains: Gauss-Newton on the expected rating, bolder while it succeeds; expected improvement; Gauss-Newton on
+the bare predictions in a small trust region. Every candidate is confirmed by the true solver, which also
+calibrates the predicted errors.
 References: D. R. Jones, M. Schonlau, W. J. Welch, J. Global Optim. 13, 1998; R. Astudillo, P. Frazier, ICML
 2019; D. Eriksson et al., Scalable global optimization via local Bayesian optimization, NeurIPS 2019.
 """
@@ -16,6 +17,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from doe_kc.correlation.ego.archive import Archive, Slopes, build_archive
+from doe_kc.correlation.ego.first_order import first_order
 from doe_kc.correlation.ego.proposer import Proposer, fitted
 from doe_kc.correlation.ego.strategy import CYCLE, Strategy
 from doe_kc.correlation.ego.trust import Trust
@@ -28,8 +30,8 @@ from doe_kc.solver.result import NotConverged
 OPENING = Opening(fewest=8, variables_each=9, half_width=0.1, evened=True)
 """The proposals teach more than further samples would; near enough for the first slopes to hold where the
 search goes."""
-WITH_SLOPES = Opening(fewest=4, variables_each=None, half_width=0.1, evened=True)
-"""Slopes are known; the sample shows how far they bend."""
+WITH_SLOPES = Opening(fewest=2, variables_each=None, half_width=0.1, evened=True)
+"""Slopes are known: a first-order step, and one design that shows how far they bend."""
 FEWEST = 3
 """Solved designs that the surrogates need."""
 
@@ -69,6 +71,15 @@ class Ego(Sampled):
         self._trust.learn(evaluated)
         after = max(e.merit for e in evaluated)
         self._strategy = self._strategy.after(after - before, before)
+
+    def _opening_designs(self, count: int, seed: int) -> Sequence[Candidate]:
+        """With exact slopes the first is where they lead from the baseline."""
+        step = None
+        if self._exact and len(self._evaluated) == 1:
+            step = first_order(self._problem, self._evaluated[0])
+        if step is None:
+            return super()._opening_designs(count, seed)
+        return [step, *super()._opening_designs(count - 1, seed)] if count > 1 else [step]
 
     def _missing(self) -> int:
         """A few designs more at a time while too many fail."""
