@@ -57,7 +57,7 @@ def _label(finding: Finding) -> str:
 
 def _one(finding: Finding) -> str:
     sizes = ", ".join(
-        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {e.value:.4g} ± {e.sd:.2g} {e.unit}"
+        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {_rounded(e.value, 4)} ± {_rounded(e.sd, 2)} {e.unit}"
         for e in finding.estimates
     )
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
@@ -65,6 +65,11 @@ def _one(finding: Finding) -> str:
     text = f"{label[0].upper()}{label[1:]}: probability {finding.probability:.1%}"
     text += f"; {sizes}" if sizes else ""
     return text + (f"; else {rivals}." if rivals else ".")
+
+
+def _rounded(value: float, digits: int) -> str:
+    """Significant digits, without an exponent up to millions."""
+    return f"{float(f'{value:.{digits}g}'):.7g}"
 
 
 def next_tests(
