@@ -57,7 +57,8 @@ def _label(finding: Finding) -> str:
 
 def _one(finding: Finding) -> str:
     sizes = ", ".join(
-        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {_rounded(e.value, 4)} ± {_rounded(e.sd, 2)} {e.unit}"
+        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = "
+        f"{_rounded(e.value, 4)} ± {_rounded(e.sd, 2)} {e.unit}"
         for e in finding.estimates
     )
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
