@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from openpyxl.workbook import Workbook
 
 from doe_kc.reporting.workbook_cells import frame, page, put, title, widths
@@ -30,14 +32,14 @@ LEGEND = {
 }
 
 
-def legend_sheet(book: Workbook, study: str) -> None:
-    """How to read the other sheets."""
+def legend_sheet(book: Workbook, study: str, legend: Mapping[str, str] = LEGEND) -> None:
+    """How to read the other sheets. legend: term -> explanation."""
     ws = book.create_sheet("Legend")
     title(ws, f"Legend: {study}", "How to read this workbook.")
-    for row, (key, text) in enumerate(LEGEND.items(), start=4):
+    for row, (key, text) in enumerate(legend.items(), start=4):
         put(ws, row, 1, key, bold=True, vertical="top")
         put(ws, row, 2, text, wrap=True, vertical="top")
         ws.row_dimensions[row].height = 14.5 * (1 + len(text) // 110)
-    frame(ws, range(4, 4 + len(LEGEND)), range(1, 3))
+    frame(ws, range(4, 4 + len(legend)), range(1, 3))
     widths(ws, [22, 120])
     page(ws, study)

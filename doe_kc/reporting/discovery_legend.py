@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from openpyxl.workbook import Workbook
-
 from doe_kc.discovery.findings import RELEVANT
-from doe_kc.reporting.workbook_cells import frame, page, put, title, widths
 
 LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0.",
@@ -60,16 +57,3 @@ LEGEND = {
         "prediction. Gain: ln predictive density won by the effect."
     ),
 }
-
-
-def legend_sheet(book: Workbook, study: str) -> None:
-    """How to read the other sheets."""
-    ws = book.create_sheet("Legend")
-    title(ws, f"Legend: {study}", "How to read this workbook.")
-    for row, (key, text) in enumerate(LEGEND.items(), start=4):
-        put(ws, row, 1, key, bold=True, vertical="top")
-        put(ws, row, 2, text, wrap=True, vertical="top")
-        ws.row_dimensions[row].height = 14.5 * (1 + len(text) // 125)
-    frame(ws, range(4, 4 + len(LEGEND)), range(1, 3))
-    widths(ws, [22, 120])
-    page(ws, study)

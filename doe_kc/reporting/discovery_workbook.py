@@ -10,7 +10,8 @@ from openpyxl.workbook import Workbook
 
 from doe_kc.discovery.result import Discovery
 from doe_kc.output import write_whole
-from doe_kc.reporting.discovery_legend import legend_sheet
+from doe_kc.reporting.correlation_legend import legend_sheet
+from doe_kc.reporting.discovery_legend import LEGEND
 from doe_kc.reporting.discovery_sheets import (
     disagreement_sheet,
     effects_sheet,
@@ -40,7 +41,7 @@ def discovery_workbook(
     gap_sheet(book, found, study)
     held_out_sheet(book, found, study)
     parameters_sheet(book, found, study)
-    legend_sheet(book, study)
+    legend_sheet(book, study, LEGEND)
     book.properties.title = clean(f"Missing effects: {study}")
     book.properties.creator = "doe_kc"
     return book
