@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from doe_kc.campaign.in_process import InProcess
-from doe_kc.discovery.fit import Fit, fit, restored
+from doe_kc.discovery.fit import Fit, cost_of, fit
 from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.ledger import Arrays, Ledger, fingerprint, key_of
 from doe_kc.discovery.model import EffectModel
@@ -121,7 +121,9 @@ def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray, known: A
     if known is not None:
         if not known["z"].size:
             return None
-        return restored(model, known["z"], int(known["evaluations"]), bool(known["converged"]))
+        z, residual, jacobian = known["z"], known["residual"], known["jacobian"]
+        counts = int(known["evaluations"]), bool(known["converged"])
+        return Fit(model, z, residual, jacobian, cost_of(model, z, residual), *counts)
     try:
         return fit(model, start, tuning=tuning)
     except NotConverged:
@@ -133,6 +135,8 @@ def _packed_fit(found: Fit | None) -> Arrays:
         return {"z": np.zeros(0)}
     return {
         "z": found.z,
+        "residual": found.residual,
+        "jacobian": found.jacobian,
         "evaluations": np.array(float(found.evaluations)),
         "converged": np.array(float(found.converged)),
     }

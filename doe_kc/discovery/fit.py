@@ -133,12 +133,6 @@ def fit(
     return current
 
 
-def restored(model: EffectModel, z: FloatArray, evaluations: int, converged: bool) -> Fit:
-    """A fit whose point is known, its derivatives computed again."""
-    found = _expanded(model, z, model.residual(z), evaluations)
-    return replace(found, evaluations=evaluations, converged=converged)
-
-
 def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     """Sum of squares of the data that fits look at, with the prior's."""
     seen = residual[model.used]

@@ -110,6 +110,7 @@ def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ign
     assert "screening effects" not in told
     assert again.sentences == first.sentences
     assert np.array_equal(again.fitted.z, first.fitted.z)
+    assert np.array_equal(again.fitted.jacobian, first.fitted.jacobian)
 
 
 def test_a_measured_car_with_all_its_load_cases_and_parameters() -> None:

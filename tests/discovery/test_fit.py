@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
-from doe_kc.discovery.fit import Fit, cost_of, fit, followed, restored
+from doe_kc.discovery.fit import Fit, cost_of, fit, followed
 from doe_kc.discovery.model import EffectModel
 from tests.discovery.cases import library, model
 
@@ -65,12 +65,6 @@ def test_evidence_is_that_of_the_linear_gaussian_model() -> None:
     covariance = np.eye(rows) + (jacobian * prior**2) @ jacobian.T
     exact = multivariate_normal(np.zeros(rows), covariance).logpdf(data)
     assert found.evidence == pytest.approx(exact - rows * norm.logpdf(0.0), abs=1e-8)
-
-
-def test_restored_is_the_same_fit(with_hub: Fit) -> None:
-    again = restored(with_hub.model, with_hub.z, with_hub.evaluations, with_hub.converged)
-    assert again.cost == with_hub.cost
-    assert np.array_equal(again.residual, with_hub.residual)
 
 
 def test_followed_goes_most_of_the_way_of_a_fit(with_hub: Fit) -> None:
