@@ -62,6 +62,16 @@ class Axle:
         """Copy with some internal values replaced."""
         return replace(self, values={**self.values, **values})
 
+    def conditioned(self, loops: int) -> Axle:
+        """Copy whose load cases drive so many loops before the one that counts."""
+        cases = {ident: replace(case, conditioning=loops) for ident, case in self.load_cases.items()}
+        return replace(self, load_cases=cases)
+
+    @property
+    def conditioning(self) -> int:
+        """Most loops that a load case drives before the one that counts."""
+        return max((case.conditioning for case in self.load_cases.values()), default=0)
+
     @property
     def half_track(self) -> float:
         """|y| of the left design wheel centre, mm."""

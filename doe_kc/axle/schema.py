@@ -166,6 +166,7 @@ class Sweep(Strict):
     control: Literal["pad", "wheel"] | None = None
     technique: Literal["body", "counter_phase"] | None = None
     offset: Finite | None = None
+    conditioning: Annotated[int, Field(ge=0, le=10)] | None = None
 
 
 class AxleFile(Strict):

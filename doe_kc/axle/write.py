@@ -11,6 +11,7 @@ import tomlkit
 
 from doe_kc import __version__
 from doe_kc.axle.effect_tables import set_effects
+from doe_kc.axle.load_case_tables import set_conditioning
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.axle.places import (
@@ -47,6 +48,7 @@ def write_axle(axle: Axle, original: Path, path: Path, *, note: str = "") -> Pat
     text = read_bytes(original, "TOML file").decode("utf-8")
     document = tomlkit.parse(text)
     set_effects(document, axle)
+    set_conditioning(document, axle)
     if not _fit(document, axle):
         _fit_without_an_effect(document, axle, str(path))
     content = _with_header(tomlkit.dumps(document), original, note)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import log_ndtr, logsumexp
 
+from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Estimate, Finding, Rival
@@ -17,14 +18,10 @@ from doe_kc.discovery.standing import wrong_name_chance
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.typing import FloatArray
 
-RELEVANT = 0.1
-"""Amplitude, in typical sizes, below which an effect is a trace: seen, but not worth a name."""
-CONFIDENT = 2.0
-"""Standard deviations by which an effect must be above that."""
 WEAK, STRONG = 6.0, 10.0
 """Standard deviations below which an effect is never named, and from which it is named beside any other."""
 BESIDE = 0.01
-"""Share of the largest gain from which an effect between the two is named."""
+"""Share of the largest gain from which an effect between the two is named where laws had to be opened."""
 UNLISTED = 0.02
 """Prior odds that an effect outside the library, which looks like the one named, is at work instead."""
 ALIKE = 0.05
@@ -39,13 +36,14 @@ def findings(found: Search, unexplained: float) -> tuple[Finding, ...]:
     """Every member of the final model. unexplained: chance that noise alone leaves what remains."""
     every = [_finding(found, h, place, unexplained) for h, place in found.final.model.places()]
     most = max((f.gain for f in every), default=0.0)
-    return tuple(replace(f, relevant=f.relevant and _stands_out(f, most)) for f in every)
+    least = BESIDE * most if any(found.shares.values()) else 0.0
+    return tuple(replace(f, relevant=f.relevant and _stands_out(found, f, least)) for f in every)
 
 
-def _stands_out(finding: Finding, most: float) -> bool:
+def _stands_out(found: Search, finding: Finding, least: float) -> bool:
     """Whether the effect is more than what the law of a much larger one could leave behind."""
-    strength = min(finding.detectability, float(np.sqrt(2.0 * max(0.0, finding.gain))))
-    return strength >= STRONG or (strength >= WEAK and finding.gain >= BESIDE * most)
+    strength = float(np.sqrt(2.0 * max(0.0, found.losses[finding.hypothesis.name])))
+    return strength >= STRONG or (strength >= WEAK and finding.gain >= least)
 
 
 def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: float) -> Finding:
@@ -74,7 +72,9 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
         wrong_name=max(chances.values(), default=0.0),
         alike=_alike(step, own, chances),
         largest=max((a for a, _ in counted), default=1.0),
-        relevant=not counted or any(a - CONFIDENT * e >= RELEVANT for a, e in counted),
+        believed=believed(counted),
+        relevant=matters(counted),
+        elsewhere=_elsewhere(step, hypothesis),
     )
 
 
@@ -148,6 +148,14 @@ def _alike(step: Step, own: Screened, chances: Mapping[str, float]) -> tuple[str
     best = gains[own.hypothesis.effect]
     close = (e for e, g in gains.items() if (best - g) / step.temper < DECISIVE)
     return tuple(e for e in close if chances.get(e, 0.0) > ALIKE)
+
+
+def _elsewhere(step: Step, own: Hypothesis) -> tuple[str, ...]:
+    """Other places of the same effect whose evidence is not decisively less."""
+    best = next(t.gain for t in step.trials if t.hypothesis == own)
+    others = (t for t in step.trials if t.hypothesis.effect == own.effect and t.hypothesis != own)
+    close = (t for t in others if (best - t.gain) / step.temper < DECISIVE)
+    return tuple(t.hypothesis.location for t in close if t.hypothesis.location)
 
 
 def _unit(seen: FloatArray) -> FloatArray:

@@ -21,11 +21,13 @@ from doe_kc.typing import FloatArray
 CONVERGED = 0.02
 """Predicted decrease of the sum of squares below which a fit stands."""
 NEAR = 3000.0
-"""Decrease of the sum of squares below which the parameters have moved too little for new derivatives."""
+"""Decrease of the sum of squares below which derivatives still lead on, though they no longer end a fit."""
+FRESH = 3.0
+"""Decrease since they were taken up to which derivatives may end a fit."""
 SMALL = 1.0
 """Predicted decrease below which a step is the last, its derivatives those of the step before."""
 POOR, GOOD = 0.25, 0.75
-STEPS = 14
+STEPS = 24
 SMALLEST = 1e-4
 LARGEST_RADIUS = 2.0
 
@@ -100,14 +102,16 @@ def fit(
     """
     z = np.clip(start, model.lower, model.upper)
     current = _expanded(model, z, model.residual(z), 1, tuning)
-    radius = 1.0
+    radius, aged = 1.0, np.inf if tuning is not None else 0.0
     for _ in range(steps):
-        gradient = current.gradient
+        gradient, hessian = current.gradient, current.hessian
         low = np.maximum(model.lower - current.z, -radius)
         high = np.minimum(model.upper - current.z, radius)
-        hessian = current.hessian
         step = bounded_step(hessian, gradient, low, high)
         predicted = float(-(2.0 * gradient @ step + step @ hessian @ step))
+        if predicted < SMALL and aged > FRESH:
+            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
+            continue
         if predicted < CONVERGED:
             return replace(current, converged=True)
         trial, residual = current.z + step, None
@@ -125,9 +129,12 @@ def fit(
         if residual is not None and cost < current.cost:
             if predicted < SMALL:
                 return replace(current, z=trial, residual=residual, cost=cost, converged=True)
-            near = current.cost - cost < NEAR
-            kept = current.jacobian[:, : model.dimension] if near else None
+            gained = current.cost - cost
+            aged = aged + gained if gained < NEAR else 0.0
+            kept = current.jacobian[:, : model.dimension] if aged else None
             current = _expanded(model, trial, residual, current.evaluations, kept)
+        elif aged > FRESH:
+            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
         if radius < SMALLEST:
             return current
     return current

@@ -6,28 +6,30 @@ away more softly. Without this, the difference would be taken for another effect
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cholesky
+from scipy.linalg import cho_factor, cho_solve, cholesky
 
-from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
+from doe_kc.correlation.likelihood import Branches, CurveData
 from doe_kc.curves import TYRE_LOAD
+from doe_kc.discovery.fit import Fit, followed, rewhitened
 from doe_kc.discovery.model import EffectModel
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.measurement.noise import smooth_correlation
 from doe_kc.typing import FloatArray
 
-SHAPE = 0.1
-"""Standard deviation of what a law makes of a curve, relative to the model's."""
+SHARES = (0.0, 0.01, 0.02, 0.05, 0.1)
+"""Standard deviations, relative to what the model's law makes of a curve, that are tried for another law."""
 LENGTH = 0.5
 """Correlation length of that ratio over the input, as a fraction of its amplitude."""
 
 
 @dataclass(frozen=True)
 class _Made:
-    """What one member makes: change of every curve (n,), and the largest of each response and branches.
+    """What one member makes: change of every curve (n,), the largest of each response and branches, and the
+    sum of squares in the records' errors.
 
     sticks: a friction, whose smaller loops hang on the shape of its law, so that each curve's scale is open
     too; an elastic law's scale is the same in every curve, which is what tells effects apart.
@@ -36,15 +38,56 @@ class _Made:
     changes: tuple[FloatArray, ...]
     largest: Mapping[tuple[str, Branches], float]
     sticks: bool
+    square: float
 
 
-def granted(model: EffectModel, likelihood: Likelihood, z: FloatArray) -> EffectModel:
-    """The model, its records' errors those of `likelihood` and of the laws of its effects at a point."""
-    plain = replace(model, likelihood=likelihood)
-    residual = plain.residual(z)
-    made = [_made(plain, member, place, residual, z) for member, place in plain.places()]
-    curves = [_widened(curve, i, made) for i, curve in enumerate(likelihood.curves)]
+def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
+    """The fit with the laws of its effects left open by as much as the records ask for, and by how much.
+
+    exact: to the records' own errors. The share of each effect is the one of SHARES with the largest
+    evidence, one effect after the other, largest first: the errors of the records grow by what its law may
+    do to the curves, and with them their determinant, so that a law that fits is left as it is.
+    """
+    made = _changes(exact)
+    shares = [0.0] * len(made)
+    best, most = exact, marginal(exact)
+    for i in sorted(range(len(made)), key=lambda i: -made[i].square):
+        for share in SHARES[1:]:
+            tried = [share if k == i else s for k, s in enumerate(shares)]
+            wider = rewhitened(exact, _granted(exact.model, made, tried))
+            evidence = marginal(wider)
+            if evidence > most:
+                best, most, shares[i] = wider, evidence, share
+    names = [h.name for h in exact.model.members]
+    found = followed(best, best.model) if any(shares) else exact
+    return found, dict(zip(names, shares, strict=True))
+
+
+def granted(exact: Fit, shares: Sequence[float]) -> EffectModel:
+    """The model, its records' errors its own and those of the laws of its effects. shares: one a member."""
+    return _granted(exact.model, _changes(exact), shares)
+
+
+def marginal(found: Fit) -> float:
+    """ln density of the records under a model of effects, those of different errors comparable.
+
+    At the minimum of the quadratic through the fit's point.
+    """
+    gradient, hessian = found.gradient, found.hessian
+    lower = 0.5 * float(gradient @ cho_solve(cho_factor(hessian), gradient))
+    roots = sum(float(np.sum(np.log(np.diag(c.root)))) for c in found.model.likelihood.curves)
+    return found.evidence + lower - roots
+
+
+def _granted(model: EffectModel, made: Sequence[_Made], shares: Sequence[float]) -> EffectModel:
+    likelihood = model.likelihood
+    curves = [_widened(curve, i, made, shares) for i, curve in enumerate(likelihood.curves)]
     return replace(model, likelihood=replace(likelihood, curves=tuple(curves)))
+
+
+def _changes(exact: Fit) -> list[_Made]:
+    model = exact.model
+    return [_made(model, member, place, exact.residual, exact.z) for member, place in model.places()]
 
 
 def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray) -> _Made:
@@ -57,20 +100,22 @@ def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatA
         largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
     alone = replace(model, members=(member,))
     axle = alone.with_effects(np.concatenate([z[: model.dimension], z[place]]))
-    return _Made(changes, largest, axle.topology.frictional)
+    return _Made(changes, largest, axle.topology.frictional, float(whitened @ whitened))
 
 
-def _widened(curve: CurveData, at: int, made: list[_Made]) -> CurveData:
+def _widened(curve: CurveData, at: int, made: Sequence[_Made], shares: Sequence[float]) -> CurveData:
+    if not any(shares):
+        return curve
     relative = curve.input / np.abs(curve.input).max()
     smooth = smooth_correlation(relative, LENGTH)
     centred = np.eye(curve.size) - 1.0 / curve.size
     covariance = curve.root @ curve.root.T
-    for one in made:
+    for one, share in zip(made, shares, strict=True):
         change = one.changes[at]
         ratio = smooth if one.sticks else centred @ smooth @ centred
-        covariance = covariance + SHAPE**2 * ratio * np.outer(change, change)
+        covariance = covariance + share**2 * ratio * np.outer(change, change)
         if one.sticks:
-            level = SHAPE * one.largest[curve.response, curve.branches]
+            level = share * one.largest[curve.response, curve.branches]
             left_open = level * (1.0 - relative**2 if curve.branches == "half_width" else relative)
             covariance = covariance + smooth * np.outer(left_open, left_open)
             if curve.response == TYRE_LOAD:

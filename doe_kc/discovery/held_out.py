@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, followed
+from doe_kc.discovery.fit import Fit, fit
 from doe_kc.typing import FloatArray
+
+STEPS = 8
 
 
 @dataclass(frozen=True)
@@ -36,9 +38,13 @@ class HeldOut:
 
 def held_out(tuned: Fit, final: Fit, case: str) -> HeldOut:
     """One load case of the records, predicted from all the others."""
-    without = followed(tuned, replace(tuned.model, left_out=case))
-    with_effect = followed(final, replace(final.model, left_out=case))
-    return HeldOut(case, _prediction(without), _prediction(with_effect))
+    return HeldOut(case, _prediction(_without(tuned, case)), _prediction(_without(final, case)))
+
+
+def _without(found: Fit, case: str) -> Fit:
+    """The model fitted to the other load cases, from where it is."""
+    tuning = found.jacobian[:, : found.model.dimension]
+    return fit(replace(found.model, left_out=case), found.z, steps=STEPS, tuning=tuning)
 
 
 def _prediction(found: Fit) -> Prediction:

@@ -45,8 +45,9 @@ class Finding:
     probability: that it is this effect, in whatever place. rivals: most probable first. gain: ln of the
     evidence over the model without it. detectability: standard deviations that it makes after re-tuning.
     wrong_name: chance that noise names its closest rival instead. alike: effects that the records hardly
-    tell from it, whatever their odds. largest: its largest amplitude, in
-    typical sizes. relevant: whether that is worth naming.
+    tell from it, whatever their odds. largest: its largest amplitude, in typical sizes. believed: whether
+    that is not surely too large. relevant: whether it is worth naming. elsewhere: other places that explain
+    the records about as well.
     """
 
     hypothesis: Hypothesis
@@ -58,7 +59,9 @@ class Finding:
     wrong_name: float
     alike: tuple[str, ...]
     largest: float
+    believed: bool
     relevant: bool
+    elsewhere: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

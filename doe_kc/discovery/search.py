@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.belief import believed
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, followed, rewhitened
-from doe_kc.discovery.granted import granted
+from doe_kc.discovery.granted import opened
 from doe_kc.discovery.leaders import compatible, leaders
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
@@ -23,14 +24,12 @@ from doe_kc.effects.hypothesis import Hypothesis
 
 MOST = 6
 """Effects, named ones and traces, after which the search ends."""
-LARGEST_BELIEVED = 3.0
-"""Typical sizes."""
-CONFIDENT = 2.0
-"""Standard deviations beyond them from which an effect is not believed."""
 DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""
 FALSE_ALARM = 0.01
 """Chance that noise alone brings in any effect at a step."""
+TIED = 1.0
+"""ln evidence up to which two places are taken for equally good."""
 PROMISING = 1.0
 """ln evidence to first order from which a hypothesis is screened anew at a later step."""
 
@@ -65,12 +64,16 @@ class Search:
     """tuned: without any effect. final: with all accepted ones, the shape of their laws granted.
 
     plain: fitted to the records' own errors alone, from there: what is handed over, with the smallest gap.
+    losses: member's name -> ln evidence that would be lost without it, all others refitted.
+    shares: member's name -> by how much of what it makes of a curve its law departs from the model's.
     """
 
     tuned: Fit
     steps: tuple[Step, ...]
     final: Fit
     plain: Fit
+    losses: Mapping[str, float]
+    shares: Mapping[str, float]
 
 
 def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> Search:
@@ -81,25 +84,37 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
     tuned = current = tune(model)
     bench.watch("re-tuning", 1)
     steps: list[Step] = []
+    losses: dict[str, float] = {}
+    shares: dict[str, float] = {}
     while True:
         step = _step(current, library, bench, steps[-1].screened if steps else ())
         steps.append(step)
         if not step.accepted or len(step.trials[0].fit.model.members) > MOST:
             break
-        current = pruned(step.trials[0].fit, threshold(len(library)), bench)
-        current = with_open_laws(current, model.likelihood)
-    own = replace(current.model, likelihood=model.likelihood)
-    return Search(tuned, tuple(steps), current, followed(rewhitened(current, own), own))
+        current, lost = pruned(step.trials[0].fit, threshold(len(library)), bench)
+        losses |= {step.trials[0].hypothesis.name: step.trials[0].gain, **lost}
+        current, shares = opened(to_records(with_conditioning(current, bench), model.likelihood))
+    return Search(tuned, tuple(steps), current, to_records(current, model.likelihood), losses, shares)
 
 
-def with_open_laws(current: Fit, likelihood: Likelihood) -> Fit:
-    """The fit with the laws of its effects left open, unless they explain the records as they are."""
-    model = replace(current.model, likelihood=likelihood)
-    exact = followed(rewhitened(current, model), model)
-    if remaining_map(contrasts(likelihood), exact.residual, projection(exact)).agrees:
-        return exact
-    wider = granted(model, likelihood, exact.z)
-    return followed(rewhitened(exact, wider), wider)
+def with_conditioning(current: Fit, bench: Bench) -> Fit:
+    """The fit with one loop before the record or with none, as the records with friction ask for.
+
+    A rig runs until loops close; a simulated record may begin right after the first rise. Nothing in the
+    files tells. Effects are looked for beside the better of the two.
+    """
+    model = current.model
+    if not model.with_effects(current.z).topology.frictional:
+        return current
+    other = replace(model, axle=model.axle.conditioned(1 - model.axle.conditioning))
+    (found,) = bench.fitted([(other, current.z)], "loops before the record", current.jacobian)
+    return found if found is not None and found.evidence > current.evidence else current
+
+
+def to_records(current: Fit, likelihood: Likelihood) -> Fit:
+    """The fit to the records' own errors alone, from where it is."""
+    own = replace(current.model, likelihood=likelihood)
+    return followed(rewhitened(current, own), own)
 
 
 def tune(model: EffectModel) -> Fit:
@@ -138,6 +153,7 @@ def _step(
     trials = tried(current, leaders(screened, project, threshold(len(library)) / 2.0), bench)
     least = threshold(len(library))
     trials.sort(key=lambda t: t.gain > least and plausible(t), reverse=True)
+    trials = stiffer_first(trials)
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
     after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
@@ -147,11 +163,26 @@ def _step(
 
 
 def plausible(trial: Trial) -> bool:
-    """Whether the effect's sizes are believed: none surely beyond three typical ones."""
+    """Whether the effect's sizes are believed."""
     sd = np.sqrt(np.diag(trial.fit.covariance))
     count = len(trial.hypothesis.sizes)
     sizes = zip(trial.hypothesis.sizes, trial.fit.z[-count:], sd[-count:], strict=True) if count else ()
-    return not any(s.growth != "shape" and abs(a) - CONFIDENT * e > LARGEST_BELIEVED for s, a, e in sizes)
+    return believed((float(a), float(e)) for s, a, e in sizes if s.growth != "shape")
+
+
+def stiffer_first(trials: list[Trial]) -> list[Trial]:
+    """Of one signed effect at two places that say the same, the one of positive size leads, by convention.
+
+    A bushing that is stiffer on the left is, with both re-tuned, one that is softer on the right.
+    """
+    if len(trials) < 2:
+        return trials
+    first, second, *rest = trials
+    same = first.hypothesis.effect == second.hypothesis.effect and first.gain - second.gain < TIED
+    one = len(first.hypothesis.sizes) == len(second.hypothesis.sizes) == 1
+    if same and one and first.fit.z[-1] < 0.0 < second.fit.z[-1]:
+        return [second, first, *rest]
+    return trials
 
 
 def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:
@@ -168,18 +199,27 @@ def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Tria
     return sorted(trials, key=lambda t: -t.gain)
 
 
-def pruned(found: Fit, least: float, bench: Bench) -> Fit:
-    """Backward elimination: members that the later ones have made needless are taken out."""
+def pruned(found: Fit, least: float, bench: Bench) -> tuple[Fit, dict[str, float]]:
+    """Backward elimination: members that the later ones have made needless are taken out.
+
+    Also what the model would lose without each but the latest, ln evidence.
+    """
+    losses: dict[str, float] = {}
     while len(found.model.members) > 1:
-        members = [(h, p) for h, p in list(found.model.places())[:-1] if _loss(found, p) < DOUBTFUL * least]
+        losses = {h.name: _loss(found, place) for h, place in list(found.model.places())[:-1]}
+        members = [(h, p) for h, p in found.model.places() if losses.get(h.name, np.inf) < DOUBTFUL * least]
         starts = [(found.model.without(h), np.delete(found.z, np.r_[place])) for h, place in members]
         tuning = found.jacobian[:, : found.model.dimension]
-        fewer = [f for f in bench.fitted(starts, "taking effects out", tuning) if f is not None]
-        best = max(fewer, key=lambda f: f.evidence, default=None)
+        fewer = bench.fitted(starts, "taking effects out", tuning)
+        for (h, _), f in zip(members, fewer, strict=True):
+            if f is not None:
+                losses[h.name] = found.evidence - f.evidence
+        kept = [f for f in fewer if f is not None]
+        best = max(kept, key=lambda f: f.evidence, default=None)
         if best is None or found.evidence - best.evidence > least:
-            return found
+            break
         found = best
-    return found
+    return found, losses
 
 
 def _loss(found: Fit, place: slice) -> float:

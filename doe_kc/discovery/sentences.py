@@ -65,6 +65,7 @@ def _one(finding: Finding) -> str:
     label = _label(finding)
     text = f"{label[0].upper()}{label[1:]}: probability {finding.probability:.1%}"
     text += f"; {sizes}" if sizes else ""
+    text += f"; at {' or '.join(finding.elsewhere)} it would do as well" if finding.elsewhere else ""
     return text + (f"; else {rivals}." if rivals else ".")
 
 

@@ -14,8 +14,6 @@ SURE = 0.9
 """Probability against its rivals from which an effect is named by itself."""
 NOISE = 0.01
 """Chance of a map's largest disagreement below which noise does not explain it."""
-PLAUSIBLE = 3.5
-"""Typical sizes beyond which an effect is not believed."""
 CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
 CLEAR = 5.0
@@ -93,7 +91,7 @@ def _implausible(findings: Sequence[Finding]) -> list[str]:
     return [
         f"{f.hypothesis.name} would have to be {f.largest:.1f} times its typical size"
         for f in findings
-        if f.largest > PLAUSIBLE
+        if not f.believed
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from doe_kc.discovery.findings import RELEVANT
+from doe_kc.discovery.belief import RELEVANT
 
 LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0.",
@@ -30,7 +30,10 @@ LEGEND = {
         "and loop tilt: of the half-width of the loop, (falling - rising) / 2; offset: constant, tyre "
         "load only."
     ),
-    "Re-tuned z": "Only what no re-tuning can absorb. With effect: its law's shape is granted 5 %.",
+    "Re-tuned z": (
+        "Only what no re-tuning can absorb. With effect: the shape of its law is left open as far as the "
+        "records ask for."
+    ),
     "Wheels": "Both alike: sum of both wheels; left against right: their difference.",
     "Size, sd": (
         "Most probable value and its standard deviation, all parameters free together. 'Not told from "

@@ -14,8 +14,10 @@ from doe_kc.solver.result import CaseSolution, Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
 from doe_kc.typing import FloatArray
 
-LOOP_BRANCHES = 3
-"""Branches of a load case that runs as a loop: first loading, unloading, loading."""
+
+def is_loop(branches: Sequence[object]) -> bool:
+    """Whether the branches of a load case are those of a loop with friction, not the two from zero."""
+    return len(branches) > 2
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def gradients_of(solution: Solution, found: Sensitivities) -> CurveGradients:
     half = {
         ident: _half_widths(solution, case, found.branches[ident])
         for ident, case in solution.cases.items()
-        if len(case.branches) == LOOP_BRANCHES
+        if is_loop(case.branches)
     }
     return CurveGradients(found.paths, inputs, cases, static, half)
 

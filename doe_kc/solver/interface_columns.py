@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.solver.curve_gradient import LOOP_BRANCHES, CurveGradients, gradients_of
+from doe_kc.solver.curve_gradient import CurveGradients, gradients_of, is_loop
 from doe_kc.solver.interface_laws import LAWS, Law, stop_operator
 from doe_kc.solver.interfaces import BranchInfluences, Influences, StaticInfluences
 from doe_kc.solver.result import BranchSolution, CaseSolution
@@ -43,7 +43,7 @@ def law_columns(
         found.static.state_design * design + found.static.state * static,
     )
     branches = {
-        ident: _case(case, values[ident], datum, start, loop=len(case) == LOOP_BRANCHES)
+        ident: _case(case, values[ident], datum, start, loop=is_loop(case))
         for ident, case in found.branches.items()
     }
     names = tuple(p.name for p in found.probes)
@@ -106,7 +106,7 @@ def looped(found: Influences) -> Influences:
     """The same with two branches from zero rearranged as the loop that a rig runs: 0, +A, -A, +A."""
     cases, branches = dict(found.solution.cases), dict(found.branches)
     for ident, case in found.solution.cases.items():
-        if len(case.branches) == LOOP_BRANCHES:
+        if is_loop(case.branches):
             continue
         cases[ident] = _looped_case(case)
         pos, neg = found.branches[ident]

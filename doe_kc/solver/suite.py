@@ -113,12 +113,18 @@ def _notice_once(reason: str) -> None:
 
 
 def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
-    """Inputs of every branch, the first being where it starts: two from zero, or a loop with friction."""
+    """Inputs of every branch, the first being where it starts: two from zero, or loops with friction."""
     up = np.linspace(0.0, 1.0, case.steps + 1) * case.amplitude
     if not loop:
         return {"pos": up, "neg": -up}
     around = np.linspace(-1.0, 1.0, 2 * case.steps + 1) * case.amplitude
-    return {"init": up, "unload": around[::-1].copy(), "load": around}
+    falling, rising = around[::-1].copy(), around
+    before = {
+        f"{name}_{k}": values
+        for k in range(1, case.conditioning + 1)
+        for name, values in (("unload", falling), ("load", rising))
+    }
+    return {"init": up, **before, "unload": falling, "load": rising}
 
 
 def _solve_case(

@@ -55,6 +55,15 @@ def test_every_hypothesis_loads_back_with_the_tuned_parameters(
         assert again.values[name] == pytest.approx(value, rel=1e-12, abs=0.0)
 
 
+def test_conditioning_loops_are_written_where_the_file_says_otherwise(tmp_path: Path) -> None:
+    axle = with_hypothesis(read_axle(AXLE), next(h for h in LIBRARY if h.effect == "strut_friction"), 1.0)
+    again, text = written(axle.conditioned(1), tmp_path)
+    assert again.load_cases == axle.conditioned(1).load_cases
+    back, shorter = written(axle, tmp_path, text)
+    assert back.load_cases == axle.load_cases
+    assert shorter.count("conditioning = 0") == len(axle.load_cases)
+
+
 @pytest.mark.parametrize("ident", ["hub_compliance", "left_right_asymmetry", "steering_friction"])
 def test_curves_are_the_same(ident: str, tmp_path: Path) -> None:
     hypothesis = next(h for h in LIBRARY if h.effect == ident)

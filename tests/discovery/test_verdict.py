@@ -17,7 +17,7 @@ from doe_kc.discovery.search import Trial
 from doe_kc.discovery.verdict import classes, verdict
 from tests.discovery.cases import library, model
 
-CLEAR = Finding(library("hub_compliance")[0], (), 0.99, (), 500.0, 40.0, 0.0, (), 1.2, True)
+CLEAR = Finding(library("hub_compliance")[0], (), 0.99, (), 500.0, 40.0, 0.0, (), 1.2, True, True)
 BETTER = (HeldOut("lateral", Prediction(5.0, -900.0), Prediction(1.0, -50.0)),)
 NO_BETTER = HeldOut("steer", Prediction(1.0, -10.0), Prediction(1.0, -11.0))
 
@@ -53,7 +53,7 @@ def test_nothing_found_and_nothing_left_needs_nothing() -> None:
     [
         ({"after": 20.0}, "still disagrees by 20.0"),
         ({"final": 2.0}, "closes only"),
-        ({"findings": (replace(CLEAR, largest=4.0),)}, "4.0 times its typical size"),
+        ({"findings": (replace(CLEAR, largest=4.0, believed=False),)}, "4.0 times its typical size"),
         (
             {"held_out": (*BETTER, HeldOut("steer", Prediction(1.0, -10.0), Prediction(4.0, -200.0)))},
             "steer is predicted worse",

@@ -122,6 +122,22 @@ def test_friction_opens_a_closed_loop(law: str, effect: str, case: str, output: 
     assert np.abs(init.y[0] - found.static.y).max() == 0.0  # type: ignore[union-attr]
 
 
+def test_a_loop_that_slides_little_closes_only_after_another() -> None:
+    """In steer the strut moves by millimetres, so that the static state is not forgotten at once."""
+    axle = apply_effect(nominal(), "strut_friction", {"force_N": 200.0}, source="test")
+    open_end = []
+    for loops in (0, 1, 2):
+        found = solve(axle.conditioned(loops), ["steer"], compiled=False)
+        case, column = found.cases["steer"], found.column("tyre_load@L")
+        assert [b.name for b in case.branches[-2:]] == ["unload", "load"]
+        assert len(case.branches) == 3 + 2 * loops
+        *_, unload, load = case.branches
+        open_end.append(abs(load.y[-1, column] - unload.y[0, column]))
+    assert open_end[0] > 5.0
+    assert open_end[1] < 0.3 * open_end[0]
+    assert open_end[2] < open_end[1]
+
+
 def test_half_the_friction_is_nearly_half_the_loop() -> None:
     widths = []
     for force in (50.0, 100.0):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -33,10 +33,13 @@ class LoadCase(ABC):
 
     amplitude: largest input, in `unit`.
     steps: equilibria per branch.
+    conditioning: loops with friction that are driven before the one that counts, so that it closes. A rig
+        records a steady loop; with 0, the loop begins right after the first rise from the static state.
     """
 
     amplitude: float
     steps: int
+    conditioning: int = field(default=0, kw_only=True)
 
     id: ClassVar[str]
     label: ClassVar[str]
