@@ -84,8 +84,9 @@ def tyre_horizontal(rng: np.random.Generator, size: float, axle: Axle) -> Hidden
 
 
 def _friction(ident: str, size: float, force: float, presliding: float) -> Hidden:
-    shown = {"force_N": force * size, "presliding_mm": presliding}
-    return Hidden(ident, size, None, {**shown, "law": "iwan"}, shown)
+    """The presliding of another law is another number, so that only the force is asked for."""
+    shown = {"force_N": force * size}
+    return Hidden(ident, size, None, {**shown, "presliding_mm": presliding, "law": "iwan"}, shown)
 
 
 @draw("steering_friction")

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
+from scipy.ndimage import maximum_filter, median_filter
 
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
@@ -26,6 +27,8 @@ CALIBRATION = 0.002
 """Share of a sensor's reading that its calibration leaves open: repeats cannot show it, as it is in all."""
 RIG_HYSTERESIS = 0.3
 """Share of a sensor's white noise that the rig's own friction and backlash may open a loop by."""
+BENDS = 7
+"""Second differences of which the median is the curve's own."""
 EXACT_SHARE = 0.05
 """Of Norm: standard deviation taken for a typed target that states none, a third of its interval."""
 
@@ -174,7 +177,7 @@ def _measured(axle: Axle, measurement: Measurement, calibration: float = 0.0) ->
             noise = measurement.noise[case.load_case][response]
             for side in (0, 1):
                 value = case.mean[response][side]
-                extra = SOLVER_FLOOR * noise.white**2 + corner_error(value, noise.white) ** 2
+                extra = SOLVER_FLOOR * noise.white**2 + corner_error(value, noise.point_sd(side)) ** 2
                 covariance = noise.covariance(side=side)
                 if calibration:
                     signal = calibration * noise.signal[side]
@@ -200,7 +203,7 @@ def _half_widths(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
                 value = np.asarray(case.half_width[response][side])
                 gain = np.hypot(CALIBRATION, noise.components.gain / np.sqrt(noise.runs)) * value
                 covariance = noise.half_width_covariance(side=side) + np.outer(gain, gain)
-                covariance += np.diag(corner_error(value, noise.white) ** 2)
+                covariance += np.diag(corner_error(value, noise.point_sd(side)) ** 2)
                 own = RIG_HYSTERESIS * noise.white * (1.0 - (case.input / np.abs(case.input).max()) ** 2)
                 covariance += np.outer(own, own)
                 root = cholesky(covariance[np.ix_(keep, keep)] + floor, lower=True)
@@ -208,17 +211,23 @@ def _half_widths(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
                 yield CurveData(case.load_case, response, side, case.input[keep], value, root, "half_width")
 
 
-def corner_error(curve: FloatArray, white: float) -> FloatArray:
-    """(n,) error of a reduced curve next to a corner, as where a stop touches or a wheel lifts off.
+def corner_error(curve: FloatArray, sd: FloatArray) -> FloatArray:
+    """(n,) error of a reduced curve next to a corner, as where a stop touches or free play is taken up.
 
-    Between points a bend of slope change c over the spacing h is missed by up to c h / 8; c h is the
-    second difference, taken where it exceeds four times that of the noise, and granted to its neighbours.
+    The kernel of the reduction rounds a bend of slope change c by up to c h / 8, h the spacing, and a jump by
+    about half of itself. c h is the second difference beyond that of the curve around it, taken where it
+    exceeds four times its noise; a jump is two of opposite sign next to each other. Their error is granted
+    to the neighbours too. sd: (n,) of the curve's white noise.
     """
+    second = np.diff(curve, 2)
     bend = np.zeros(curve.size)
-    bend[1:-1] = np.abs(np.diff(curve, 2))
-    bend[bend < 4.0 * np.sqrt(6.0) * white] = 0.0
-    wide = np.maximum(bend, np.maximum(np.roll(bend, 1), np.roll(bend, -1)))
-    return np.asarray(wide / 8.0)
+    bend[1:-1] = second - median_filter(second, BENDS, mode="mirror")
+    bend[np.abs(bend) < 4.0 * np.sqrt(6.0) * sd] = 0.0
+    size = np.abs(bend)
+    jump = np.where(bend[:-1] * bend[1:] < 0.0, np.minimum(size[:-1], size[1:]), 0.0)
+    beside = np.maximum(np.append(jump, 0.0), np.append(0.0, jump))
+    own = size / 8.0 + beside / 2.0
+    return np.asarray(maximum_filter(own, 3, mode="constant"))
 
 
 def _static(measurement: Measurement) -> Iterator[Figure]:

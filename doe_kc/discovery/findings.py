@@ -52,7 +52,7 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
     shares = probabilities(step.trials, step.temper, unexplained)
     amplitudes = found.plain.z[place]
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, amplitudes, strict=True)]
-    sd = np.sqrt(np.diag(final.covariance))[place]
+    sd = _with_law(hypothesis, amplitudes, np.sqrt(np.diag(final.covariance))[place], found.shares)
     own = next(s for s in step.screened if s.hypothesis == hypothesis)
     detectability = _detectability(found.plain, place) if sizes else own.detectability
     counted = [(abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if s.growth != "shape"]
@@ -76,6 +76,18 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
         relevant=matters(counted),
         elsewhere=_elsewhere(step, hypothesis),
     )
+
+
+def _with_law(
+    hypothesis: Hypothesis, amplitudes: FloatArray, sd: FloatArray, shares: Mapping[str, float]
+) -> FloatArray:
+    """(m,) standard deviations; a stiffness whose law is another is not one number but a range."""
+    share = shares.get(hypothesis.name, 0.0)
+    own = [
+        share * a if s.growth == "compliance" else 0.0
+        for s, a in zip(hypothesis.sizes, amplitudes, strict=True)
+    ]
+    return np.asarray(np.hypot(sd, own))
 
 
 def accepted_at(found: Search, hypothesis: Hypothesis) -> Step:

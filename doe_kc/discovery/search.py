@@ -30,6 +30,8 @@ FALSE_ALARM = 0.01
 """Chance that noise alone brings in any effect at a step."""
 TIED = 1.0
 """ln evidence up to which two places are taken for equally good."""
+ASKED = 2.3
+"""ln evidence, ten to one, for which the loops before the record are changed: a loop more takes its time."""
 PROMISING = 1.0
 """ln evidence to first order from which a hypothesis is screened anew at a later step."""
 
@@ -108,7 +110,9 @@ def with_conditioning(current: Fit, bench: Bench) -> Fit:
         return current
     other = replace(model, axle=model.axle.conditioned(1 - model.axle.conditioning))
     (found,) = bench.fitted([(other, current.z)], "loops before the record", current.jacobian)
-    return found if found is not None and found.evidence > current.evidence else current
+    if found is None or found.evidence < current.evidence + ASKED:
+        return current
+    return found
 
 
 def to_records(current: Fit, likelihood: Likelihood) -> Fit:

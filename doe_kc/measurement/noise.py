@@ -60,7 +60,7 @@ class NoiseModel:
         """(n, n) covariance of one run's mean curve with its static value still in it."""
         c = self.components
         relative = self.input / np.abs(self.input).max()
-        level = np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2)
+        level = self._sample_sd(side)
         return (
             self.gram * np.outer(level, level)
             + c.offset**2
@@ -85,9 +85,16 @@ class NoiseModel:
         weights = interpolation_matrix(self.input, input_grid)
         return weights @ total @ weights.T
 
+    def point_sd(self, side: int) -> FloatArray:
+        """(n,) white noise of each point of the averaged mean or half-width curve."""
+        return np.asarray(self._sample_sd(side) * np.sqrt(np.diag(self.gram) / self.runs))
+
+    def _sample_sd(self, side: int) -> FloatArray:
+        return np.asarray(np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2))
+
     def half_width_covariance(self, *, side: int = 0, runs: int | None = None) -> FloatArray:
         """(n, n) covariance of the averaged half-width curve: white noise and the loop's own scatter."""
-        level = np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2)
+        level = self._sample_sd(side)
         relative = self.input / np.abs(self.input).max()
         wander = self.loop**2 * smooth_correlation(relative, self.components.length)
         out: FloatArray = (self.gram * np.outer(level, level) + wander) / (runs or self.runs)
