@@ -58,6 +58,14 @@ def test_two_effects_are_both_found() -> None:
     assert {f.hypothesis.effect for f in found.findings} == {"strut_friction", "rig_channel_gain"}
 
 
+@pytest.mark.parametrize(("car", "loops"), [("steady", 1), ("friction", 0)])
+def test_the_loop_that_the_rig_recorded_is_driven(car: str, loops: int) -> None:
+    found = discovery(car)
+    assert found.verdict == "named"
+    assert found.fitted.model.axle.conditioning == loops
+    assert found.gap.with_effect < 1.05
+
+
 def test_effects_that_look_alike_are_a_class() -> None:
     found = discovery("class")
     assert found.verdict == "class"
