@@ -10,7 +10,8 @@ import numpy as np
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import raw_map, remaining_map
-from doe_kc.discovery.findings import findings
+from doe_kc.discovery.extra_test import ExtraTest, extra_tests
+from doe_kc.discovery.findings import accepted_at, findings
 from doe_kc.discovery.gaps import gaps, returned
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
@@ -64,7 +65,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         gaps=each,
         held_out=predicted,
         returned=returned(found.tuned, found.plain) if relevant else (),
-        next_tests=next_tests(judged, relevant, ambiguous, stands),
+        next_tests=next_tests(judged, relevant, ambiguous, stands, separating(found, relevant, ambiguous)),
         seconds=time.perf_counter() - started,
         scan=somewhere,
     )
@@ -78,6 +79,21 @@ def best_decoy(found: Search, relevant: Sequence[Finding]) -> Trial | None:
                 others = [t for t in step.trials if t.hypothesis.effect != finding.hypothesis.effect]
                 return others[0] if others else None
     return None
+
+
+def separating(
+    found: Search, relevant: Sequence[Finding], ambiguous: Sequence[Sequence[str]]
+) -> dict[tuple[str, str], tuple[ExtraTest, ...]]:
+    """Of every class, the load cases that tell its first effect from each other one."""
+    out: dict[tuple[str, str], tuple[ExtraTest, ...]] = {}
+    steps = {f.hypothesis.effect: accepted_at(found, f.hypothesis) for f in relevant}
+    for first, *others in ambiguous:
+        own, *rest = steps[first].trials
+        for other in others:
+            rival = next((t for t in rest if t.hypothesis.effect == other), None)
+            if rival is not None:
+                out[first, other] = extra_tests(own.fit, rival.fit)
+    return out
 
 
 def _standings(found: Search, every: Sequence[Finding], count: int) -> tuple[Standing, ...]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.scan import Scan
 from doe_kc.discovery.standing import Standing
@@ -79,9 +80,13 @@ def next_tests(
     findings: Sequence[Finding],
     ambiguous: Sequence[Sequence[str]],
     standings: Sequence[Standing],
+    extra: Mapping[tuple[str, str], Sequence[ExtraTest]],
 ) -> tuple[str, ...]:
-    """What would separate a class, confirm a name, or show what is not testable here."""
-    out: dict[str, str] = {}
+    """What would separate a class, confirm a name, or show what is not testable here.
+
+    extra: of an effect and its rival, the load cases that separate them.
+    """
+    out = {f"{one} {other}": _separated(one, other, tests) for (one, other), tests in extra.items()}
     for members in ambiguous:
         for m in members:
             out.setdefault(m, f"To tell {_known(m)} from its rivals: {EFFECTS[m].shown_by}.")
@@ -94,6 +99,14 @@ def next_tests(
         if all(s.status == "not testable" for s in standings if s.hypothesis.effect == effect):
             out.setdefault(effect, f"Not testable here, {_known(effect)}: {EFFECTS[effect].shown_by}.")
     return tuple(list(out.values())[:ADVISED])
+
+
+def _separated(one: str, other: str, tests: Sequence[ExtraTest]) -> str:
+    pair = f"{_known(one)} from {_known(other)}"
+    if not tests:
+        return f"No further load case of this rig tells {pair}."
+    listed = " or ".join(f"{t.words} ({t.separation:.0f} standard deviations)" for t in tests)
+    return f"To tell {pair}, run {listed}."
 
 
 def _known(effect: str) -> str:
