@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+
 from doe_kc.discovery.extra_test import extra_tests
 from doe_kc.discovery.fit import Fit
 from tests.discovery.cases import discovery
