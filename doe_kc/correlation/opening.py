@@ -34,8 +34,8 @@ class Opening:
     def sample(self, space: Space, n: int, seed: int) -> list[Candidate]:
         """n designs on the levels, every variable by its distribution.
 
-        The bounds are drawn in towards the start: none of them is passed, and a start beside its bound has
-        as many designs as another.
+        The bounds are drawn in towards the start, but to a level beside it at least: none of them is passed,
+        and a start beside its bound has as many designs as another.
         """
         sampler = qmc.LatinHypercube(
             space.dimension,
@@ -43,5 +43,7 @@ class Opening:
             optimization="random-cd" if self.evened else None,
         )
         drawn = space.drawn(sampler.random(n))
-        points = space.snapped(space.start + 2.0 * self.half_width * (drawn - space.start))
+        spacing = np.array([0.0 if v.levels is None else 1.0 / (v.levels - 1) for v in space.variables])
+        half_width = np.clip(spacing, self.half_width, 0.5)
+        points = space.snapped(space.start + 2.0 * half_width * (drawn - space.start))
         return [Candidate(p, "opening sample") for p in points]

@@ -43,6 +43,16 @@ def test_a_start_beside_its_bound_is_no_design_twice(
     assert 0.0 < np.abs(found - (start - 210.0) / 4.0).max() <= 2.0 * opening.half_width
 
 
+@EVERY
+@pytest.mark.parametrize("levels", [2, 3, 5, 8])
+def test_coarse_levels_are_left_too(opening: Opening, levels: int) -> None:
+    space = problem("car_b", VariableOptions(levels=levels)).space
+    found = points(opening, space, 8)
+    np.testing.assert_array_equal(found, space.snapped(found))
+    assert found.min() >= 0.0 and found.max() <= 1.0
+    assert len(np.unique(np.vstack([found, space.snapped(space.start)]), axis=0)) == 9
+
+
 def test_an_evened_sample_is_a_latin_hypercube_too() -> None:
     space = problem("car_b", VariableOptions(levels="continuous")).space
     for opening in (OPENING, BROAD):
