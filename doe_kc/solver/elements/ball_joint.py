@@ -7,7 +7,7 @@ from typing import ClassVar
 from doe_kc.solver.builder import Body, Builder
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint
 from doe_kc.solver.elements._cuts import SHIFTS, cut
-from doe_kc.solver.freedoms import translations
+from doe_kc.solver.elements._sprung import sprung_ball
 
 
 @element
@@ -27,10 +27,6 @@ class BallJoint(Element):
 
 def _sprung_ball(b: Builder, arm: Body, side: str) -> Body:
     """Massless body at LWB, displaced in the arm's axes."""
-    name, ball = f"ball joint {side}", hardpoint(b, "LWB", side)
-    deflection, shifts = translations(name, arm.axes)
-    end = Body(name, ball, arm.point(ball + deflection), arm.gibbs, arm.axes)
     rate = b.constant(b.parameter(f"ball_joint.rate@{side}"))
-    for i, freedom in enumerate(shifts):
-        b.resist(freedom.name, rate * deflection[i])
-    return b.join(name, end, arm, shifts)
+    ball = hardpoint(b, "LWB", side)
+    return sprung_ball(b, f"ball joint {side}", arm, ball, lambda deflection: rate * deflection)

@@ -13,7 +13,7 @@ import casadi as ca
 from doe_kc.solver.builder import Body, Builder
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint
 from doe_kc.solver.elements._cuts import SHIFTS, cut
-from doe_kc.solver.freedoms import translations
+from doe_kc.solver.elements._sprung import sprung_ball
 
 STEEL_MODULUS = 210e3
 """N/mm^2."""
@@ -47,10 +47,8 @@ def _beam_end(b: Builder, knuckle: Body, side: str) -> Body:
     axial, transverse = beam_stiffness(b.parameter(f"steer_arm.radius@{side}"), length)
     axis = b.constant(arm / length)
     axial, transverse = b.constant(axial), b.constant(transverse)
-    name, ball = f"steer arm {side}", hardpoint(b, "ROB", side)
-    deflection, shifts = translations(name, knuckle.axes)
-    end = Body(name, ball, knuckle.point(ball + deflection), knuckle.gibbs, knuckle.axes)
-    force = transverse * deflection + (axial - transverse) * ca.dot(axis, deflection) * axis
-    for i, freedom in enumerate(shifts):
-        b.resist(freedom.name, force[i])
-    return b.join(name, end, knuckle, shifts)
+
+    def force(deflection: ca.SX) -> ca.SX:
+        return transverse * deflection + (axial - transverse) * ca.dot(axis, deflection) * axis
+
+    return sprung_ball(b, f"steer arm {side}", knuckle, hardpoint(b, "ROB", side), force)
