@@ -51,7 +51,7 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
 
 
 def effect_entry(finding: Finding) -> dict[str, Any]:
-    """id, location, probability and parameters of one effect."""
+    """id, location, others that would do as well, probability and parameters of one effect."""
     parameters: dict[str, dict[str, Any]] = {}
     length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
     for e in finding.estimates:
@@ -66,6 +66,7 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
     return {
         "id": hypothesis.effect,
         "location": hypothesis.location,
+        "elsewhere": list(finding.elsewhere),
         "probability": finding.probability,
         "parameters": parameters,
     }
