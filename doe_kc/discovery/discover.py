@@ -17,9 +17,10 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import Search, Trial, accepted_steps, search, threshold
+from doe_kc.discovery.search import Search, accepted_steps, search, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
 from doe_kc.discovery.standing import Standing, Status, standings
+from doe_kc.discovery.trials import Trial
 from doe_kc.discovery.verdict import classes, law_explains, verdict
 from doe_kc.effects.hypothesis import Hypothesis
 

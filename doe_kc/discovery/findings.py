@@ -13,8 +13,9 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Estimate, Finding, Rival
 from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import Search, Step, Trial, accepted_steps
+from doe_kc.discovery.search import Search, Step, accepted_steps
 from doe_kc.discovery.standing import wrong_name_chance
+from doe_kc.discovery.trials import Trial
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.typing import FloatArray
 

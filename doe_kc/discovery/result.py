@@ -11,8 +11,9 @@ from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.scan import Scan
-from doe_kc.discovery.search import Search, Trial
+from doe_kc.discovery.search import Search
 from doe_kc.discovery.standing import Standing
+from doe_kc.discovery.trials import Trial
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.belief import believed
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
@@ -17,32 +16,20 @@ from doe_kc.discovery.granted import opened
 from doe_kc.discovery.leaders import compatible, leaders
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
+from doe_kc.discovery.pruning import pruned
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
-from doe_kc.effects import EFFECTS
+from doe_kc.discovery.trials import Trial, plausible, stiffer_first, tried
 from doe_kc.effects.hypothesis import Hypothesis
 
 MOST = 6
 """Effects, named ones and traces, after which the search ends."""
-DOUBTFUL = 10.0
-"""Times the threshold: a member that carries more is not tried without."""
 FALSE_ALARM = 0.01
 """Chance that noise alone brings in any effect at a step."""
-TIED = 1.0
-"""ln evidence up to which two places are taken for equally good."""
 ASKED = 2.3
 """ln evidence, ten to one, for which the loops before the record are changed: a loop more takes its time."""
 PROMISING = 1.0
 """ln evidence to first order from which a hypothesis is screened anew at a later step."""
-
-
-@dataclass(frozen=True)
-class Trial:
-    """A hypothesis refitted jointly. gain: ln of the evidence over the model without it, times its odds."""
-
-    hypothesis: Hypothesis
-    fit: Fit
-    gain: float
 
 
 @dataclass(frozen=True)
@@ -164,71 +151,3 @@ def _step(
     temper = max(1.0, after.mean_square)
     passes = trials[0].gain / temper > least
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
-
-
-def plausible(trial: Trial) -> bool:
-    """Whether the effect's sizes are believed."""
-    sd = np.sqrt(np.diag(trial.fit.covariance))
-    count = len(trial.hypothesis.sizes)
-    sizes = zip(trial.hypothesis.sizes, trial.fit.z[-count:], sd[-count:], strict=True) if count else ()
-    return believed((float(a), float(e)) for s, a, e in sizes if s.growth != "shape")
-
-
-def stiffer_first(trials: list[Trial]) -> list[Trial]:
-    """Of one signed effect at two places that say the same, the one of positive size leads, by convention.
-
-    A bushing that is stiffer on the left is, with both re-tuned, one that is softer on the right.
-    """
-    if len(trials) < 2:
-        return trials
-    first, second, *rest = trials
-    same = first.hypothesis.effect == second.hypothesis.effect and first.gain - second.gain < TIED
-    one = len(first.hypothesis.sizes) == len(second.hypothesis.sizes) == 1
-    if same and one and first.fit.z[-1] < 0.0 < second.fit.z[-1]:
-        return [second, first, *rest]
-    return trials
-
-
-def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:
-    """The joint refits from the screened sizes, best first; those without a solution are left out."""
-    starts = [
-        (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
-    ]
-    fits = bench.fitted(starts, "refitting leaders", current.jacobian)
-    trials = []
-    for s, found in zip(screened, fits, strict=True):
-        if found is not None:
-            odds = float(np.log(EFFECTS[s.hypothesis.effect].odds))
-            trials.append(Trial(s.hypothesis, found, found.evidence - current.evidence + odds))
-    return sorted(trials, key=lambda t: -t.gain)
-
-
-def pruned(found: Fit, least: float, bench: Bench) -> tuple[Fit, dict[str, float]]:
-    """Backward elimination: members that the later ones have made needless are taken out.
-
-    Also what the model would lose without each but the latest, ln evidence.
-    """
-    losses: dict[str, float] = {}
-    while len(found.model.members) > 1:
-        losses = {h.name: _loss(found, place) for h, place in list(found.model.places())[:-1]}
-        members = [(h, p) for h, p in found.model.places() if losses.get(h.name, np.inf) < DOUBTFUL * least]
-        starts = [(found.model.without(h), np.delete(found.z, np.r_[place])) for h, place in members]
-        tuning = found.jacobian[:, : found.model.dimension]
-        fewer = bench.fitted(starts, "taking effects out", tuning)
-        for (h, _), f in zip(members, fewer, strict=True):
-            if f is not None:
-                losses[h.name] = found.evidence - f.evidence
-        kept = [f for f in fewer if f is not None]
-        best = max(kept, key=lambda f: f.evidence, default=None)
-        if best is None or found.evidence - best.evidence > least:
-            break
-        found = best
-    return found, losses
-
-
-def _loss(found: Fit, place: slice) -> float:
-    """ln likelihood that a member's sizes carry, to second order (Wald); 0 for one without sizes."""
-    amplitudes = found.z[place]
-    if not amplitudes.size:
-        return 0.0
-    return 0.5 * float(amplitudes @ np.linalg.inv(found.covariance[place, place]) @ amplitudes)

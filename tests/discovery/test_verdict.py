@@ -13,7 +13,7 @@ from doe_kc.discovery.findings import probabilities
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut, Prediction
 from doe_kc.discovery.result import Finding, Rival
-from doe_kc.discovery.search import Trial
+from doe_kc.discovery.trials import Trial
 from doe_kc.discovery.verdict import classes, verdict
 from tests.discovery.cases import library, model
 

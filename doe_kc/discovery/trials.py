@@ -1,0 +1,64 @@
+"""The joint refits of the leading hypotheses, and which of them leads."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.discovery.belief import believed
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.screen import Screened
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis
+
+TIED = 1.0
+"""ln evidence up to which two places are taken for equally good."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A hypothesis refitted jointly. gain: ln of the evidence over the model without it, times its odds."""
+
+    hypothesis: Hypothesis
+    fit: Fit
+    gain: float
+
+
+def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:
+    """The joint refits from the screened sizes, best first; those without a solution are left out."""
+    starts = [
+        (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
+    ]
+    fits = bench.fitted(starts, "refitting leaders", current.jacobian)
+    trials = []
+    for s, found in zip(screened, fits, strict=True):
+        if found is not None:
+            odds = float(np.log(EFFECTS[s.hypothesis.effect].odds))
+            trials.append(Trial(s.hypothesis, found, found.evidence - current.evidence + odds))
+    return sorted(trials, key=lambda t: -t.gain)
+
+
+def plausible(trial: Trial) -> bool:
+    """Whether the effect's sizes are believed."""
+    sd = np.sqrt(np.diag(trial.fit.covariance))
+    count = len(trial.hypothesis.sizes)
+    sizes = zip(trial.hypothesis.sizes, trial.fit.z[-count:], sd[-count:], strict=True) if count else ()
+    return believed((float(a), float(e)) for s, a, e in sizes if s.growth != "shape")
+
+
+def stiffer_first(trials: list[Trial]) -> list[Trial]:
+    """Of one signed effect at two places that say the same, the one of positive size leads, by convention.
+
+    A bushing that is stiffer on the left is, with both re-tuned, one that is softer on the right.
+    """
+    if len(trials) < 2:
+        return trials
+    first, second, *rest = trials
+    same = first.hypothesis.effect == second.hypothesis.effect and first.gain - second.gain < TIED
+    one = len(first.hypothesis.sizes) == len(second.hypothesis.sizes) == 1
+    if same and one and first.fit.z[-1] < 0.0 < second.fit.z[-1]:
+        return [second, first, *rest]
+    return trials
