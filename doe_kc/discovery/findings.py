@@ -16,6 +16,7 @@ from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import Search, Step, accepted_steps
 from doe_kc.discovery.standing import wrong_name_chance
 from doe_kc.discovery.trials import Trial
+from doe_kc.discovery.unseen import unseen
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.typing import FloatArray
 
@@ -35,7 +36,11 @@ MENTIONED = 0.01
 
 def findings(found: Search, unexplained: float) -> tuple[Finding, ...]:
     """Every member of the final model. unexplained: chance that noise alone leaves what remains."""
-    every = [_finding(found, h, place, unexplained) for h, place in found.final.model.places()]
+    hidden = unseen(found)
+    every = [
+        _finding(found, h, place, hidden[place.start - found.final.model.dimension :], unexplained)
+        for h, place in found.final.model.places()
+    ]
     most = max((f.gain for f in every), default=0.0)
     least = BESIDE * most if any(found.shares.values()) else 0.0
     return tuple(replace(f, relevant=f.relevant and _stands_out(found, f, least)) for f in every)
@@ -47,7 +52,10 @@ def _stands_out(found: Search, finding: Finding, least: float) -> bool:
     return strength >= STRONG or (strength >= WEAK and finding.gain >= least)
 
 
-def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: float) -> Finding:
+def _finding(
+    found: Search, hypothesis: Hypothesis, place: slice, hidden: FloatArray, unexplained: float
+) -> Finding:
+    """hidden: standard deviations by effects that are not seen, of its sizes and those behind them."""
     final = found.final
     step = accepted_at(found, hypothesis)
     shares = probabilities(step.trials, step.temper, unexplained)
@@ -65,7 +73,10 @@ def _finding(found: Search, hypothesis: Hypothesis, place: slice, unexplained: f
     )
     return Finding(
         hypothesis=hypothesis,
-        estimates=tuple(estimate(s, a, float(e)) for (s, a), e in zip(sizes, sd, strict=True)),
+        estimates=tuple(
+            estimate(s, a, float(np.hypot(e, more)))
+            for (s, a), e, more in zip(sizes, sd, hidden[: len(sizes)], strict=True)
+        ),
         probability=shares.get(hypothesis.effect, 0.0),
         rivals=rivals,
         gain=next(t.gain for t in step.trials if t.hypothesis == hypothesis),
