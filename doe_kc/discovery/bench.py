@@ -78,7 +78,8 @@ class Bench:
         ]
         for i, result in self._run(_fit_one, tasks):
             out[i] = result
-            self._ledger.put(keys[i], _packed_fit(result))
+            if tasks[i][-1] is None:
+                self._ledger.put(keys[i], _packed_fit(result))
             self.watch(what, 1)
         return [out[i] for i in range(len(starts))]
 

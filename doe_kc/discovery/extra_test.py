@@ -68,10 +68,8 @@ def _candidates(model: EffectModel) -> Iterator[tuple[str, LoadCase, str]]:
 def _separation(one: Fit, other: Fit, case: LoadCase, like: str) -> float:
     likelihood = _predicted(one, case, like)
     model = _alone(other.model, case, likelihood)
-    free = model.dimension - model.parameters
-    count = other.model.parameters
-    amplitudes = other.z[other.model.dimension :]
-    z = np.concatenate([other.z[:count], np.zeros(free), amplitudes])
+    free, count = model.dimension - model.parameters, model.parameters
+    z = _point(model, other)
     difference = model.residual(z)
     jacobian = np.hstack([model.tuning(z), model.growth(z, difference)])
     kept = np.r_[0:count, other.model.dimension : other.z.size]
@@ -93,11 +91,15 @@ def _predicted(found: Fit, case: LoadCase, like: str) -> Likelihood:
     )
     empty = Likelihood(curves, ())
     model = _alone(found.model, case, empty)
-    free = model.dimension - model.parameters
-    z = np.concatenate([found.z[: model.parameters], np.zeros(free), found.z[found.model.dimension :]])
-    whitened = model.residual(z)
+    whitened = model.residual(_point(model, found))
     values = [_valued(c, whitened[at]) for c, at in empty.slices()]
     return Likelihood(tuple(values), ())
+
+
+def _point(model: EffectModel, found: Fit) -> FloatArray:
+    """The fit's parameters and amplitudes in a model of one load case, whose nuisances are its own."""
+    nuisances = np.zeros(model.dimension - model.parameters)
+    return np.concatenate([found.z[: model.parameters], nuisances, found.z[found.model.dimension :]])
 
 
 def _valued(curve: CurveData, whitened: FloatArray) -> CurveData:

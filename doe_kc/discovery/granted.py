@@ -27,7 +27,7 @@ LENGTH = 0.5
 
 
 @dataclass(frozen=True)
-class _Made:
+class Made:
     """What one member makes: change of every curve (n,), the largest of each response and branches, and the
     sum of squares in the records' errors.
 
@@ -48,24 +48,19 @@ def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
     evidence, one effect after the other, largest first: the errors of the records grow by what its law may
     do to the curves, and with them their determinant, so that a law that fits is left as it is.
     """
-    made = _changes(exact)
+    made = changes(exact)
     shares = [0.0] * len(made)
     best, most = exact, marginal(exact)
     for i in sorted(range(len(made)), key=lambda i: -made[i].square):
         for share in SHARES[1:]:
             tried = [share if k == i else s for k, s in enumerate(shares)]
-            wider = rewhitened(exact, _granted(exact.model, made, tried))
+            wider = rewhitened(exact, granted(exact.model, made, tried))
             evidence = marginal(wider)
             if evidence > most:
                 best, most, shares[i] = wider, evidence, share
     names = [h.name for h in exact.model.members]
     found = followed(best, best.model) if any(shares) else exact
     return found, dict(zip(names, shares, strict=True))
-
-
-def granted(exact: Fit, shares: Sequence[float]) -> EffectModel:
-    """The model, its records' errors its own and those of the laws of its effects. shares: one a member."""
-    return _granted(exact.model, _changes(exact), shares)
 
 
 def marginal(found: Fit) -> float:
@@ -79,18 +74,23 @@ def marginal(found: Fit) -> float:
     return found.evidence + lower - roots
 
 
-def _granted(model: EffectModel, made: Sequence[_Made], shares: Sequence[float]) -> EffectModel:
+def granted(model: EffectModel, made: Sequence[Made], shares: Sequence[float]) -> EffectModel:
+    """The model, its records' errors its own and those of the laws of its effects.
+
+    made: what each member makes, see `changes`. shares: one a member.
+    """
     likelihood = model.likelihood
     curves = [_widened(curve, i, made, shares) for i, curve in enumerate(likelihood.curves)]
     return replace(model, likelihood=replace(likelihood, curves=tuple(curves)))
 
 
-def _changes(exact: Fit) -> list[_Made]:
+def changes(exact: Fit) -> list[Made]:
+    """What each member of a fit to the records' own errors makes of their curves."""
     model = exact.model
     return [_made(model, member, place, exact.residual, exact.z) for member, place in model.places()]
 
 
-def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray) -> _Made:
+def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray) -> Made:
     without = model.without(member)
     whitened = residual - without.residual(np.delete(z, np.r_[place]))
     changes = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
@@ -100,10 +100,10 @@ def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatA
         largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
     alone = replace(model, members=(member,))
     axle = alone.with_effects(np.concatenate([z[: model.dimension], z[place]]))
-    return _Made(changes, largest, axle.topology.frictional, float(whitened @ whitened))
+    return Made(changes, largest, axle.topology.frictional, float(whitened @ whitened))
 
 
-def _widened(curve: CurveData, at: int, made: Sequence[_Made], shares: Sequence[float]) -> CurveData:
+def _widened(curve: CurveData, at: int, made: Sequence[Made], shares: Sequence[float]) -> CurveData:
     if not any(shares):
         return curve
     relative = curve.input / np.abs(curve.input).max()

@@ -11,6 +11,7 @@ from doe_kc.discovery.fit import Fit, fit
 from doe_kc.typing import FloatArray
 
 STEPS = 8
+"""Most steps of a refit, which begins close to where it ends."""
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from doe_kc.discovery.belief import RELEVANT
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
@@ -20,8 +21,6 @@ WORTH = 0.2
 """Share of the best screened gain below which a hypothesis is not refitted."""
 OF_ONE_KIND = 2
 """Places of the same effect that are refitted at most."""
-TRACE = 0.1
-"""Typical sizes below which an effect is no more than a trace, and needs no decoy."""
 SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
 """Effects that a model may have in several places at once."""
 
@@ -42,7 +41,9 @@ def leaders(screened: Sequence[Screened], project: Projection, least: float) -> 
         kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
         if kind < OF_ONE_KIND and abs(float(own @ _explained(s, project))) > RIVAL:
             out.append(s)
-    small = best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < TRACE
+    small = (
+        best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT
+    )  # a trace needs no decoy
     if not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
         out += [s for s in screened if s.hypothesis.effect != best.hypothesis.effect and not s.failed][:1]
     return out

@@ -95,7 +95,7 @@ def with_conditioning(current: Fit, bench: Bench) -> Fit:
     model = current.model
     if not model.with_effects(current.z).topology.frictional:
         return current
-    other = replace(model, axle=model.axle.conditioned(1 - model.axle.conditioning))
+    other = replace(model, axle=model.axle.conditioned(0 if model.axle.conditioning else 1))
     (found,) = bench.fitted([(other, current.z)], "loops before the record", current.jacobian)
     if found is None or found.evidence < current.evidence + ASKED:
         return current

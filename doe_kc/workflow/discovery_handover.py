@@ -46,7 +46,8 @@ def write_discovery(
 ) -> list[Path]:
     """axle.toml (refitted, with the effects), six tables, discovery.xlsx, report.html and the figures.
 
-    Where there are effects, axle_effects_only.toml is the study's axle with them and nothing else changed.
+    Where there are effects, axle_effects_only.toml is the study's axle with them, and with friction the
+    loops driven before the record; nothing else changed.
     Returns the paths. workers: processes that draw. RunError when the folder cannot be written.
     """
     axle = found.fitted.model.axle_at(found.fitted.z)

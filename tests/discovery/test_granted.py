@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, cost_of, fit
-from doe_kc.discovery.granted import granted, marginal, opened
+from doe_kc.discovery.granted import changes, granted, marginal, opened
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
 from tests.discovery.cases import library, model
@@ -29,7 +29,7 @@ def test_only_what_the_effect_changes_is_widened() -> None:
     (friction,) = library("steering_friction")
     z = np.append(model("friction").centre, [0.8, 0.0])
     found = at("friction", friction, z)
-    wide = granted(found, [SHARE])
+    wide = granted(found.model, changes(found), [SHARE])
     before = {(c.load_case, c.response, c.side, c.branches): c for c in found.model.likelihood.curves}
     for curve in wide.likelihood.curves:
         was = before[curve.load_case, curve.response, curve.side, curve.branches]
@@ -45,7 +45,7 @@ def test_a_change_of_scale_is_no_shape() -> None:
     z = np.append(model("named").centre, [1.0, 1.0])
     found = at("named", hub, z)
     made = found.residual - model("named").residual(z[:-2])
-    wide = granted(found, [SHARE]).likelihood
+    wide = granted(found.model, changes(found), [SHARE]).likelihood
     for (curve, place), now in zip(found.model.likelihood.slices(), wide.curves, strict=True):
         if (curve.load_case, curve.response, curve.branches) == ("lateral", "camber", "mean"):
             change = curve.root @ made[place]

@@ -1,0 +1,71 @@
+"""Which refit leads, which sizes are believed, and which loop is tried beside the axle's own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.belief import believed, matters
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search import with_conditioning
+from doe_kc.discovery.trials import Trial, stiffer_first
+from doe_kc.typing import FloatArray
+from tests.discovery.cases import discovery, library
+
+
+def trial(place: str, gain: float, amplitude: float) -> Trial:
+    hypothesis = next(h for h in library("left_right_asymmetry") if h.location == place)
+    found = discovery("named").search.final
+    return Trial(hypothesis, replace(found, z=np.append(found.z, amplitude)), gain)
+
+
+@pytest.mark.parametrize(
+    ("gains", "sizes", "leads"),
+    [
+        ((30.0, 29.8), (-1.0, 1.0), "UPB_L"),
+        ((30.0, 29.8), (1.0, -1.0), "UPB_R"),
+        ((30.0, 25.0), (-1.0, 1.0), "UPB_R"),
+    ],
+    ids=["tied", "stiffer already", "clearly better"],
+)
+def test_of_two_places_that_say_the_same_the_stiffer_leads(
+    gains: tuple[float, float], sizes: tuple[float, float], leads: str
+) -> None:
+    trials = [trial("UPB_R", gains[0], sizes[0]), trial("UPB_L", gains[1], sizes[1])]
+    assert stiffer_first(trials)[0].hypothesis.location == leads
+    assert stiffer_first(trials[:1]) == trials[:1]
+
+
+def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
+    assert believed([(3.5, 0.3)]) and not believed([(1.0, 0.1), (-3.5, 0.2)])
+    assert matters([(0.3, 0.09)]) and not matters([(0.3, 0.11)])
+    assert matters([])
+
+
+class Asked(Bench):
+    """Notes which axles are to be fitted, and fits none."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.loops: list[int] = []
+
+    def fitted(
+        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
+    ) -> list[Fit | None]:
+        self.loops += [model.axle.conditioning for model, _ in starts]
+        return [None for _ in starts]
+
+
+@pytest.mark.parametrize(("own", "other"), [(0, 1), (1, 0), (2, 0)])
+def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -> None:
+    found = discovery("friction").search.final
+    model = replace(found.model, axle=found.model.axle.conditioned(own))
+    asked = Asked()
+    current = replace(found, model=model)
+    assert with_conditioning(current, asked) is current
+    assert asked.loops == [other]
