@@ -17,11 +17,12 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import Search, accepted_steps, search, threshold
+from doe_kc.discovery.search import Search, accepted_steps, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
 from doe_kc.discovery.standing import Standing, Status, standings
 from doe_kc.discovery.trials import Trial
 from doe_kc.discovery.verdict import classes, law_explains, verdict
+from doe_kc.discovery.widening import beyond, searched
 from doe_kc.effects.hypothesis import Hypothesis
 
 WORST = 8
@@ -32,7 +33,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     """model: the axle without any effect, its tunable parameters and its records."""
     started = time.perf_counter()
     bench = bench or Bench()
-    found = search(model, library, bench)
+    found, widened = searched(model, library, bench)
     nominal = model.residual(model.centre)
     project = projection(found.final)
     remaining = remaining_map(contrasts(found.final.model.likelihood), found.final.residual, project)
@@ -47,10 +48,11 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     decoy = best_decoy(found, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
     stands = _standings(found, every, len(library))
+    outside = beyond(model.space, found.plain)
     ambiguous = classes(relevant) if judged.kind == "class" else ()
     return Discovery(
         verdict=judged.kind,
-        sentences=sentences(judged, relevant, whole, remaining, somewhere),
+        sentences=sentences(judged, relevant, whole, remaining, somewhere, outside, widened),
         findings=relevant,
         traces=tuple(f for f in every if not f.relevant),
         classes=ambiguous,
@@ -69,6 +71,8 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         next_tests=next_tests(judged, relevant, ambiguous, stands, separating(found, relevant, ambiguous)),
         seconds=time.perf_counter() - started,
         scan=somewhere,
+        widened=widened,
+        beyond=outside,
     )
 
 

@@ -107,6 +107,8 @@ class Discovery:
     that the data show but too small to matter. sentences: the verdict in words. raw: map of the nominal
     axle; tuned: after re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
     scan: places of the generic scan at the re-tuned axle, None where noise explains what remains there.
+    widened: by how much all ranges of the parameters are wider than the study's, 1 where the records do not
+    ask for that; beyond: paths of the parameters that the final axle has outside the study's.
     """
 
     verdict: VerdictKind
@@ -129,6 +131,8 @@ class Discovery:
     next_tests: tuple[str, ...]
     seconds: float
     scan: Scan | None = None
+    widened: float = 1.0
+    beyond: tuple[str, ...] = ()
 
     @property
     def fitted(self) -> Fit:

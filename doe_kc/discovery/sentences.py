@@ -14,13 +14,24 @@ from doe_kc.effects import EFFECTS
 
 ADVISED = 6
 """Tests that are listed at most."""
+LISTED = 8
+"""Parameters that are listed at most."""
 
 
 def sentences(
-    verdict: Verdict, findings: Sequence[Finding], gap: Gap, remaining: Map, scan: Scan | None
+    verdict: Verdict,
+    findings: Sequence[Finding],
+    gap: Gap,
+    remaining: Map,
+    scan: Scan | None,
+    beyond: Sequence[str],
+    widened: float,
 ) -> tuple[str, ...]:
-    """Verdict first, then each effect, then how far the gap shrank."""
-    out = [_opening(verdict, findings)]
+    """Verdict first, then each effect, then how far the gap shrank.
+
+    beyond: paths of parameters outside their bounds. widened: by how much wider ranges were allowed.
+    """
+    out = [_opening(verdict, findings, beyond)]
     out += [_one(f) for f in findings]
     if verdict.kind == "unexplained":
         out += [f"Against a name: {o}." for o in verdict.objections]
@@ -30,6 +41,8 @@ def sentences(
         ]
         if scan is not None and scan.interface is not None:
             out.append(f"The data point to {scan.places[0].words}.")
+    if beyond:
+        out.append(_outside(beyond, widened))
     out.append(
         f"Whitened RMS of all deviations: {gap.nominal:.2f} nominal, {gap.tuned:.2f} re-tuned without an "
         f"effect, {gap.with_effect:.2f} with what was found; {gap.noise_floor:.2f} is noise."
@@ -37,12 +50,23 @@ def sentences(
     return tuple(out)
 
 
-def _opening(verdict: Verdict, findings: Sequence[Finding]) -> str:
+def _outside(beyond: Sequence[str], widened: float) -> str:
+    listed = ", ".join(beyond[:LISTED]) + (", …" if len(beyond) > LISTED else "")
+    count = f"{len(beyond)} parameter{'s' if len(beyond) > 1 else ''}"
+    return (
+        f"The records ask for {count} outside the bounds ({listed}), so ranges {widened:g} times as wide "
+        "were taken: the series is off nominal or scatters more than thought; check the nominal axle."
+    )
+
+
+def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str]) -> str:
     names = " and ".join(_label(f) for f in findings)
     if verdict.kind == "named":
         return f"The model lacks {names}."
     if verdict.kind == "class":
         return f"The model lacks an effect that is most likely {names}, but others cannot be told from it."
+    if verdict.kind == "none" and beyond:
+        return "No effect is missing: re-tuning explains all records, though only beyond the bounds."
     if verdict.kind == "none":
         return "No effect is missing: re-tuning within production scatter explains all records."
     if findings:

@@ -152,16 +152,19 @@ def parameters_sheet(book: Workbook, found: Discovery, study: str) -> None:
     """Tunable parameters before and after, with their distance from nominal."""
     ws = book.create_sheet("Parameters")
     below = "Distances from nominal in standard deviations of the prior; sd: of the last value."
+    if found.beyond:
+        below += " Parameters marked lie outside the study's bounds, as the records ask for."
     title(ws, f"Parameters: {study}", below)
     frame = parameter_frame(found)
+    frame["beyond"] = np.where(frame["beyond"], "outside", "")
     heads = (
         "Path", "Parameter", "Group", "Unit", "Nominal", "Re-tuned", "With effect", "sd",
-        "Distance re-tuned, sd", "Distance with effect, sd",
+        "Distance re-tuned, sd", "Distance with effect, sd", "Bounds",
     )  # fmt: skip
-    last = grid(ws, heads, _rows(frame), formats=["", "", "", "", *["0.0000"] * 4, "0.00", "0.00"])
+    last = grid(ws, heads, _rows(frame), formats=["", "", "", "", *["0.0000"] * 4, "0.00", "0.00", ""])
     _diverging(ws, f"I{FIRST}:J{last}", 2.0)
     ws.freeze_panes = ws.cell(FIRST, 2)
-    widths(ws, [18, 44, 15, 8, *[12.0] * 4, 14, 14])
+    widths(ws, [18, 44, 15, 8, *[12.0] * 4, 14, 14, 10])
     page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
 
 

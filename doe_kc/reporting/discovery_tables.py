@@ -127,7 +127,8 @@ def held_out_frame(found: Discovery) -> pd.DataFrame:
 @dataclass(frozen=True)
 class TunedParameter:
     """A tunable parameter, values absolute in `unit`; sd: of the final value; distances from nominal in
-    standard deviations of its prior, nan with effects where there are none."""
+    standard deviations of its prior, nan with effects where there are none; beyond: whether the last value is
+    outside the study's bounds."""
 
     path: str
     label: str
@@ -139,6 +140,7 @@ class TunedParameter:
     sd: float
     tuned_distance: float
     with_effect_distance: float
+    beyond: bool
 
     @property
     def moved(self) -> float:
@@ -167,6 +169,7 @@ def tuned_parameters(found: Discovery) -> list[TunedParameter]:
                 sd=float(sd[i]) * v.slope(two),
                 tuned_distance=float((one - start) / model.prior_sd[i]),
                 with_effect_distance=float((two - start) / model.prior_sd[i]) if has_effect else math.nan,
+                beyond=v.path in found.beyond,
             )
         )
     return out

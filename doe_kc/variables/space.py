@@ -70,6 +70,10 @@ class Space:
         held = {path: value for path, value in values.items() if path not in self.paths}
         return replace(self, variables=moved, fixed={**(self.fixed or {}), **held})
 
+    def widened(self, factor: float) -> Space:
+        """The space with all ranges `factor` times as wide, see `Variable.widened`."""
+        return replace(self, variables=tuple(v.widened(factor) for v in self.variables))
+
     def values(self, unit: FloatArray) -> dict[str, float]:
         """Path -> absolute value of every variable, tied and fixed parameter at a point (d,)."""
         out = {v.path: v.value(float(u)) for v, u in zip(self.variables, unit, strict=True)}

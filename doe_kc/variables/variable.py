@@ -48,6 +48,20 @@ class Variable:
         shift = value - self.start
         return replace(self, start=value, lower=self.lower + shift, upper=self.upper + shift)
 
+    def widened(self, factor: float) -> Variable:
+        """The variable with its range `factor` times as wide about its middle, for a ratio in logarithms.
+
+        Bounds that are not below zero stay so, hardpoints' aside.
+        """
+        if self.logarithmic:
+            stretch = (self.upper / self.lower) ** ((factor - 1.0) / 2.0)
+            return replace(self, lower=self.lower / stretch, upper=self.upper * stretch)
+        more = (factor - 1.0) / 2.0 * (self.upper - self.lower)
+        lower = self.lower - more
+        if self.lower >= 0.0 and self.parameter.group != "HARDPOINTS":
+            lower = max(lower, self.lower / factor)
+        return replace(self, lower=lower, upper=self.upper + more)
+
     def value(self, u: float) -> float:
         """Absolute value at u; at the start's place exactly the start, so that the baseline is the axle."""
         if u == self.place(self.start):

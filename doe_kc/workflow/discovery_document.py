@@ -22,8 +22,9 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
     effects: those that the verdict names, or the most probable of a class; leads: in their place where the
     verdict is unexplained; traces: seen, too small to matter. parameters: value, sd, unit of each option,
     lists for a list option. excluded: places whose size would have been found from `above` on (stiffnesses:
-    below it). points_to: interface and law of the generic scan, where the verdict is unexplained.
-    not_testable: ids of which no place is testable. gap: whitened RMS of all records.
+    below it). beyond_bounds: paths of parameters that the records ask to be outside the study's bounds.
+    points_to: interface and law of the generic scan, where the verdict is unexplained. not_testable: ids of
+    which no place is testable. gap: whitened RMS of all records.
     """
     findings = [effect_entry(f) for f in found.findings]
     open_ = found.verdict == "unexplained"
@@ -44,6 +45,7 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
             h.load_case: {"tuned": h.tuned.rms, "with_effect": h.with_effect.rms} for h in found.held_out
         },
         "points_to": _place(found),
+        "beyond_bounds": list(found.beyond),
         "next_test": list(found.next_tests),
         "axle": None if axle_path is None else str(axle_path),
     }

@@ -136,6 +136,15 @@ def test_learns_slopes_where_the_solver_gives_them(
     assert len({p.tobytes() for p in later}) == len(later) and {p.tobytes() for p in asked} <= bests
 
 
+def test_with_exact_slopes_a_settled_search_ends() -> None:
+    case = replace(synthetic(12), exact=True)
+    run = run_method(
+        case, METHODS["ego"](case, Settings(seed=1, budget=80)), synthetic_solver(case), budget=80
+    )
+    assert run.stopped and len(run.evaluated) < 40
+    assert {"random", "restart"}.isdisjoint(e.candidate.origin for e in run.evaluated)
+
+
 @pytest.mark.parametrize("gradients", ["auto", False])
 def test_outputs_that_no_variable_moves_are_no_hindrance(gradients: Gradients) -> None:
     case = problem("car_b", VariableOptions(use=["arb.radius", "tyre.rate", "scb.Tz"]))

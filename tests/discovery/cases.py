@@ -54,8 +54,13 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "two": {"strut_friction": {"force_N": 120.0}, "rig_channel_gain": {"toe": 1.06}},
     "steady": {"strut_friction": {"force_N": 150.0}},
     "lead": {"bushing_progression": {"UPB": [0.1, 0.1, 0.1]}},
+    "beyond": {"hub_compliance": {"camber_Nm_deg": 15000.0, "toe_Nm_deg": 30000.0}},
 }
 """Name of a car -> effects in it."""
+OFF_NOMINAL = {
+    "beyond": {"LLF.z": 4.0, "LLR.z": -3.8, "ROB.z": -4.0, "UPB.y": 3.9, "llr.Fx": -0.6},
+}
+"""Name of a car -> its scatter, where it is another than SCATTER."""
 LOOPS_BEFORE = {"steady": 1}
 """Name of a car -> loops that its rig drives before it records."""
 
@@ -81,8 +86,8 @@ def library(*effects: str) -> list[Hypothesis]:
 @lru_cache(maxsize=8)
 def hidden_axle(car: str) -> Axle:
     """The axle of a car: nominal with scatter and its hidden effects."""
-    values = nominal().values
-    axle = with_values(nominal(), {k: values[f"{k}@L"] + v for k, v in SCATTER.items()})
+    values, scatter = nominal().values, OFF_NOMINAL.get(car, SCATTER)
+    axle = with_values(nominal(), {k: values[f"{k}@L"] + v for k, v in scatter.items()})
     for ident, options in HIDDEN[car].items():
         axle = apply_effect(axle, ident, options, source="test")
     return axle.conditioned(LOOPS_BEFORE.get(car, 0))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -15,6 +17,8 @@ from doe_kc.variables.options import Distribution
 PLAIN = Parameter(
     path="LLF.x", label="", group="HARDPOINTS", unit="mm", nominal=0.0, lower=-3, upper=3, step=1, active=True
 )
+
+CLEARANCE = replace(PLAIN, path="bump_stop.clearance", group="OTHER", nominal=11.0, lower=1.0, upper=21.0)
 
 
 def variable(
@@ -44,6 +48,20 @@ def test_slope_is_the_derivative(v: Variable) -> None:
 
 def test_a_factor_of_one_lies_in_the_middle_of_half_and_double() -> None:
     assert FACTOR.place(1.0) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("v", [variable(start=1.0), FACTOR])
+def test_a_wider_range_keeps_its_middle(v: Variable) -> None:
+    wide = v.widened(1.5)
+    assert wide.value(0.5) == pytest.approx(v.value(0.5)) and wide.start == v.start
+    assert wide.slope(0.5) == pytest.approx(1.5 * v.slope(0.5))
+
+
+def test_a_range_that_is_not_below_zero_stays_so_hardpoints_aside() -> None:
+    clearance = replace(variable(lower=1.0, upper=21.0, start=11.0), parameter=CLEARANCE)
+    assert clearance.widened(2.0).lower == pytest.approx(0.5)
+    assert clearance.widened(2.0).upper == pytest.approx(31.0)
+    assert variable(lower=1.0, upper=7.0, start=4.0).widened(2.0).lower == pytest.approx(-2.0)
 
 
 def test_levels_are_hundredths_of_the_range() -> None:

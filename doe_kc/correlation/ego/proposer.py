@@ -44,13 +44,24 @@ class Proposer:
     steps: FloatArray
 
     def candidate(
-        self, strategy: Strategy, kind: Kind, taken: Set[bytes], rng: np.random.Generator
-    ) -> Candidate:
-        """By `kind`, or the next kind whose design is not known already; a random one at the last."""
+        self,
+        strategy: Strategy,
+        kind: Kind,
+        taken: Set[bytes],
+        rng: np.random.Generator,
+        *,
+        anywhere: bool,
+    ) -> Candidate | None:
+        """By `kind`, or the next kind whose design is not known already.
+
+        anywhere: a random design about the best at the last, else None.
+        """
         for origin in (kind, *strategy.others()):
             point = self.space.snapped(self._point(origin, strategy, rng))
             if point.tobytes() not in taken:
                 return Candidate(point, origin, self.predict(point))
+        if not anywhere:
+            return None
         box = Box.around(self.archive.best.point, HALF_WIDTH)
         point = self.space.snapped(rng.uniform(box.lower, box.upper))
         return Candidate(point, "random", self.predict(point))

@@ -14,6 +14,7 @@ GAIN = 0.002
 PATIENCE = 15
 """Proposals in a row without a worthwhile gain that end the search, or start it anew elsewhere."""
 RESTARTS = 3
+"""Starts elsewhere of a search that has settled."""
 DARE, FEAR = 0.3, 3.0
 """Factors of the risk aversion after a worthwhile Gauss-Newton proposal and after another."""
 AVERSION = (1e-3, 1.0)
@@ -27,14 +28,14 @@ class Strategy:
     """aversion: factor of the predicted variances in Gauss-Newton proposals, 1 = the expected rating.
 
     reach: half-width of the trust region in which predictions are taken at their word. idle: proposals in a
-    row without a worthwhile gain. kind: of the next proposal.
+    row without a worthwhile gain. restarts: starts elsewhere that are left. kind: of the next proposal.
     """
 
     kind: Kind = CYCLE[0]
-    aversion: float = 1.0
+    aversion: float = 0.1
     reach: float = 0.1
     idle: int = 0
-    restarts: int = 0
+    restarts: int = RESTARTS
 
     def after(self, gain: float, best: float) -> Strategy:
         """After a round that raised the best rating from `best` by `gain`."""
@@ -45,8 +46,8 @@ class Strategy:
         if self.kind == "trust region":
             reach = float(np.clip(reach * (GROW if won else SHRINK), *REACH))
         new = replace(self, aversion=aversion, reach=reach, idle=0 if won else self.idle + 1)
-        if new.idle >= PATIENCE and self.restarts < RESTARTS:
-            return Strategy(kind="restart", restarts=self.restarts + 1)
+        if new.idle >= PATIENCE and self.restarts:
+            return Strategy(kind="restart", restarts=self.restarts - 1)
         return replace(new, kind=self.kind if won and self.kind != "restart" else self._next())
 
     def _next(self) -> Kind:
@@ -59,10 +60,7 @@ class Strategy:
         """Why the search is over; empty while it goes on."""
         if self.idle < PATIENCE:
             return ""
-        return (
-            f"{PATIENCE} proposals in a row gained less than {100.0 * GAIN:g} % of the rating, also after "
-            "a restart elsewhere"
-        )
+        return f"{PATIENCE} proposals in a row gained less than {100.0 * GAIN:g} % of the rating"
 
     def others(self) -> tuple[Kind, ...]:
         """Kinds to turn to, in order, when this one proposes a design that is known already."""

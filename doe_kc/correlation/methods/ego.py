@@ -32,6 +32,7 @@ OPENING = Opening(fewest=8, variables_each=9, half_width=0.1, evened=True)
 search goes."""
 WITH_SLOPES = Opening(fewest=2, variables_each=None, half_width=0.1, evened=True)
 """Slopes are known: a first-order step, and one design that shows how far they bend."""
+SETTLED = "every proposal is a design that is known already"
 FEWEST = 3
 """Solved designs that the surrogates need."""
 
@@ -41,7 +42,8 @@ FEWEST = 3
 class Ego(Sampled):
     """State: beside the answers the strategy, how far predictions are trusted, and slopes at the best design.
 
-    Exact slopes are taken wherever the problem has them, unless the settings forbid it.
+    Exact slopes are taken wherever the problem has them, unless the settings forbid it; a search that has
+    settled then ends, where others start anew elsewhere: from there slopes at the best design lead nowhere.
     """
 
     id: ClassVar[str] = "ego"
@@ -50,7 +52,8 @@ class Ego(Sampled):
     def __init__(self, problem: Problem, settings: Settings) -> None:
         self._exact = problem.exact and settings.gradients is not False
         super().__init__(problem, settings, WITH_SLOPES if self._exact else OPENING)
-        self._strategy = Strategy()
+        self._strategy = Strategy(restarts=0) if self._exact else Strategy()
+        self._settled = False
         self._trust = Trust()
         self._expanded: int | None = None
         self._slopes: Slopes | None = None
@@ -59,8 +62,8 @@ class Ego(Sampled):
 
     @property
     def stopped(self) -> str:
-        """No worthwhile gain any more, also after restarts."""
-        return self._strategy.stopped
+        """No worthwhile gain any more, or nothing left to propose."""
+        return self._strategy.stopped or (SETTLED if self._settled else "")
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; proposals among them teach strategy and trust."""
@@ -87,12 +90,15 @@ class Ego(Sampled):
         return max(FEWEST - solved, super()._missing())
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
-        """`batch` candidates."""
+        """`batch` candidates, fewer or none where slopes are exact and lead to known designs only."""
         proposer = self._proposer()
         taken = {e.point.tobytes() for e in self._evaluated}
         kind, out = self._strategy.kind, list[Candidate]()
         for place in range(self._settings.batch):
-            candidate = proposer.candidate(self._strategy, kind, taken, rng)
+            candidate = proposer.candidate(self._strategy, kind, taken, rng, anywhere=not self._exact)
+            if candidate is None:
+                self._settled = not out
+                break
             out.append(candidate)
             taken.add(candidate.point.tobytes())
             if place + 1 < self._settings.batch:

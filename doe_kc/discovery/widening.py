@@ -1,0 +1,88 @@
+"""Bounds that the records ask to be wider: a whole series off nominal, or scattering more than thought.
+
+What parameters at their bounds leave open, re-tuning would absorb: it must not count as a missing effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.contrasts import contrasts
+from doe_kc.discovery.disagreement import remaining_map
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import projection
+from doe_kc.discovery.search import Search, search
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.typing import FloatArray
+from doe_kc.variables import Space
+
+FACTORS = (1.5, 2.0)
+"""By how much wider ranges are tried."""
+HELD = 0.05
+"""Share of the parameters that must be at a bound before wider ones are tried."""
+ASKED = 7.0
+"""ln evidence, a thousand to one, for which all bounds are widened."""
+
+
+def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> tuple[Search, float]:
+    """The search, and by how much all ranges are wider in it than the model's: 1 where that is not asked for.
+
+    Wider ranges are tried only where what re-tuning could not absorb agrees with noise, so that they
+    cannot bend parameters in place of an effect; then the search begins anew between them.
+    NotConverged when the nominal axle has no equilibrium.
+    """
+    found = search(model, library, bench)
+    factor = asked(found.final, bench)
+    if factor == 1.0:
+        return found, factor
+    again = search(replace(model, space=model.space.widened(factor)), library, bench)
+    return (again, factor) if again.plain.evidence > found.plain.evidence + ASKED else (found, 1.0)
+
+
+def asked(final: Fit, bench: Bench) -> float:
+    """By how much wider the ranges are with the largest evidence, 1 unless it is clear."""
+    shapes = contrasts(final.model.likelihood)
+    few = np.mean(at_bounds(final)) < HELD
+    if few or not remaining_map(shapes, final.residual, projection(final)).agrees:
+        return 1.0
+    best, most = 1.0, final.evidence + ASKED
+    for factor in FACTORS:
+        model, z = widened(final, factor)
+        (wider,) = bench.fitted([(model, z)], "wider bounds", final.jacobian * _stretch(final, model, z))
+        if wider is None or wider.evidence < most:
+            break
+        best, most = factor, wider.evidence
+    return best
+
+
+def at_bounds(found: Fit) -> FloatArray:
+    """(d,) whether each tunable parameter is held at a bound, 0 or 1."""
+    model = found.model
+    u, low, high = (a[: model.parameters] for a in (found.z, model.lower, model.upper))
+    return np.asarray((u <= low) | (u >= high), dtype=float)
+
+
+def widened(found: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
+    """The model with wider ranges, and the fit's point in it."""
+    model = found.model
+    space, count = model.space.widened(factor), model.parameters
+    z = np.concatenate([space.unit(model.space.values(found.z[:count])), found.z[count:]])
+    return replace(model, space=space), z
+
+
+def _stretch(found: Fit, wider: EffectModel, z: FloatArray) -> FloatArray:
+    """(d + m,) by what derivatives grow from the one model's places to the wider one's."""
+    count = wider.parameters
+    own = found.model.space.slopes(found.z[:count])
+    return np.concatenate([wider.space.slopes(z[:count]) / own, np.ones(z.size - count)])
+
+
+def beyond(space: Space, found: Fit) -> tuple[str, ...]:
+    """Paths of the parameters that the fit puts outside the bounds of `space`."""
+    values = found.model.space.values(found.z[: found.model.parameters])
+    return tuple(v.path for v in space.variables if not v.lower <= values[v.path] <= v.upper)
