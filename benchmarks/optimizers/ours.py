@@ -33,7 +33,7 @@ def _without_levels(problem: Problem) -> Problem:
 
 
 PEERS = (
-    Peer("ego", "ego", "outputs and slopes", own("ego"), BUDGET, ours=True),
+    Peer("ego", "ego", "outputs and slopes", own("ego"), BUDGET, ours=True, levels=True),
     Peer(
         "ego_values",
         "ego, gradients=false",
@@ -41,6 +41,7 @@ PEERS = (
         own("ego", gradients=False),
         BUDGET,
         ours=True,
+        levels=True,
     ),
     Peer(
         "gauss_newton",
@@ -58,9 +59,8 @@ PEERS = (
         own("ego", gradients=False, continuous=True),
         50,
         ours=True,
-        seeds=3,
     ),
     Peer("pareto", "pareto", "outputs", own("pareto"), BUDGET, ours=True, needs="pymoo"),
     Peer("hybrid", "hybrid", "outputs", own("hybrid"), BUDGET, ours=True),
-    Peer("smt_ego", "SMT EGO (KPLS)", "rating", own("smt_ego"), 300, needs="smt", seeds=1, seconds=600.0),
+    Peer("smt_ego", "SMT EGO (KPLS)", "rating", own("smt_ego"), 45, needs="smt", seeds=1),
 )

@@ -1,6 +1,7 @@
 """Runs every peer with every seed once; each result is a JSON file, so an interrupted benchmark goes on.
 
-Files lie in a folder named by the fingerprint of the product's source: runs of different code never mix.
+Files of our own methods lie in a folder named by the fingerprint of the product's source, those of the others
+in one named by the problem's answers: runs of different code or problems never mix.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from optimizers import bayesian, least_squares, ours, scalar
+from optimizers.asked import asked
 from optimizers.counting import BudgetSpent, CountingSolver, watched
 from optimizers.peer import Peer
 
@@ -88,13 +90,19 @@ def run(peer: Peer, seed: int, on: Problem | None = None) -> Result:
     )
 
 
+def folder_of(out: Path, peer: Peer, question: str) -> Path:
+    """Where a peer's results lie."""
+    return out / (CODE if peer.ours else f"problem_{question}")
+
+
 def run_missing(out: Path, names: Sequence[str], most_seeds: int) -> None:
     """Every installed peer of `names` that has no result yet, seed by seed."""
-    folder = out / CODE
-    folder.mkdir(parents=True, exist_ok=True)
+    question = asked(problem())
     for peer in PEERS:
         if peer.id not in names or not peer.installed:
             continue
+        folder = folder_of(out, peer, question)
+        folder.mkdir(parents=True, exist_ok=True)
         for seed in range(1, min(peer.seeds, most_seeds) + 1):
             place = folder / f"{peer.id}_{seed}.json"
             if place.exists():
@@ -109,7 +117,8 @@ def run_missing(out: Path, names: Sequence[str], most_seeds: int) -> None:
 
 
 def results(out: Path) -> Iterator[Result]:
-    """All results of this code so far."""
+    """All results of this code and problem so far."""
+    question = asked(problem())
     for peer in PEERS:
-        for place in sorted((out / CODE).glob(f"{peer.id}_[0-9].json")):
+        for place in sorted(folder_of(out, peer, question).glob(f"{peer.id}_[0-9].json")):
             yield Result(**json.loads(place.read_text()))

@@ -38,51 +38,53 @@ Norm, scaled curves), not the rating; BoTorch composite maximizes the rating its
 of `ego`; both BoTorch searches are given the very sample that it opens with without slopes. No \
 peer's settings were searched for; the defaults of `ego` may have been chosen on this car, which favours it.
 - `ego`, `pareto`, `hybrid` and SMT EGO as run here keep to the variables' levels (101); `gauss_newton` and \
-the other peers are continuous.
+the other peers are continuous, but for the rows that say otherwise: `ego` is also run without levels, and \
+the strongest peer, BoTorch composite, also on them.
 - Peers with fewer seeds than five: see the column. CMA-ES may use 1000 evaluations, BoTorch composite 50, \
-BoTorch's GP of the rating 150, SMT EGO ten minutes; others 300."""
+BoTorch's GP of the rating 150, SMT EGO 45, Optuna's GPSampler four minutes; others 300."""
 
 
 def reading(peers: Sequence[Peer], runs: Mapping[str, Sequence[Result]]) -> list[str]:
     """Whether ego reaches its goals, level by level, with slopes and without."""
+    by_id = {p.id: p for p in peers}
     there = [p for p in peers if not p.ours and runs[p.id]]
     lines: list[str] = []
     for name, words in OURS.items():
         if runs[name]:
-            lines += [f"## Goals of {words}", "", *_goals(runs[name], there, runs), ""]
-    return [*lines, *_levels(runs)]
+            lines += [f"## Goals of {words}", "", *_goals(by_id[name], there, runs), ""]
+    return [*lines, *_at_fifty(runs)]
 
 
-def _goals(own: Sequence[Result], there: Sequence[Peer], runs: Mapping[str, Sequence[Result]]) -> list[str]:
+def _goals(own: Peer, there: Sequence[Peer], runs: Mapping[str, Sequence[Result]]) -> list[str]:
     lines: list[str] = []
+    scalar = [p for p in there if p.sees == "rating"]
+    aware = [p for p in there if p.sees != "rating"]
+    alike = [p for p in aware if p.levels == own.levels]
     for mark, figure in MARKS.items():
-        ours = median(own, figure)
-        scalar = [p for p in there if p.sees == "rating"]
+        ours = median(runs[own.id], figure)
         verdict = "; ".join(filter(None, (_short(p, runs[p.id], figure, ours) for p in scalar)))
         never = sum(not math.isfinite(median(runs[p.id], figure)) for p in scalar)
         lines += [
             f"- {mark}, ten times fewer than every scalar method ({never} of {len(scalar)} never get there): "
             f"{'not so for ' + verdict if verdict else 'met'}.",
-            f"- {mark}, no more than the best residual-aware peer: {_best(there, runs, figure, ours)}.",
+            f"- {mark}, no more than the best residual-aware peer: {_best(aware, runs, figure, ours)}.",
         ]
+        if own.levels and alike:
+            lines.append(f"- {mark}, the same among those on the levels: {_best(alike, runs, figure, ours)}.")
     return lines
 
 
-def _levels(runs: Mapping[str, Sequence[Result]]) -> list[str]:
-    """What the levels of the variables cost ego against its strongest, continuous peer."""
-    names = ("ego_values", "ego_continuous", "botorch_composite")
-    if not all(runs[n] for n in names):
-        return []
-    ratings = [best_rating(runs[n], 50) for n in names]
-    ego, free, peer = (f"{r:.3f} ({len(runs[n])} seeds)" for n, r in zip(names, ratings, strict=True))
-    cause = (
-        "the levels explain its lead there" if ratings[1] > ratings[2] > ratings[0] else "compare the rows"
-    )
-    return [
-        f"Best rating after 50 evaluations, none with slopes: ego {ego}, ego with continuous variables "
-        f"{free}, BoTorch composite, continuous too, {peer}: {cause}. The row without levels was added to "
-        "learn why, after that peer was seen to lead; the goals are of ego on its levels.",
-    ]
+def _at_fifty(runs: Mapping[str, Sequence[Result]]) -> list[str]:
+    """What the levels of the variables cost ego and its strongest peer."""
+    names = {
+        "ego_values": "ego on levels",
+        "botorch_levels": "BoTorch composite on levels",
+        "ego_continuous": "ego with continuous variables",
+        "botorch_composite": "BoTorch composite with continuous variables",
+    }
+    there = [n for n in names if runs[n]]
+    listed = ", ".join(f"{names[n]} {best_rating(runs[n], 50):.3f} ({len(runs[n])} seeds)" for n in there)
+    return [f"Best rating after 50 evaluations, none with slopes: {listed}."]
 
 
 def _short(peer: Peer, found: Sequence[Result], figure: Figure, ours: float) -> str:
@@ -94,11 +96,11 @@ def _short(peer: Peer, found: Sequence[Result], figure: Figure, ours: float) -> 
     return "" if tried >= GOAL else f"{peer.label} (not reached, but only tried to {tried:.1f} times)"
 
 
-def _best(there: Sequence[Peer], runs: Mapping[str, Sequence[Result]], figure: Figure, ours: float) -> str:
-    aware = [(median(runs[p.id], figure), p.label, used(runs[p.id])) for p in there if p.sees != "rating"]
+def _best(aware: Sequence[Peer], runs: Mapping[str, Sequence[Result]], figure: Figure, ours: float) -> str:
+    """Against the residual-aware peer that needs fewest."""
     if not aware:
         return "no such peer was run"
-    theirs, name, spent = min(aware)
+    theirs, name, spent = min((median(runs[p.id], figure), p.label, used(runs[p.id])) for p in aware)
     if not math.isfinite(theirs):
         return f"met, none gets there (in {spent})"
     return f"{'met' if ours <= theirs else 'missed'}, ego {ours:.0f}, {name} {theirs:.0f}"
