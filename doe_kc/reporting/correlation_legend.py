@@ -1,12 +1,6 @@
-"""The sheet of the correlation workbook that says how to read the others."""
+"""How to read the correlation workbook."""
 
 from __future__ import annotations
-
-from collections.abc import Mapping
-
-from openpyxl.workbook import Workbook
-
-from doe_kc.reporting.workbook_cells import frame, page, put, title, widths
 
 LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Characteristics: left wheel.",
@@ -30,16 +24,3 @@ LEGEND = {
     "curve: an RMS near it is a perfect fit.",
     "Rating terms": "Yellow cells can be edited; sums and the live rating of the summary follow.",
 }
-
-
-def legend_sheet(book: Workbook, study: str, legend: Mapping[str, str] = LEGEND) -> None:
-    """How to read the other sheets. legend: term -> explanation."""
-    ws = book.create_sheet("Legend")
-    title(ws, f"Legend: {study}", "How to read this workbook.")
-    for row, (key, text) in enumerate(legend.items(), start=4):
-        put(ws, row, 1, key, bold=True, vertical="top")
-        put(ws, row, 2, text, wrap=True, vertical="top")
-        ws.row_dimensions[row].height = 14.5 * (1 + len(text) // 110)
-    frame(ws, range(4, 4 + len(legend)), range(1, 3))
-    widths(ws, [22, 120])
-    page(ws, study)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from io import BytesIO
 from pathlib import Path
 
 from openpyxl.workbook import Workbook
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.output import write_whole
-from doe_kc.reporting.correlation_legend import legend_sheet
+from doe_kc.reporting.correlation_legend import LEGEND
 from doe_kc.reporting.correlation_rating_sheet import rating_sheet
 from doe_kc.reporting.correlation_sheets import (
     characteristics_sheet,
@@ -19,7 +17,8 @@ from doe_kc.reporting.correlation_sheets import (
     parameters_sheet,
 )
 from doe_kc.reporting.correlation_summary_sheet import summary_sheet
-from doe_kc.reporting.workbook_cells import clean
+from doe_kc.reporting.workbook_file import new_book, write_book
+from doe_kc.reporting.workbook_terms import terms_sheet
 
 
 def correlation_workbook(
@@ -30,17 +29,14 @@ def correlation_workbook(
     study: name in titles and page headers. date: as it shall stand in the summary. notes: further lines of
     the summary, title -> text (axle file, measurement, ...).
     """
-    book = Workbook()
-    book.remove(book.active)
+    book = new_book(f"Correlation: {study}")
     summary_sheet(book, found, study, date, notes or {})
     characteristics_sheet(book, found, study)
     parameters_sheet(book, found, study)
     curves_sheet(book, found, study)
     evaluations_sheet(book, found, study)
     rating_sheet(book, found, study)
-    legend_sheet(book, study)
-    book.properties.title = clean(f"Correlation: {study}")
-    book.properties.creator = "doe_kc"
+    terms_sheet(book, study, LEGEND)
     return book
 
 
@@ -53,6 +49,4 @@ def write_correlation_workbook(
     notes: Mapping[str, str] | None = None,
 ) -> Path:
     """Write `correlation_workbook`; RunError naming path and remedy when the place is locked or full."""
-    content = BytesIO()
-    correlation_workbook(found, study=study, date=date, notes=notes).save(content)
-    return write_whole(path, lambda beside: beside.write_bytes(content.getvalue()))
+    return write_book(path, correlation_workbook(found, study=study, date=date, notes=notes))

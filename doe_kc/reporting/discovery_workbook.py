@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from io import BytesIO
 from pathlib import Path
 
 from openpyxl.workbook import Workbook
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.output import write_whole
-from doe_kc.reporting.correlation_legend import legend_sheet
 from doe_kc.reporting.discovery_legend import LEGEND
 from doe_kc.reporting.discovery_sheets import (
     disagreement_sheet,
@@ -21,7 +18,8 @@ from doe_kc.reporting.discovery_sheets import (
     parameters_sheet,
 )
 from doe_kc.reporting.discovery_verdict_sheet import verdict_sheet
-from doe_kc.reporting.workbook_cells import clean
+from doe_kc.reporting.workbook_file import new_book, write_book
+from doe_kc.reporting.workbook_terms import terms_sheet
 
 
 def discovery_workbook(
@@ -32,8 +30,7 @@ def discovery_workbook(
     study: name in titles and page headers. date: as it shall stand in the first sheet. notes: further lines
     of that, title -> text (axle file, measurement, ...).
     """
-    book = Workbook()
-    book.remove(book.active)
+    book = new_book(f"Missing effects: {study}")
     verdict_sheet(book, found, study, date, notes or {})
     disagreement_sheet(book, found, study)
     effects_sheet(book, found, study)
@@ -41,9 +38,7 @@ def discovery_workbook(
     gap_sheet(book, found, study)
     held_out_sheet(book, found, study)
     parameters_sheet(book, found, study)
-    legend_sheet(book, study, LEGEND)
-    book.properties.title = clean(f"Missing effects: {study}")
-    book.properties.creator = "doe_kc"
+    terms_sheet(book, study, LEGEND)
     return book
 
 
@@ -51,6 +46,4 @@ def write_discovery_workbook(
     path: Path, found: Discovery, *, study: str, date: str, notes: Mapping[str, str] | None = None
 ) -> Path:
     """Write `discovery_workbook`; RunError naming path and remedy when the place is locked or full."""
-    content = BytesIO()
-    discovery_workbook(found, study=study, date=date, notes=notes).save(content)
-    return write_whole(path, lambda beside: beside.write_bytes(content.getvalue()))
+    return write_book(path, discovery_workbook(found, study=study, date=date, notes=notes))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
@@ -12,9 +11,9 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.influence.result import percent_of_column
-from doe_kc.output import write_whole
 from doe_kc.reporting.surrogate_tables import judged_document
-from doe_kc.reporting.workbook_cells import A3, clean, colour_scale, page, put, title, widths
+from doe_kc.reporting.workbook_cells import A3, colour_scale, page, put, title, widths
+from doe_kc.reporting.workbook_file import new_book, write_book
 from doe_kc.reporting.workbook_matrix import case_label
 from doe_kc.reporting.workbook_tables import Value, table
 from doe_kc.surrogates.models import SURROGATES
@@ -37,19 +36,14 @@ LEGEND = (
 
 
 def write_surrogate_workbook(path: Path, report: SurrogateReport, *, study: str, date: str) -> Path:
-    """Sheets Quality, Influence, Shares and Legend; RunError as `write_influence_workbook`."""
-    book = Workbook()
-    book.remove(book.active)
+    """Sheets Quality, Influence, Shares and Legend; RunError as `write_book`."""
+    book = new_book(f"Surrogates: {study}")
     _quality(book, report, study)
     below = "Percent of each column's largest entry, at the unchanged axle; + = both grow together."
     _matrix(book, "Influence", percent_of_column(report.changes), report, study, below, agreement=True)
     _matrix(book, "Shares", 100.0 * report.shares, report, study, "Total effects over the ranges, percent.")
     _legend(book, report, study, date)
-    book.properties.title = clean(f"Surrogates: {study}")
-    book.properties.creator = "doe_kc"
-    content = BytesIO()
-    book.save(content)
-    return write_whole(path, lambda beside: beside.write_bytes(content.getvalue()))
+    return write_book(path, book)
 
 
 def _quality(book: Workbook, report: SurrogateReport, study: str) -> None:

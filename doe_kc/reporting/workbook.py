@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from io import BytesIO
 from pathlib import Path
 
 from openpyxl.workbook import Workbook
@@ -11,8 +10,7 @@ from openpyxl.workbook import Workbook
 from doe_kc.influence.relations import Relations
 from doe_kc.influence.result import Influence
 from doe_kc.influence.selection_result import Selection
-from doe_kc.output import write_whole
-from doe_kc.reporting.workbook_cells import clean
+from doe_kc.reporting.workbook_file import new_book, write_book
 from doe_kc.reporting.workbook_legend import legend_sheet
 from doe_kc.reporting.workbook_matrix import absolute_sheet, exact_sheet, influence_sheet
 from doe_kc.reporting.workbook_tables import relations_sheet, selection_sheet
@@ -34,16 +32,13 @@ def influence_workbook(
     notes: further lines of the legend, title -> text (axle file, measurement, ...).
     windows: load case -> half-width of the fit window where it is not the default.
     """
-    book = Workbook()
-    book.remove(book.active)
+    book = new_book(f"Parameter influence: {study}")
     influence_sheet(book, influence, study)
     absolute_sheet(book, influence, study)
     exact_sheet(book, influence, study)
     relations_sheet(book, relations, study)
     selection_sheet(book, selection, study)
     legend_sheet(book, influence, study, date, notes=notes or {}, windows=windows or {})
-    book.properties.title = clean(f"Parameter influence: {study}")
-    book.properties.creator = "doe_kc"
     return book
 
 
@@ -58,11 +53,7 @@ def write_influence_workbook(
     notes: Mapping[str, str] | None = None,
     windows: Mapping[str, float] | None = None,
 ) -> Path:
-    """Write `influence_workbook`; returns its path.
-
-    An old file stays whole until the new one is complete. RunError naming path and remedy when the place
-    is locked, read-only or full.
-    """
+    """Write `influence_workbook`; returns its path. RunError as `write_book`."""
     book = influence_workbook(
         influence,
         relations=relations,
@@ -72,7 +63,4 @@ def write_influence_workbook(
         notes=notes,
         windows=windows,
     )
-    # Into memory first: a full disk then meets plain bytes, not a half-made archive.
-    content = BytesIO()
-    book.save(content)
-    return write_whole(path, lambda beside: beside.write_bytes(content.getvalue()))
+    return write_book(path, book)

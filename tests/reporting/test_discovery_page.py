@@ -7,7 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.reporting.page import discovery_sections, page_html, write_correlation_page, write_discovery_page
+from doe_kc.reporting.page import (
+    correlation_sections,
+    discovery_sections,
+    page_html,
+    write_discovery_page,
+    write_page,
+)
 from tests.correlation.cases import measured
 from tests.discovery.cases import LOAD_CASES, discovery, records
 from tests.reporting.chromium import BROWSER, Page
@@ -133,11 +139,9 @@ def test_curves_start_with_the_worst_and_are_drawn_for_every_choice(
 
 @browsed
 def test_both_charts_work_on_one_page(browser: Page, tmp_path: Path) -> None:
-    sections = discovery_sections(discovery("named"), records("named"))
-    path = write_correlation_page(
-        tmp_path / "both.html", real(), measured(CAR), study="S", date="d", more=sections
-    )
-    page = opened(browser, path)
+    sections = correlation_sections(real(), measured(CAR))
+    sections += discovery_sections(discovery("named"), records("named"))
+    page = opened(browser, write_page(tmp_path / "both.html", "Both", sections))
     assert page.errors == []
     for prefix in ("curves", "effect-curves"):
         assert page.run(f"document.querySelectorAll('#{prefix}-chart path.layer').length") == 4

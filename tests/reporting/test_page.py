@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from markupsafe import Markup
 
-from doe_kc.reporting.page import Section, write_correlation_page
+from doe_kc.reporting.page import Section, correlation_sections, write_correlation_page, write_page
 from tests.correlation.cases import measured
 from tests.reporting.chromium import BROWSER, Page
 from tests.reporting.correlations import CAR, EVIL, all_three, odd, real
@@ -23,14 +23,18 @@ LAYERS = "document.querySelectorAll('#curves-chart path.layer')"
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("pages")
-    more = [Section("Missing effects", Markup("<p id='more'>{}</p>").format(EVIL))]
-    return {
+    out = {
         name: write_correlation_page(
             folder / f"{name}.html", found, measured(CAR) if name != "typed" else None, study=f"Study {EVIL}",
-            date="2026-01-31", notes={"Axle": EVIL}, more=more if name == "odd" else (),
+            date="2026-01-31", notes={"Axle": EVIL},
         )
         for name, found in all_three().items()
     }  # fmt: skip
+    more = Section("Missing effects", Markup("<p id='more'>{}</p>").format(EVIL))
+    sections = [*correlation_sections(all_three()["odd"], measured(CAR), notes={"Axle": EVIL}), more]
+    return out | {
+        "odd": write_page(folder / "odd.html", f"Correlation: Study {EVIL}", sections, subtitle="d")
+    }
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from doe_kc.reporting.page.correlation import correlation_sections, write_correlation_page
 from doe_kc.reporting.page.discovery import discovery_sections, write_discovery_page
-from doe_kc.reporting.page.section import Section, embedded, page_html, render
+from doe_kc.reporting.page.section import Section, embedded, page_html, render, write_page
 
 __all__ = [
     "Section",
@@ -15,4 +15,5 @@ __all__ = [
     "render",
     "write_correlation_page",
     "write_discovery_page",
+    "write_page",
 ]

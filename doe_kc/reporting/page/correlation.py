@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
-from doe_kc.output import write_whole
 from doe_kc.reporting.correlation_parameters import remark_sentences
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.page.characteristics import characteristics_section
 from doe_kc.reporting.page.convergence import convergence_section
 from doe_kc.reporting.page.curves import curves_section
 from doe_kc.reporting.page.parameters import parameters_section
-from doe_kc.reporting.page.section import Section, page_html, render
+from doe_kc.reporting.page.section import Section, render, write_page
 
 
 def correlation_sections(
@@ -34,12 +33,10 @@ def write_correlation_page(
     study: str,
     date: str,
     notes: Mapping[str, str] | None = None,
-    more: Sequence[Section] = (),
 ) -> Path:
-    """Write the page; `more` sections follow the correlation's. RunError when it cannot be written."""
-    sections = [*correlation_sections(found, measurement, notes=notes), *more]
-    html = page_html(f"Correlation: {study}", sections, subtitle=date)
-    return write_whole(path, lambda p: p.write_text(html, encoding="utf-8"))
+    """Write the page; RunError when it cannot be written."""
+    sections = correlation_sections(found, measurement, notes=notes)
+    return write_page(path, f"Correlation: {study}", sections, subtitle=date)
 
 
 def _summary(found: Correlation, notes: Mapping[str, str]) -> Section:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
-from doe_kc.output import write_whole
 from doe_kc.reporting.page.discovery_candidates import (
     candidates_section,
     held_out_section,
@@ -19,7 +18,7 @@ from doe_kc.reporting.page.discovery_library import library_section
 from doe_kc.reporting.page.discovery_maps import maps_section
 from doe_kc.reporting.page.discovery_parameters import parameters_section
 from doe_kc.reporting.page.discovery_verdict import verdict_section
-from doe_kc.reporting.page.section import Section, page_html
+from doe_kc.reporting.page.section import Section, write_page
 
 
 def discovery_sections(
@@ -42,9 +41,7 @@ def write_discovery_page(
     study: str,
     date: str,
     notes: Mapping[str, str] | None = None,
-    more: Sequence[Section] = (),
 ) -> Path:
-    """Write the page; `more` sections follow the discovery's. RunError when it cannot be written."""
-    sections = [*discovery_sections(found, measurement, notes=notes), *more]
-    html = page_html(f"Missing effects: {study}", sections, subtitle=date)
-    return write_whole(path, lambda p: p.write_text(html, encoding="utf-8"))
+    """Write the page; RunError when it cannot be written."""
+    sections = discovery_sections(found, measurement, notes=notes)
+    return write_page(path, f"Missing effects: {study}", sections, subtitle=date)

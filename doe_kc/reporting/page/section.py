@@ -8,12 +8,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from doe_kc import __version__
+from doe_kc.output import write_whole
 
 DIGITS = 7
 """Significant digits of the numbers that the page's charts hold."""
@@ -42,6 +44,12 @@ def page_html(title: str, sections: Sequence[Section], *, subtitle: str = "") ->
     """The whole page with its styles and scripts inside; opens from a disk, a mail or a server."""
     html = render("page.html", title=title, subtitle=subtitle, sections=sections, version=__version__)
     return _CONTROL.sub("\N{REPLACEMENT CHARACTER}", str(html))
+
+
+def write_page(path: Path, title: str, sections: Sequence[Section], *, subtitle: str = "") -> Path:
+    """Write `page_html`; RunError when it cannot be written."""
+    html = page_html(title, sections, subtitle=subtitle)
+    return write_whole(path, lambda p: p.write_text(html, encoding="utf-8"))
 
 
 def render(template: str, **values: Any) -> Markup:
