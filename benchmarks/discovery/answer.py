@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from benchmarks.discovery.exclusions import Excluded, read_excluded
+
 Verdict = Literal["named", "class", "none", "unexplained", "failed"]
 SURE = 0.9
 """Probability from which an effect counts as named."""
@@ -37,6 +39,7 @@ class Answer:
     gap: Mapping[str, float]
     held_out: Mapping[str, tuple[float, float]]
     diagnosable: Mapping[str, tuple[float, float]]
+    excluded: tuple[Excluded, ...]
     seconds: float
 
     @property
@@ -66,7 +69,7 @@ class Answer:
         return self.verdict
 
 
-FAILED = Answer("failed", (), (), (), {}, {}, {}, float("nan"))
+FAILED = Answer("failed", (), (), (), {}, {}, {}, (), float("nan"))
 """The analyser gave none."""
 
 
@@ -89,6 +92,7 @@ def read_answer(data: Mapping[str, Any] | None) -> Answer:
             name: (float(d["lambda"]), float(d["wrong_name_probability"]))
             for name, d in (data.get("diagnosable") or {}).items()
         },
+        excluded=read_excluded(data.get("excluded") or ()),
         seconds=float(data.get("seconds") or "nan"),
     )
 

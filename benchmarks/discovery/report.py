@@ -14,6 +14,7 @@ from benchmarks.discovery.scoring import Score
 from benchmarks.discovery.table import (
     calibration_lines,
     closed_lines,
+    excluded_wrongly,
     located,
     parameter_lines,
     suite_table,
@@ -73,6 +74,7 @@ def lines(found: Sequence[Score], run: Run) -> list[str]:
         *suite_table(found),
         "",
         f"- Place right, of rightly named effects that have one: {located(found)}",
+        f"- Excluded below their true size, of hidden effects that are not named: {excluded_wrongly(found)}",
         *parameter_lines(found),
         *closed_lines(found),
         *calibration_lines(found),

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from benchmarks.discovery.answer import Answer, Named
+from benchmarks.discovery.exclusions import contradicted, said_of
 from benchmarks.discovery.sides import numbers, place
-from benchmarks.discovery.truth import TrueEffect, Truth
+from benchmarks.discovery.truth import DELETED, TrueEffect, Truth
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Score:
     trace: some name is clutter, rightly sized but too small to matter. missed: answered that nothing is
     missing. placed: an unexplained deviation is reported where it is. located: right places over places
     asked. closed, decoy: share of the gap that the named effects, and the best other one, close; nan where
-    the answer gives none.
+    the answer gives none. excluded: hidden effects that are excluded below their size, over those not named.
     """
 
     name: str
@@ -64,6 +65,7 @@ class Score:
     closed: float
     decoy: float
     diagnosable: bool | None
+    excluded: tuple[int, int]
     seconds: float
 
 
@@ -111,8 +113,15 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         closed=held_out_closed(answer),
         decoy=decoy_closed(answer),
         diagnosable=_diagnosable(truth, answer, predicted),
+        excluded=_excluded(truth, answer, names),
         seconds=answer.seconds,
     )
+
+
+def _excluded(truth: Truth, answer: Answer, names: frozenset[str]) -> tuple[int, int]:
+    unnamed = [e for e in truth.effects if e.id not in names and truth.suite != DELETED]
+    wrong = [e for e in unnamed if any(contradicted(e, s) for s in said_of(e, answer.excluded))]
+    return len(wrong), len(unnamed)
 
 
 def _traced(truth: Truth, named: Named) -> bool:

@@ -87,6 +87,12 @@ def located(found: Iterable[Score]) -> Share:
     return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
 
 
+def excluded_wrongly(found: Iterable[Score]) -> Share:
+    """Hidden effects that are not named, and are said to be smaller than they are."""
+    pairs = [s.excluded for s in found]
+    return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
+
+
 def parameter_lines(found: Sequence[Score]) -> list[str]:
     """How good the numbers of rightly named effects are."""
     lines = []

@@ -150,6 +150,7 @@ def _packed(found: Screened) -> Arrays:
         "numbers": np.array([found.gain, found.score, found.detectability, found.absorbed]),
         "columns": found.columns,
         "change": found.change,
+        "visible": found.visible,
         "failed": np.frombuffer(found.failed.encode(), dtype=np.uint8).astype(float),
     }
 
@@ -166,5 +167,6 @@ def _unpacked(hypothesis: Hypothesis, known: Arrays) -> Screened:
         known["change"],
         detectability,
         absorbed,
+        known["visible"],
         bytes(known["failed"].astype(np.uint8)).decode(),
     )

@@ -29,6 +29,8 @@ HOPELESS = 1.0
 """ln likelihood that a step must promise over the model without the effect, or the effect is given up."""
 ENOUGH = 0.1
 """Decrease of the sum of squares below which an amplitude stands."""
+UNSEEN = 1e-12
+"""Share of what all sizes of an effect do, in squares, that counts as nothing."""
 SHAPES = (0.0, -2.0, 2.0)
 """Starts of a shape: it does not exist where the effect is absent (Davies 1977), so several are tried."""
 
@@ -40,7 +42,8 @@ class Screened:
     amplitudes: (m,) most probable sizes. sd: (m,) of them, after re-tuning and the prior. gain: ln of the
     evidence over the model without it. score: standard deviations by which the fit improves. change: (M,)
     whitened change of the data at typical size. detectability: standard deviations of that change after
-    re-tuning; absorbed: share of its square that re-tuning hides.
+    re-tuning; absorbed: share of its square that re-tuning hides. visible: (m,) the same of each size alone,
+    whatever the others are; nan for a shape.
     """
 
     hypothesis: Hypothesis
@@ -52,6 +55,7 @@ class Screened:
     change: FloatArray
     detectability: float
     absorbed: float
+    visible: FloatArray
     failed: str = ""
 
 
@@ -74,6 +78,7 @@ def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
             nothing[:, 0],
             0.0,
             0.0,
+            empty,
             str(error),
         )
     best = min(results, key=lambda r: r.cost)
@@ -193,7 +198,21 @@ def _summary(
         change,
         float(np.linalg.norm(seen)),
         1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
+        visible(hypothesis, projected, seen),
     )
+
+
+def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> FloatArray:
+    """(m,) see `Screened`. columns: (M + d, m) and change (M + d,) of the effect, re-tuning projected out."""
+    out = np.full(len(hypothesis.sizes), np.nan)
+    amounts = [i for i, s in enumerate(hypothesis.sizes) if s.growth != "shape"]
+    if len(amounts) == 1:
+        out[amounts] = np.linalg.norm(change)
+    elif amounts:
+        gram = columns[:, amounts].T @ columns[:, amounts]
+        least = UNSEEN * max(float(np.trace(gram)), UNSEEN)
+        out[amounts] = 1.0 / np.sqrt(np.diag(np.linalg.inv(gram + least * np.eye(len(amounts)))))
+    return out
 
 
 def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
@@ -218,4 +237,5 @@ def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
         score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
         detectability=float(np.linalg.norm(seen)),
         absorbed=1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
+        visible=visible(known.hypothesis, columns, seen),
     )

@@ -21,6 +21,7 @@ POWER = 0.84
 """Standard deviations above the critical value at which an effect is found in 80 % of cars."""
 ALIKE = 0.8
 """|correlation| after re-tuning from which two effects are listed as alike."""
+INVISIBLE = 1e-9
 HIDING = 3
 """Parameters listed that hide an effect."""
 
@@ -29,8 +30,9 @@ HIDING = 3
 class Standing:
     """One hypothesis.
 
-    detectable: smallest size, as a multiple of the typical one, that would be found in 80 % of cars; inf
-    when re-tuning absorbs all of it. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
+    limits: (m,) of each of its sizes the smallest amplitude, as a multiple of the typical one, that would be
+    found in 80 % of cars whatever the others are; inf when re-tuning absorbs all of it, nan for a shape.
+    detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
     parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
     remaining change is the same, with the correlation.
     """
@@ -41,6 +43,7 @@ class Standing:
     absorbed: float
     hidden_by: tuple[tuple[str, float], ...]
     alike: tuple[tuple[str, float], ...]
+    limits: tuple[float, ...] = ()
 
 
 def standings(
@@ -63,7 +66,9 @@ def standings(
     moves = _moves(found, np.array([s.change for s in everything]).T)
     out = []
     for i, s in enumerate(everything):
-        detectable = (critical + POWER) / s.detectability if s.detectability > 1e-9 else np.inf
+        limits = np.array([_limit(v, critical) for v in s.visible])
+        amounts = limits[~np.isnan(limits)]
+        detectable = float(amounts.min()) if amounts.size else _limit(s.detectability, critical)
         status: Status = known.get(i) or _status(s, detectable)
         alike = tuple(
             (everything[j].hypothesis.name, float(correlation[i, j]))
@@ -71,8 +76,14 @@ def standings(
             if j != i and abs(correlation[i, j]) >= ALIKE and length[i] > 1.0 and length[j] > 1.0
         )
         hidden_by = _hiding(found, moves[:, i], s)
-        out.append(Standing(s.hypothesis, status, float(detectable), s.absorbed, hidden_by, alike))
+        stands = Standing(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
+        out.append(stands)
     return tuple(out)
+
+
+def _limit(visible: float, critical: float) -> float:
+    """Amplitude at which a size that makes `visible` standard deviations when typical would be found."""
+    return (critical + POWER) / visible if not visible <= INVISIBLE else float("inf")
 
 
 def _status(screened: Screened, detectable: float) -> Status:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from doe_kc.curves import RESPONSE_UNITS
+from doe_kc.discovery.belief import LARGEST
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.result import Discovery, VerdictKind
 from doe_kc.discovery.standing import Standing, Status
@@ -102,11 +104,22 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def limit_words(standing: Standing) -> str:
-    """From which size on the effect would have been seen, e.g. `k_N_mm below 9000 N/mm`."""
+    """From which size on the effect would have been seen, e.g. `k_N_mm below 9000 N/mm`.
+
+    Of a list all components: `|LLR| above 370, 910, – N`.
+    """
     if not math.isfinite(standing.detectable) or not standing.hypothesis.sizes:
         return "–"
-    parts = [_limit(s, standing.detectable) for s in merged_sizes(standing.hypothesis)]
+    known = list(zip(standing.hypothesis.sizes, standing.limits, strict=True))
+    parts = [
+        _limit(s, [a for other, a in known if other.key == s.key]) for s in merged_sizes(standing.hypothesis)
+    ]
     return "; ".join(p for p in parts if p)
+
+
+def said_limit(size: Size, amplitude: float) -> float | None:
+    """The option's number at an amplitude from which it is excluded; None beyond any believed size."""
+    return size.value(amplitude) if amplitude <= LARGEST else None
 
 
 def merged_sizes(hypothesis: Hypothesis) -> list[Size]:
@@ -114,16 +127,24 @@ def merged_sizes(hypothesis: Hypothesis) -> list[Size]:
     return list({s.key: s for s in reversed(hypothesis.sizes)}.values())[::-1]
 
 
-def _limit(size: Size, amplitude: float) -> str:
-    value = f"{number(size.value(amplitude))}{unit_words(size.unit)}"
+def _limit(size: Size, amplitudes: Sequence[float]) -> str:
+    """Of one option; amplitudes: of each of its components."""
+    said = [a if said_limit(size, a) is not None else math.nan for a in amplitudes]
     if size.growth == "shape":
         return ""
+    if all(map(math.isnan, said)):
+        return f"{size.key} not shown"
+    value = f"{', '.join(_number_at(size, a) for a in said)}{unit_words(size.unit)}"
     if size.growth == "compliance":
         return f"{size.key} below {value}"
     if size.growth == "factor":
-        low, high = number(size.value(-amplitude), 4), number(size.value(amplitude), 4)
-        return f"{size.key} below {low} or above {high}"
+        low = ", ".join(_number_at(size, -a, 4) for a in said)
+        return f"{size.key} below {low} or above {', '.join(_number_at(size, a, 4) for a in said)}"
     return f"{'|' + size.key + '|' if size.signed else size.key} above {value}"
+
+
+def _number_at(size: Size, amplitude: float, digits: int = 3) -> str:
+    return number(size.value(amplitude), digits) if math.isfinite(amplitude) else "–"
 
 
 def typical_words(hypothesis: Hypothesis) -> str:

@@ -11,7 +11,13 @@ from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.standing import Standing
 from doe_kc.effects.hypothesis import Size
 from doe_kc.reporting.discovery_sizes import size_words
-from doe_kc.reporting.discovery_words import HEADLINES, contrast_words, effect_label, hypothesis_label
+from doe_kc.reporting.discovery_words import (
+    HEADLINES,
+    contrast_words,
+    effect_label,
+    hypothesis_label,
+    said_limit,
+)
 
 HIDDEN = ("not testable", "no solution")
 
@@ -21,10 +27,10 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
 
     effects: those that the verdict names, or the most probable of a class; leads: in their place where the
     verdict is unexplained; traces: seen, too small to matter. parameters: value, sd, unit of each option,
-    lists for a list option. excluded: places whose size would have been found from `above` on (stiffnesses:
-    below it). beyond_bounds: paths of parameters that the records ask to be outside the study's bounds.
-    points_to: interface and law of the generic scan, where the verdict is unexplained. not_testable: ids of
-    which no place is testable. gap: whitened RMS of all records.
+    lists for a list option. excluded: places whose sizes would have been found from `above` on (stiffnesses:
+    below it), null for a size that the records do not show. beyond_bounds: paths of parameters that the
+    records ask to be outside the study's bounds. points_to: interface and law of the generic scan, where the
+    verdict is unexplained. not_testable: ids of which no place is testable. gap: whitened RMS of all records.
     """
     findings = [effect_entry(f) for f in found.findings]
     open_ = found.verdict == "unexplained"
@@ -91,16 +97,17 @@ def _place(found: Discovery) -> dict[str, Any] | None:
 
 def _excluded(standing: Standing) -> dict[str, Any]:
     h = standing.hypothesis
-    sizes = [s for s in h.sizes if s.growth != "shape"]
-    above = {s.key: {"value": _limit(s, h.sizes, standing.detectable), "unit": s.unit} for s in sizes}
+    above = {s.key: {"value": _limit(s, standing), "unit": s.unit} for s in h.sizes if s.growth != "shape"}
     return {"id": h.effect, "location": h.location, "above": above}
 
 
-def _limit(size: Size, sizes: Iterable[Size], amplitude: float) -> float | list[float]:
-    """The option's number at the detectable amplitude; of a list all components."""
+def _limit(size: Size, standing: Standing) -> float | list[float | None] | None:
+    """The option's number from which it is excluded, None where it is not; of a list all components."""
+    sizes = standing.hypothesis.sizes
+    limits = {s.name: said_limit(s, a) for s, a in zip(sizes, standing.limits, strict=True)}
     if size.index is None:
-        return size.value(amplitude)
-    return [s.value(amplitude) for s in sizes if s.key == size.key]
+        return limits[size.name]
+    return [limits[s.name] for s in sizes if s.key == size.key]
 
 
 def not_testable(standings: Iterable[Standing]) -> list[str]:

@@ -68,6 +68,29 @@ def test_luck_names_wrongly_and_is_sure() -> None:
     assert calibration_error([b for s in found for b in s.believed]) > 0.6
 
 
+@pytest.mark.parametrize(
+    ("ident", "place", "true", "above", "wrong"),
+    [
+        ("steering_friction", "", {"force_N": 250.0}, {"force_N": 200.0}, True),
+        ("steering_friction", "", {"force_N": 250.0}, {"force_N": 300.0}, False),
+        ("strut_bending", "", {"k_Nm_deg": 6500.0}, {"k_Nm_deg": 9000.0}, True),
+        ("strut_bending", "", {"k_Nm_deg": 6500.0}, {"k_Nm_deg": None}, False),
+        ("bushing_preload", "LLR", {"LLR[0]": 9.0, "LLR[2]": -1177.0}, {"LLR": [370.0, 370.0, 370.0]}, True),
+        ("bushing_preload", "LLR", {"LLR[0]": 9.0, "LLR[2]": -1177.0}, {"LLR": [370.0, 370.0, None]}, False),
+        ("bushing_preload", "LLF", {"LLF[0]": 900.0}, {"LLR": [370.0, 370.0, 370.0]}, False),
+        ("steering_ratio", "", {"factor": 0.9}, {"factor": 1.05}, True),
+    ],
+)
+def test_an_exclusion_of_what_is_there_is_counted(
+    ident: str, place: str, true: dict[str, float], above: dict[str, Any], wrong: bool
+) -> None:
+    truth = Truth("x", "single", (TrueEffect(ident, 1.0, place, true, False),), {}, "", frozenset())
+    said = {"id": ident, "location": "LLR" if ident == "bushing_preload" else None}
+    said["above"] = {key: {"value": value, "unit": ""} for key, value in above.items()}
+    found = score(truth, read_answer({"verdict": "none", "excluded": [said]}))
+    assert found.excluded == (int(wrong), 1)
+
+
 def test_a_class_is_no_name() -> None:
     effects = [{"id": "strut_bending", "location": None, "probability": 0.6, "parameters": {}}]
     classes = [["strut_bending", "hub_compliance"]]

@@ -48,6 +48,27 @@ def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned:
     assert 0.0 <= weak.absorbed <= 1.0
 
 
+def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) -> None:
+    (hub,) = library("hub_compliance")
+    project = projection(tuned)
+    found = screen(tuned, project, hub)
+    columns = project(found.columns)
+    for own, other in ((0, 1), (1, 0)):
+        share = columns[:, own] @ columns[:, other] / (columns[:, other] @ columns[:, other])
+        rest = columns[:, own] - share * columns[:, other]
+        assert found.visible[own] == pytest.approx(np.linalg.norm(rest), rel=1e-4)
+    assert (rescreened(tuned, project, found).visible == found.visible).all()
+    assert found.visible.min() < found.detectability
+
+
+def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
+    (friction,) = library("strut_friction")
+    found = screen(tuned, projection(tuned), friction)
+    amounts = [s.growth != "shape" for s in friction.sizes]
+    assert found.visible[amounts] == pytest.approx(found.detectability)
+    assert np.isnan(found.visible[~np.array(amounts)]).all()
+
+
 @pytest.mark.parametrize(("strength", "correlation"), [(2.0, 0.5), (4.0, 0.9), (6.0, 0.95)])
 def test_wrong_name_chance_against_monte_carlo(strength: float, correlation: float) -> None:
     rng = np.random.default_rng(2)

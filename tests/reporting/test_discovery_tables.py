@@ -166,9 +166,21 @@ def test_changes_keep_their_curves_between_likelihoods() -> None:
     ],
 )
 def test_limits_say_which_way(size: Size, words: str) -> None:
-    standing = Standing(Hypothesis("hub_compliance", None, (size,)), "excluded", 0.5, 0.0, (), ())
+    known = Hypothesis("hub_compliance", None, (size,))
+    standing = Standing(known, "excluded", 0.5, 0.0, (), (), (0.5,))
     assert limit_words(standing) == words
     assert limit_words(replace(standing, detectable=np.inf)) == "–"
+
+
+def test_a_component_that_the_records_do_not_show_has_no_limit() -> None:
+    sizes = tuple(Size("LLR", 600.0, "N", index=i, signed=True) for i in range(3))
+    preload = Hypothesis("bushing_preload", "LLR", sizes)
+    standing = Standing(preload, "excluded", 0.5, 0.0, (), (), (0.5, 1.5, 40.0))
+    assert limit_words(standing) == "|LLR| above 300, 900, – N"
+    hub = Hypothesis("hub_compliance", None, tuple(Size(k, 6000.0, "Nm/deg", "compliance") for k in "ab"))
+    assert limit_words(Standing(hub, "excluded", 0.5, 0.0, (), (), (0.5, 4.0))) == (
+        "a below 12000 Nm/deg; b not shown"
+    )
 
 
 def test_places_read_well() -> None:
