@@ -51,7 +51,8 @@ def study(plan: Plan, cache: Path) -> dict[str, list[Trace]]:
 def _run(name: str, seed: int, budget: int, cache: Path) -> Trace:
     run = (method_of(name), seed, budget)
     first = max(OPENING, problem_of(name).space.dimension // 3)
-    return cached_trace(cache, f"car_a-{name}", lambda: problem_of(name), *run, first=first)
+    more = {"first": first, "gradients": False}  # as the thesis's solver, which knew no slopes
+    return cached_trace(cache, f"car_a-{name}", lambda: problem_of(name), *run, **more)
 
 
 def run_table(runs: Mapping[str, list[Trace]]) -> pd.DataFrame:

@@ -19,14 +19,18 @@ from correlation_runs import Trace, arguments, cached, cached_trace, measured, p
 from recovery import Fit, far_off, fitted
 from synthetic_cars import record, scattered
 
+from doe_kc.correlation.options import Gradients
 from doe_kc.reporting.style import save_png
 
 CARS = ("car_b", "car_e")
+SLOPES: Mapping[str, Gradients] = {"exact": "auto", "learnt": False}
+"""How `ego` knows slopes: as shipped, and as with an outside solver."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is run: seeds of `ego` and its budget on each car; synthetic cars of each scatter."""
+    """How much is run: seeds of `ego`, with each kind of slopes, and its budget on each car; synthetic cars
+    of each scatter."""
 
     cars: tuple[str, ...] = CARS
     seeds: int = 10
@@ -40,13 +44,13 @@ QUICK = Plan(cars=("car_b",), seeds=1, budget=28, synthetic=2, times=(1.0,))
 
 @dataclass(frozen=True)
 class Found:
-    """ego: car -> runs. fits: car -> Gauss-Newton fit.
+    """ego: (car, kind of slopes) -> runs. fits: car -> Gauss-Newton fit.
 
     synthetic: multiple of the production scatter -> fits of the cars made with it.
     """
 
     plan: Plan
-    ego: Mapping[str, list[Trace]]
+    ego: Mapping[tuple[str, str], list[Trace]]
     fits: Mapping[str, Fit]
     synthetic: Mapping[float, list[Fit]]
 
@@ -65,15 +69,18 @@ def study(plan: Plan, cache: Path) -> Found:
     """Everything run, or read from the cache."""
     return Found(
         plan,
-        {car: _ego(car, plan, cache) for car in plan.cars},
+        {(car, slopes): _ego(car, slopes, plan, cache) for car in plan.cars for slopes in SLOPES},
         {car: _fit(car, cache) for car in plan.cars},
         {t: [_synthetic(s, t, cache) for s in range(1, plan.synthetic + 1)] for t in plan.times},
     )
 
 
-def _ego(car: str, plan: Plan, cache: Path) -> list[Trace]:
+def _ego(car: str, slopes: str, plan: Plan, cache: Path) -> list[Trace]:
     make = lru_cache(maxsize=1)(lambda: problem_of(measured(car)))
-    return [cached_trace(cache, car, make, "ego", s, plan.budget) for s in range(1, plan.seeds + 1)]
+    return [
+        cached_trace(cache, f"{car}-{slopes}", make, "ego", s, plan.budget, gradients=SLOPES[slopes])
+        for s in range(1, plan.seeds + 1)
+    ]
 
 
 def _fit(car: str, cache: Path) -> Fit:
@@ -125,6 +132,7 @@ def run_table(found: Found) -> pd.DataFrame:
     rows = [
         {
             "car": car,
+            "slopes": slopes,
             "seed": t.seed,
             "evaluations": t.evaluations,
             "feasible": t.feasible,
@@ -133,7 +141,7 @@ def run_table(found: Found) -> pd.DataFrame:
             "rating": t.rating,
             "seconds": t.seconds,
         }
-        for car, runs in found.ego.items()
+        for (car, slopes), runs in found.ego.items()
         for t in runs
     ]
     return pd.DataFrame(rows)

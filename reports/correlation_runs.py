@@ -26,6 +26,7 @@ from doe_kc.comparison.interval import FLOOR
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.loop import Run, run_method
 from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Problem
 from doe_kc.measurement import Measurement, reduce_measurement
 from doe_kc.targets import Targets, build_targets, improvements, mean_improvement
@@ -96,20 +97,28 @@ def problem_of(measurement: Measurement, options: VariableOptions | None = None)
     )
 
 
-def solve_run(problem: Problem, method: str, seed: int, budget: int, first: int | None = None) -> Run:
+def solve_run(
+    problem: Problem,
+    method: str,
+    seed: int,
+    budget: int,
+    *,
+    first: int | None = None,
+    gradients: Gradients = "auto",
+) -> Run:
     """One run of a method, every design solved in this process. first: designs of the opening sample.
 
-    Without the solver's exact sensitivities, so that what is found holds for outside solvers too.
+    gradients: False as for an outside solver, which gives no exact sensitivities.
     """
     solver = AxleSolver(problem.axle, problem.windows).prepare([])
-    made = METHODS[method](problem, Settings(seed=seed, budget=budget, first=first, gradients=False))
+    made = METHODS[method](problem, Settings(seed=seed, budget=budget, first=first, gradients=gradients))
     return run_method(problem, made, lambda designs: [solver.evaluate(d) for d in designs], budget=budget)
 
 
-def traced(problem: Problem, method: str, seed: int, budget: int, first: int | None = None) -> Trace:
-    """One run in figures."""
+def traced(problem: Problem, method: str, seed: int, budget: int, **more: Any) -> Trace:
+    """One run in figures; more: as in `solve_run`."""
     started = time.process_time()
-    run = solve_run(problem, method, seed, budget, first)
+    run = solve_run(problem, method, seed, budget, **more)
     return trace_of(problem, run, method, seed, time.process_time() - started)
 
 
@@ -159,12 +168,10 @@ def cached(folder: Path, name: str, make: Callable[[], dict[str, Any]]) -> dict[
     return document
 
 
-def cached_trace(
-    folder: Path, name: str, problem: Callable[[], Problem], *run: Any, first: int | None = None
-) -> Trace:
-    """`traced(problem(), *run, first)` through the cache; run: method, seed, budget."""
+def cached_trace(folder: Path, name: str, problem: Callable[[], Problem], *run: Any, **more: Any) -> Trace:
+    """`traced(problem(), *run, **more)` through the cache under the name; run: method, seed, budget."""
     label = "-".join(map(str, (name, *run)))
-    return Trace(**cached(folder, label, lambda: asdict(traced(problem(), *run, first))))
+    return Trace(**cached(folder, label, lambda: asdict(traced(problem(), *run, **more))))
 
 
 def truth(car: str) -> dict[str, float]:

@@ -18,9 +18,8 @@ to fulfil without making trade-offs" (section 6.2): a model is tweaked and corre
 nominal axle of `examples/front_axle` is disturbed in all {d} variables by drawn changes of known size
 (production scatter: hardpoints 1 mm, bushings 20 %, rates 3 %, angles 0.1 deg, ride height and stop
 clearances 1 mm; and {large} times as much). Its noise-free curves are the targets, and the search starts
-from nominal with the default bounds, `ego` with `gradients = false`.
-Made by `python reports/recorrelation.py`, which also asserts the
-figures.
+from nominal with the default bounds and settings. Made by `python reports/recorrelation.py`, which also
+asserts the figures.
 
 {runs}
 

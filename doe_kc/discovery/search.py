@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
@@ -82,19 +83,21 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
             break
         current, lost = pruned(step.trials[0].fit, threshold(len(library)), bench)
         losses |= {step.trials[0].hypothesis.name: step.trials[0].gain, **lost}
-        current, shares = opened(to_records(with_conditioning(current, bench), model.likelihood))
+        current, shares = opened(to_records(with_conditioning(current, model.axle, bench), model.likelihood))
     return Search(tuned, tuple(steps), current, to_records(current, model.likelihood), losses, shares)
 
 
-def with_conditioning(current: Fit, bench: Bench) -> Fit:
+def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
     """The fit with one loop before the record or with none, as the records with friction ask for.
 
     A rig runs until loops close; a simulated record may begin right after the first rise. Nothing in the
-    files tells. Effects are looked for beside the better of the two.
+    files tells. Effects are looked for beside the better of the two. own: the axle as given, whose load cases
+    stand where no friction is left, and loops change nothing.
     """
     model = current.model
     if not model.with_effects(current.z).topology.frictional:
-        return current
+        given = replace(model.axle, load_cases=own.load_cases)
+        return replace(current, model=replace(model, axle=given))
     other = replace(model, axle=model.axle.conditioned(0 if model.axle.conditioning else 1))
     (found,) = bench.fitted([(other, current.z)], "loops before the record", current.jacobian)
     if found is None or found.evidence < current.evidence + ASKED:

@@ -67,5 +67,14 @@ def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -
     model = replace(found.model, axle=found.model.axle.conditioned(own))
     asked = Asked()
     current = replace(found, model=model)
-    assert with_conditioning(current, asked) is current
+    assert with_conditioning(current, model.axle, asked) is current
     assert asked.loops == [other]
+
+
+def test_without_friction_the_loops_are_those_of_the_file() -> None:
+    found = discovery("named").search.final
+    assert not found.model.with_effects(found.z).topology.frictional
+    looped = replace(found, model=replace(found.model, axle=found.model.axle.conditioned(1)))
+    again = with_conditioning(looped, found.model.axle, Asked())
+    assert again.model.axle.conditioning == 0
+    np.testing.assert_allclose(again.model.residual(again.z), looped.residual, atol=1e-9)
