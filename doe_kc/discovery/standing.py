@@ -21,7 +21,9 @@ POWER = 0.84
 """Standard deviations above the critical value at which an effect is found in 80 % of cars."""
 ALIKE = 0.8
 """|correlation| after re-tuning from which two effects are listed as alike."""
-INVISIBLE = 1e-9
+UNSURE = 0.005
+"""Share of a change's square below which what re-tuning leaves of it is not believed: it is linear to first
+order only, and parameters that follow so far bend."""
 HIDING = 3
 """Parameters listed that hide an effect."""
 
@@ -31,7 +33,7 @@ class Standing:
     """One hypothesis.
 
     limits: (m,) of each of its sizes the smallest amplitude, as a multiple of the typical one, that would be
-    found in 80 % of cars whatever the others are; inf when re-tuning absorbs all of it, nan for a shape.
+    found in 80 % of cars whatever the others are; inf when re-tuning absorbs nearly all, nan for a shape.
     detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
     parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
     remaining change is the same, with the correlation.
@@ -66,9 +68,10 @@ def standings(
     moves = _moves(found, np.array([s.change for s in everything]).T)
     out = []
     for i, s in enumerate(everything):
-        limits = np.array([_limit(v, critical) for v in s.visible])
+        limits = np.array([_limit(v, w, critical) for v, w in zip(s.visible, _whole(s), strict=True)])
         amounts = limits[~np.isnan(limits)]
-        detectable = float(amounts.min()) if amounts.size else _limit(s.detectability, critical)
+        whole = float(np.linalg.norm(s.change))
+        detectable = float(amounts.min()) if amounts.size else _limit(s.detectability, whole, critical)
         status: Status = known.get(i) or _status(s, detectable)
         alike = tuple(
             (everything[j].hypothesis.name, float(correlation[i, j]))
@@ -81,9 +84,18 @@ def standings(
     return tuple(out)
 
 
-def _limit(visible: float, critical: float) -> float:
-    """Amplitude at which a size that makes `visible` standard deviations when typical would be found."""
-    return (critical + POWER) / visible if not visible <= INVISIBLE else float("inf")
+def _whole(screened: Screened) -> FloatArray:
+    """(m,) what each size makes at its typical value before re-tuning, standard deviations."""
+    sizes = screened.hypothesis.sizes
+    if sum(s.growth != "shape" for s in sizes) == 1:
+        return np.full(len(sizes), np.linalg.norm(screened.change))
+    return np.asarray(np.linalg.norm(screened.columns, axis=0))
+
+
+def _limit(visible: float, whole: float, critical: float) -> float:
+    """Amplitude from which a size that makes `visible` standard deviations when typical would be found."""
+    hidden = visible**2 <= UNSURE * whole**2
+    return float("inf") if hidden else (critical + POWER) / visible
 
 
 def _status(screened: Screened, detectable: float) -> Status:

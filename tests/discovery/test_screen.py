@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import norm
@@ -9,7 +11,7 @@ from scipy.stats import norm
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.screen import rescreened, screen
-from doe_kc.discovery.standing import wrong_name_chance
+from doe_kc.discovery.standing import standings, wrong_name_chance
 from tests.discovery.cases import library, model
 
 
@@ -67,6 +69,16 @@ def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
     amounts = [s.growth != "shape" for s in friction.sizes]
     assert found.visible[amounts] == pytest.approx(found.detectability)
     assert np.isnan(found.visible[~np.array(amounts)]).all()
+
+
+def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
+    (arm,) = library("strut_friction")
+    project = projection(tuned)
+    clear = screen(tuned, project, arm)
+    hidden = replace(clear, visible=0.05 * np.linalg.norm(clear.change) * np.ones(len(arm.sizes)))
+    shown, unsure = standings(tuned, project, [clear, hidden], [], 4.0)
+    assert shown.status == "excluded" and shown.limits[0] == pytest.approx(4.84 / clear.detectability)
+    assert unsure.status == "not testable" and not np.isfinite(unsure.detectable)
 
 
 @pytest.mark.parametrize(("strength", "correlation"), [(2.0, 0.5), (4.0, 0.9), (6.0, 0.95)])
