@@ -13,6 +13,7 @@ import pytest
 
 from doe_kc.axle import read_axle
 from doe_kc.discovery.result import Estimate, Finding
+from doe_kc.discovery.standing import Standing
 from doe_kc.effects import EFFECTS
 from doe_kc.errors import RunError
 from doe_kc.solver.curve_set import curve_set
@@ -26,7 +27,7 @@ CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 KEYS = [
     "verdict", "effects", "leads", "traces", "classes", "excluded", "not_testable", "unexplained_at", "gap",
     "held_out", "points_to",
-    "next_test", "axle",
+    "beyond_bounds", "next_test", "axle",
 ]  # fmt: skip
 
 
@@ -123,6 +124,15 @@ def test_an_index_alone_keeps_its_place() -> None:
     finding: Finding = discovery("lead").findings[0]
     one = replace(finding, estimates=(Estimate("LLR", 1, 600.0, 20.0, "N"),))
     assert effect_entry(one)["parameters"]["LLR"] == {"value": [0.0, 600.0], "sd": [0.0, 20.0], "unit": "N"}
+
+
+def test_what_is_excluded_has_a_limit_for_each_size() -> None:
+    found = discovery("none")
+    (preload,) = (h for h in EFFECTS["bushing_preload"].hypotheses() if h.location == "LLR")
+    standing = Standing(preload, "excluded", 0.5, 0.0, (), (), (0.5, float("inf"), 4.0))
+    (entry,) = discovery_document(replace(found, standings=(standing,)), None)["excluded"]
+    first = preload.sizes[0].value(0.5)
+    assert entry["above"] == {"LLR": {"value": [first, None, None], "unit": "N"}}
 
 
 def test_numbers_that_are_not_finite_are_none() -> None:
