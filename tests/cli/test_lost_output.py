@@ -15,7 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from doe_kc import output
 from doe_kc.errors import RunError
-from doe_kc.reporting import workbook
+from doe_kc.reporting import workbook_file
 from tests.cli.runner import (
     AXLE,
     Outcome,
@@ -86,7 +86,7 @@ def test_full_disk_during_influence(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         outcome = fails(1, "close the file in other programs", "influence", study)
     assert str(book) in outcome.err
     assert book.read_bytes() == b"the old workbook" and not leftovers(tmp_path)
-    assert workbook.write_whole is output.write_whole
+    assert workbook_file.write_whole is output.write_whole
 
 
 def test_full_disk_while_drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
