@@ -25,6 +25,8 @@ FACTORS = (1.5, 2.0)
 """By how much wider ranges are tried."""
 HELD = 0.05
 """Share of the parameters that must be at a bound before wider ones are tried."""
+AT = 1e-9
+"""Of a range: rounding of a value at its bound."""
 ASKED = 7.0
 """ln evidence, a thousand to one, for which all bounds are widened."""
 
@@ -85,4 +87,5 @@ def _stretch(found: Fit, wider: EffectModel, z: FloatArray) -> FloatArray:
 def beyond(space: Space, found: Fit) -> tuple[str, ...]:
     """Paths of the parameters that the fit puts outside the bounds of `space`."""
     values = found.model.space.values(found.z[: found.model.parameters])
-    return tuple(v.path for v in space.variables if not v.lower <= values[v.path] <= v.upper)
+    places = {v.path: v.place(values[v.path]) for v in space.variables}
+    return tuple(path for path, u in places.items() if not -AT <= u <= 1.0 + AT)

@@ -60,3 +60,13 @@ def test_a_wider_model_says_the_same_at_the_same_point() -> None:
     again = fit(wider, z)
     assert again.misfit == pytest.approx(found.misfit, rel=0.05)
     assert beyond(space(), again) == ()
+
+
+def test_a_parameter_at_its_bound_is_not_beyond_it() -> None:
+    found = discovery("none").search.tuned
+    count = found.model.parameters
+    for bound in (0.0, 1.0):
+        z = np.concatenate([np.full(count, bound), found.z[count:]])
+        assert beyond(space(), replace(found, z=z)) == ()
+        further = z + np.where(np.arange(z.size) < count, (bound - 0.5) * 0.02, 0.0)
+        assert beyond(space(), replace(found, z=further)) == space().paths
