@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
@@ -62,11 +63,11 @@ def asked(final: Fit, bench: Bench) -> float:
     return best
 
 
-def at_bounds(found: Fit) -> FloatArray:
-    """(d,) whether each tunable parameter is held at a bound, 0 or 1."""
+def at_bounds(found: Fit) -> NDArray[np.bool_]:
+    """(d,) whether each tunable parameter is held at a bound."""
     model = found.model
     u, low, high = (a[: model.parameters] for a in (found.z, model.lower, model.upper))
-    return np.asarray((u <= low) | (u >= high), dtype=float)
+    return np.asarray((u <= low) | (u >= high))
 
 
 def widened(found: Fit, factor: float) -> tuple[EffectModel, FloatArray]:

@@ -72,10 +72,10 @@ def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
 
 
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
-    (arm,) = library("strut_friction")
+    (friction,) = library("strut_friction")
     project = projection(tuned)
-    clear = screen(tuned, project, arm)
-    hidden = replace(clear, visible=0.05 * np.linalg.norm(clear.change) * np.ones(len(arm.sizes)))
+    clear = screen(tuned, project, friction)
+    hidden = replace(clear, visible=0.05 * np.linalg.norm(clear.change) * np.ones(len(friction.sizes)))
     shown, unsure = standings(tuned, project, [clear, hidden], [], 4.0)
     assert shown.status == "excluded" and shown.limits[0] == pytest.approx(4.84 / clear.detectability)
     assert unsure.status == "not testable" and not np.isfinite(unsure.detectable)
