@@ -10,10 +10,11 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr
 
+from doe_kc.discovery.belief import LARGEST
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
-from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.typing import FloatArray
 
 Status = Literal["found", "trace", "excluded", "not testable", "no solution"]
@@ -82,6 +83,11 @@ def standings(
         stands = Standing(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
         out.append(stands)
     return tuple(out)
+
+
+def said_limit(size: Size, amplitude: float) -> float | None:
+    """The option's number at an amplitude from which it is excluded; None beyond any believed size."""
+    return size.value(amplitude) if amplitude <= LARGEST else None
 
 
 def _whole(screened: Screened) -> FloatArray:

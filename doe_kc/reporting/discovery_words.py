@@ -6,10 +6,9 @@ import math
 from collections.abc import Sequence
 
 from doe_kc.curves import RESPONSE_UNITS
-from doe_kc.discovery.belief import LARGEST
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.result import Discovery, VerdictKind
-from doe_kc.discovery.standing import Standing, Status
+from doe_kc.discovery.standing import Standing, Status, said_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.reporting.correlation_characteristics import case_label
@@ -115,11 +114,6 @@ def limit_words(standing: Standing) -> str:
         _limit(s, [a for other, a in known if other.key == s.key]) for s in merged_sizes(standing.hypothesis)
     ]
     return "; ".join(p for p in parts if p)
-
-
-def said_limit(size: Size, amplitude: float) -> float | None:
-    """The option's number at an amplitude from which it is excluded; None beyond any believed size."""
-    return size.value(amplitude) if amplitude <= LARGEST else None
 
 
 def merged_sizes(hypothesis: Hypothesis) -> list[Size]:
