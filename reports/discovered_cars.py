@@ -19,6 +19,7 @@ from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import reduce_measurement
+from doe_kc.rounding import with_sd
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space, effect_library
 
@@ -107,7 +108,7 @@ def _row(car: str, found: Discovery) -> tuple[str, ...]:
     inside = "unknown" if car == CUSTOMER else "; ".join(_words(i, o) for i, o in _key(car).items()) or "none"
     said = "; ".join(
         f"{f.hypothesis.name}: "
-        + ", ".join(f"{e.key} {number(e.value)} ± {number(e.sd, 2)} {e.unit}" for e in f.estimates)
+        + ", ".join(f"{e.key} {with_sd(e.value, e.sd)} {e.unit}" for e in f.estimates)
         + f" (probability {f.probability:.2f})"
         for f in found.findings
     )

@@ -11,6 +11,7 @@ from doe_kc.discovery.scan import Scan
 from doe_kc.discovery.standing import Standing
 from doe_kc.discovery.verdict import Verdict
 from doe_kc.effects import EFFECTS
+from doe_kc.rounding import with_sd
 
 ADVISED = 6
 """Tests that are listed at most."""
@@ -82,8 +83,7 @@ def _label(finding: Finding) -> str:
 
 def _one(finding: Finding) -> str:
     sizes = ", ".join(
-        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = "
-        f"{_rounded(e.value, 4)} ± {_rounded(e.sd, 2)} {e.unit}"
+        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {with_sd(e.value, e.sd)} {e.unit}"
         for e in finding.estimates
     )
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
@@ -92,11 +92,6 @@ def _one(finding: Finding) -> str:
     text += f"; {sizes}" if sizes else ""
     text += f"; at {' or '.join(finding.elsewhere)} it would do as well" if finding.elsewhere else ""
     return text + (f"; else {rivals}." if rivals else ".")
-
-
-def _rounded(value: float, digits: int) -> str:
-    """Significant digits, without an exponent up to millions."""
-    return f"{float(f'{value:.{digits}g}'):.7g}"
 
 
 def next_tests(

@@ -11,14 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import Comparison, same_input
-from doe_kc.curves import (
-    RESPONSE_LABELS,
-    RESPONSE_UNITS,
-    RIG_RESPONSES,
-    TYRE_LOAD,
-    CaseCurves,
-)
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
 from doe_kc.reporting import style
+from doe_kc.reporting.names import RESPONSE_NAMES, input_label, response_axis, response_name
 from doe_kc.reporting.series import draw_series
 from doe_kc.solver.load_cases import LOAD_CASES
 
@@ -38,11 +33,10 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
     panels = list(axes.flat)
     for ax, response in zip(panels, RIG_RESPONSES, strict=False):
         _draw(ax, model, measured, response)
-        change = "" if response == TYRE_LOAD else "Δ "
-        style.label(ax, None, f"{change}{_short(response)} [{RESPONSE_UNITS[response]}]")
+        style.label(ax, None, response_axis(response))
         ax.set_title(RESPONSE_LABELS[response], fontsize=9)
         ax.xaxis.set_major_locator(MaxNLocator(5))
-        ax.set_xlabel(f"{case.input_label} [{case.unit}]")
+        ax.set_xlabel(input_label(load_case, measured.input_unit))
     _table(panels[7], comparison, load_case)
     _legend(panels[8])
     fig.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
@@ -66,10 +60,6 @@ def write_comparison_figures(
         ],
         workers,
     )
-
-
-def _short(response: str) -> str:
-    return {"spin": "caster (knuckle)", "tyre_load": "tyre load"}.get(response, response.replace("_", " "))
 
 
 def _draw(ax: Axes, model: CaseCurves, measured: CaseCurves, response: str) -> None:
@@ -96,15 +86,17 @@ def _legend(ax: Axes) -> None:
 def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:
     """Characteristics of the load case, and the RMS of its curves on the left wheel."""
     ax.axis("off")
-    lines = [f"{'Left wheel':<34}{'model':>10}{'target':>10}"]
-    for row in comparison.characteristics:
-        if row.entry.load_case == load_case and row.entry.kind == "gradient":
-            name = f"{row.entry.label} [{row.entry.unit}]"
-            mark = "" if row.inside else " *"
-            lines.append(f"{name:<34}{row.value:>10.4g}{row.target:>10.4g}{mark}")
-    lines += ["", f"{'RMS of curve':<34}{'':>10}"]
+    rows = [r for r in comparison.characteristics if r.entry.load_case == load_case]
+    gradients = {f"{r.entry.label} [{r.entry.unit}]": r for r in rows if r.entry.kind == "gradient"}
+    wide = max(map(len, (*gradients, *RESPONSE_NAMES.values()))) + 1
+    lines = [f"{'Left wheel':<{wide}}{'model':>10}{'target':>10}"]
+    for name, row in gradients.items():
+        mark = "" if row.inside else " *"
+        lines.append(f"{name:<{wide}}{row.value:>10.4g}{row.target:>10.4g}{mark}")
+    lines += ["", "RMS of curve"]
     for curve in comparison.curves:
         if curve.load_case == load_case and curve.side == "L":
-            lines.append(f"{_short(curve.response):<34}{curve.rms:>10.3g} {RESPONSE_UNITS[curve.response]}")
+            unit = RESPONSE_UNITS[curve.response]
+            lines.append(f"{response_name(curve.response):<{wide}}{curve.rms:>10.3g} {unit}")
     lines.append("* outside the constraint interval")
     ax.text(0, 1, "\n".join(lines), family="monospace", fontsize=6, va="top", transform=ax.transAxes)

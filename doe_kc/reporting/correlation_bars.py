@@ -12,8 +12,8 @@ from matplotlib.patches import Patch, Rectangle
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_dna import short
 from doe_kc.reporting.correlation_parameters import ParameterRow, parameter_rows
+from doe_kc.rounding import with_sd
 
 SINGLE = 30
 """Variables that stand in one column; more are split over two."""
@@ -24,9 +24,8 @@ SEEN, UNSEEN, BOUND = style.PALETTE["blue"], "#B9BEC3", style.PALETTE["vermillio
 def parameter_figure(found: Correlation, study: str) -> Figure:
     """Bar from baseline to final between lower and upper bound, whisker ± sd of the posterior."""
     rows = [r for r in parameter_rows(found) if r.role == "variable"]
-    lines = _lines(rows)
-    columns = 1 if len(lines) <= SINGLE else 2
-    deep = -(-len(lines) // columns)
+    parts = _columns(_lines(rows))
+    columns, deep = len(parts), max(map(len, parts))
     height = ROW * deep + 1.6
     margins = {
         "left": 0.105 if columns == 2 else 0.2,
@@ -35,8 +34,8 @@ def parameter_figure(found: Correlation, study: str) -> Figure:
     }
     margins |= {"top": 1 - 0.72 / height, "bottom": 0.85 / height}
     fig, axes = style.figure(1, columns, size=(8.27, height), margins=margins)
-    for k, ax in enumerate(axes[0]):
-        _column(ax, lines[k * deep : (k + 1) * deep], deep)
+    for ax, part in zip(axes[0], parts, strict=True):
+        _column(ax, part, deep)
     _legend(fig, found.posterior is not None)
     fig.suptitle(f"Parameter changes: {study}", fontsize=11, y=1 - 0.15 / height, va="top", parse_math=False)
     return fig
@@ -47,6 +46,18 @@ def _lines(rows: list[ParameterRow]) -> list[ParameterRow | str]:
     for group, members in groupby(rows, key=lambda r: r.group):
         out += [group, *members]
     return out
+
+
+def _columns(lines: list[ParameterRow | str]) -> list[list[ParameterRow | str]]:
+    """One column or two; a group that goes on in the second one is named there again."""
+    if len(lines) <= SINGLE:
+        return [lines]
+    deep = -(-len(lines) // 2)
+    first, second = lines[:deep], lines[deep:]
+    if isinstance(first[-1], str):
+        return [first[:-1], [first[-1], *second]]
+    top = second[0]
+    return [first, second if isinstance(top, str) else [top.group, *second]]
 
 
 def _column(ax: Axes, lines: list[ParameterRow | str], deep: int) -> None:
@@ -89,14 +100,6 @@ def _texts(ax: Axes, y: float, row: ParameterRow, colour: str) -> None:
     ax.text(-0.04, y, row.path, fontsize=6.2, va="center", ha="right", color=colour)
     unit = "" if row.unit == "-" else f" {row.unit}"
     ax.text(1.05, y, f"{with_sd(row.final, row.sd)}{unit}", fontsize=6.2, va="center", color=colour)
-
-
-def with_sd(value: float, sd: float) -> str:
-    """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
-    if not np.isfinite(sd) or sd <= 0:
-        return short(value)
-    digits = int(np.clip(1 - np.floor(np.log10(sd)), 0, 6))
-    return f"{value:.{digits}f} ± {sd:.{digits}f}"
 
 
 def _legend(fig: Figure, known: bool) -> None:

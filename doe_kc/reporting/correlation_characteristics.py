@@ -9,7 +9,8 @@ import pandas as pd
 
 from doe_kc.comparison.interval import FLOOR, constraint_interval
 from doe_kc.correlation.result import Correlation
-from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
+from doe_kc.reporting.names import case_label
+from doe_kc.solver.load_cases import CASE_ORDER
 from doe_kc.targets import Improvement
 
 
@@ -89,11 +90,6 @@ class CharacteristicRow:
         """
         target = self.entry.target.value
         return 1.0 + math.copysign(1.0, target) * (value - target) / math.sqrt(target**2 + FLOOR)
-
-
-def case_label(load_case: str) -> str:
-    """Name of a load case; Static for what needs none."""
-    return LOAD_CASES[load_case].label if load_case in LOAD_CASES else load_case.capitalize()
 
 
 def characteristic_rows(found: Correlation) -> list[CharacteristicRow]:

@@ -15,12 +15,11 @@ from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import same_input
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, TYRE_LOAD, CaseCurves
+from doe_kc.curves import RESPONSE_LABELS, CaseCurves
 from doe_kc.measurement import Measurement
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.reporting.names import case_label, input_label, response_axis
+from doe_kc.solver.load_cases import CASE_ORDER
 from doe_kc.typing import FloatArray
 
 PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
@@ -48,9 +47,7 @@ class CaseView:
     @property
     def input_label(self) -> str:
         """Name and unit of the input."""
-        cases = [LOAD_CASES[self.load_case], *(TECHNIQUES.values() if self.load_case == "roll" else ())]
-        label = next((c.input_label for c in cases if c.unit == self.any.input_unit), "Input")
-        return f"{label} [{self.any.input_unit}]"
+        return input_label(self.load_case, self.any.input_unit)
 
 
 def case_views(found: Correlation, measurement: Measurement | None) -> list[CaseView]:
@@ -83,8 +80,7 @@ def curve_figure(view: CaseView, study: str) -> Figure:
     fig, axes = style.figure(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=MARGINS)
     for ax, response in zip(axes.flat, PANELS, strict=True):
         _panel(ax, view, response)
-        change = "" if response == TYRE_LOAD else "Δ "
-        style.label(ax, None, f"{change}{response_name(response)} [{RESPONSE_UNITS[response]}]")
+        style.label(ax, None, response_axis(response))
         ax.set_title(RESPONSE_LABELS[response], fontsize=9)
         ax.xaxis.set_major_locator(MaxNLocator(6))
     for ax in axes[-1]:
@@ -93,12 +89,6 @@ def curve_figure(view: CaseView, study: str) -> Figure:
     fig.legend(handles=handles, loc="lower center", ncols=4, fontsize=7.5, frameon=False)
     fig.suptitle(f"{case_label(view.load_case)}: {study}", fontsize=11, y=0.965, parse_math=False)
     return fig
-
-
-def response_name(response: str) -> str:
-    """Short name of a response for an axis."""
-    words = {"spin": "caster (knuckle)", "wc_x": "wheel centre x", "wc_y": "wheel centre y"}
-    return {**words, "wc_z": "wheel centre z", "tyre_load": "tyre load"}.get(response, response)
 
 
 def _panel(ax: Axes, view: CaseView, response: str) -> None:

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting import style
 from doe_kc.reporting.correlation_characteristics import CharacteristicRow, characteristic_rows
+from doe_kc.rounding import short
 
 REACH = 0.6
 """Normalised distance from the target at which a value is cut off and drawn as an arrow."""
@@ -130,14 +131,6 @@ def note(row: CharacteristicRow) -> str:
     if row.constraint and not row.inside:
         return "outside"
     return "" if row.entry.counts else "baseline within 3 sd"
-
-
-def short(value: float) -> str:
-    """Four significant digits without an exponent for ordinary sizes."""
-    if not np.isfinite(value):
-        return "–"
-    digits = max(0, min(5, 3 - int(np.floor(np.log10(abs(value)))))) if value else 0
-    return f"{value:.{digits}f}"
 
 
 def _legend(fig: Figure) -> None:

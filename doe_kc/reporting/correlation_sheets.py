@@ -2,63 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from openpyxl.formatting.rule import DataBarRule, FormulaRule
 from openpyxl.styles import PatternFill
-from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
-from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS
-from doe_kc.reporting.correlation_characteristics import case_label, characteristic_rows
+from doe_kc.reporting.correlation_characteristics import characteristic_rows
 from doe_kc.reporting.correlation_evaluations import evaluation_frame
 from doe_kc.reporting.correlation_parameters import parameter_rows
 from doe_kc.reporting.correlation_terms import curve_rows
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
     FLAGGED,
-    HEADER,
     MUTED,
     NEGATIVE,
     POSITIVE,
-    frame,
     page,
     put,
     title,
     widths,
 )
+from doe_kc.reporting.workbook_table import FIRST, Value, table
 
-FIRST = 5
 COLUMNS_PER_PAGE = 24
-Value = str | float | int | None
 INSIDE = PatternFill("solid", bgColor="D6E9F8")
 OUTSIDE = PatternFill("solid", bgColor="FBDDB3")
-
-
-def grid(
-    ws: Worksheet,
-    heads: Sequence[str],
-    rows: Sequence[Sequence[Value]],
-    *,
-    formats: Sequence[str] = (),
-    start: int = FIRST - 1,
-) -> int:
-    """Heads and rows with a filter; formats: number format by column. Returns the last row."""
-    for c, text in enumerate(heads, start=1):
-        put(ws, start, c, text, bold=True, fill=HEADER, wrap=True, vertical="bottom")
-    for r, values in enumerate(rows, start=start + 1):
-        for c, value in enumerate(values, start=1):
-            number = formats[c - 1] if c <= len(formats) and not isinstance(value, str) else None
-            side = "left" if isinstance(value, str) else None
-            put(ws, r, c, value, number=number or None, horizontal=side, indent=int(side is not None))
-    last = start + len(rows)
-    frame(ws, range(start, last + 1), range(1, len(heads) + 1))
-    ws.auto_filter.ref = f"A{start}:{get_column_letter(len(heads))}{max(last, start)}"
-    ws.row_dimensions[start].height = 30
-    return last
 
 
 def characteristics_sheet(book: Workbook, found: Correlation, study: str) -> None:
@@ -80,7 +51,7 @@ def characteristics_sheet(book: Workbook, found: Correlation, study: str) -> Non
         for r in characteristic_rows(found)
     ]  # fmt: skip
     formats = ["", "", "", "", *["0.0000"] * 6, "", "", "0.0", "", "0.0", "0.0", "0.000", "0.000"]
-    last = grid(ws, heads, rows, formats=formats)
+    last = table(ws, heads, rows, formats=formats)
     final, improvement = f"H{FIRST}:H{last}", f"M{FIRST}:M{last}"
     inside = f"AND($H{FIRST}>=$I{FIRST},$H{FIRST}<=$J{FIRST})"
     ws.conditional_formatting.add(final, FormulaRule([inside], fill=INSIDE))
@@ -112,16 +83,15 @@ def parameters_sheet(book: Workbook, found: Correlation, study: str) -> None:
         )
         for r in rows
     ]  # fmt: skip
-    grid(ws, heads, values, formats=["", "", "", "", "", *["0.0000"] * 6])
+    grey = [r.visible is False or r.role != "variable" for r in rows]
+    table(ws, heads, values, formats=["", "", "", "", "", *["0.0000"] * 6], muted=grey)
     for r, row in enumerate(rows, start=FIRST):
         for c in range(1, len(heads) + 1):
             if row.at_bound:
                 ws.cell(r, c).fill = FLAGGED
-            if row.visible is False or row.role != "variable":
-                put(ws, r, c, ws.cell(r, c).value, color=MUTED, number=ws.cell(r, c).number_format)
     ws.freeze_panes = ws.cell(FIRST, 4)
-    widths(ws, [14, 46, 24, 8, 10, *[12.0] * 6, 10, 44])
-    page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    widths(ws, [14, 46, 24, 8, 10, *[12.0] * 6, 10, 32])
+    page(ws, study, paper=A3, single=True)
 
 
 def curves_sheet(book: Workbook, found: Correlation, study: str) -> None:
@@ -140,7 +110,7 @@ def curves_sheet(book: Workbook, found: Correlation, study: str) -> None:
         )
         for r in curve_rows(found)
     ]  # fmt: skip
-    last = grid(ws, heads, rows, formats=["", "", "", "", *["0.00000"] * 3, "0.00", "0.0000", "0.00"])
+    last = table(ws, heads, rows, formats=["", "", "", "", *["0.00000"] * 3, "0.00", "0.0000", "0.00"])
     if rows:
         bar = DataBarRule("num", 0, "max", None, color=POSITIVE, showValue=True)
         ws.conditional_formatting.add(f"J{FIRST}:J{last}", bar)
@@ -159,11 +129,13 @@ def evaluations_sheet(book: Workbook, found: Correlation, study: str) -> None:
     heads = [_head(c, names[c].unit if c in names else "") for c in frame_.columns]
     rows: list[list[Value]] = [[_cell(v) for v in row] for row in frame_.itertuples(index=False)]
     formats = ["0", "", "0.0000", "0.0000", "", "", "", "0.0000", "0.0000", "0.00", *["0.0000"] * len(names)]
-    grid(ws, heads, rows, formats=formats)
+    table(ws, heads, rows, formats=formats)
     for c in range(1, len(heads) + 1):
         ws.cell(FIRST + found.run.best, c).fill = FLAGGED
     ws.freeze_panes = ws.cell(FIRST, 4)
-    widths(ws, [11, 18, 13, 13, 9, 9, 34, 13, 12, 9, *[11.0] * len(names)])
+    # a head breaks at its blank only
+    named = [max(11.0, 1.3 * len(head.split(",")[0])) for head in heads[len(heads) - len(names) :]]
+    widths(ws, [11, 23, 13, 13, 9, 9, 34, 13, 12, 9, *named])
     page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
     ws.page_setup.fitToWidth = -(-len(heads) // COLUMNS_PER_PAGE)
     ws.print_title_cols = "A:C"

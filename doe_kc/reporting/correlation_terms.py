@@ -12,7 +12,7 @@ import pandas as pd
 from doe_kc.characteristics import Characteristic
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
-from doe_kc.reporting.correlation_characteristics import case_label
+from doe_kc.reporting.names import case_label
 from doe_kc.targets import Constraint, Objective, Rating, Score
 from doe_kc.targets.options import Goal
 

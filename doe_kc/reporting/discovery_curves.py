@@ -15,10 +15,10 @@ from matplotlib.ticker import MaxNLocator
 from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
 from doe_kc.discovery.result import Discovery
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import BAND, response_name
+from doe_kc.reporting.correlation_curves import BAND
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_views import ModelView, model_views, view_gaps
+from doe_kc.reporting.names import case_label, response_name
 from doe_kc.typing import FloatArray
 
 SHOWN = 6

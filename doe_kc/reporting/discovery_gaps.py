@@ -13,9 +13,8 @@ from matplotlib.lines import Line2D
 
 from doe_kc.discovery.result import Discovery, Gap
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import response_name
 from doe_kc.reporting.discovery_words import MODELS
+from doe_kc.reporting.names import case_label, response_name
 
 COLOURS = {
     "nominal": "#555555",

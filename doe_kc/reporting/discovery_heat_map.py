@@ -12,9 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import response_name
 from doe_kc.reporting.discovery_grid import GridCell, MapGrid
+from doe_kc.reporting.names import case_label, response_name
 
 COLOURS = LinearSegmentedColormap.from_list("disagreement", ["#FFF3DC", "#F2A23C", "#D55E00", "#6B1F00"])
 """One hue from light to dark: told apart by the colour-blind and in grey."""

@@ -9,8 +9,8 @@ from matplotlib.lines import Line2D
 
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_characteristics import case_label
 from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.names import case_label
 
 ROW = 0.3
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500)

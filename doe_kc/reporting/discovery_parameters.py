@@ -12,10 +12,10 @@ from matplotlib.patches import Patch
 
 from doe_kc.discovery.gaps import RETURNS_FROM
 from doe_kc.reporting import style
-from doe_kc.reporting.correlation_dna import short
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_tables import TunedParameter
 from doe_kc.reporting.discovery_words import unit_words
+from doe_kc.rounding import short
 
 SHOWN = 40
 ROW = 0.17

@@ -15,11 +15,10 @@ from openpyxl.worksheet.worksheet import Worksheet
 from doe_kc.curves import RESPONSE_LABELS
 from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_sheets import FIRST, Value, grid
 from doe_kc.reporting.discovery_effects import effect_frame
 from doe_kc.reporting.discovery_gaps import gap_rows
 from doe_kc.reporting.discovery_tables import disagreement_rows, library_frame, parameter_frame
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
     MUTED,
@@ -31,9 +30,12 @@ from doe_kc.reporting.workbook_cells import (
     title,
     widths,
 )
+from doe_kc.reporting.workbook_table import FIRST, Value, table
 
 STRONG = 20.0
 """Standard deviations at which the colour of a disagreement is full."""
+PRINTED = 40
+"""Disagreements that are printed where fewer are beyond noise."""
 
 
 def disagreement_sheet(book: Workbook, found: Discovery, study: str) -> None:
@@ -41,7 +43,8 @@ def disagreement_sheet(book: Workbook, found: Discovery, study: str) -> None:
     ws = book.create_sheet("Disagreement")
     below = (
         f"Standard deviations; beyond ±{found.tuned.threshold:.1f} (nominal ±{found.raw.threshold:.1f}) "
-        "noise alone does not explain it. +: model above measured. Empty: absorbed by re-tuning."
+        "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
+        "Empty: absorbed by re-tuning."
     )
     title(ws, f"Disagreement: {study}", below)
     maps = {"nominal": found.raw, "re-tuned": found.tuned, "with effect": found.final}
@@ -52,15 +55,18 @@ def disagreement_sheet(book: Workbook, found: Discovery, study: str) -> None:
         )
         for r in sorted(disagreement_rows(found), key=lambda r: -np.nan_to_num(abs(r.z_tuned)))
     ]  # fmt: skip
+    rows.sort(key=lambda row: not row[-1])
+    beyond = sum(bool(row[-1]) for row in rows)
     heads = (
         "Load case", "Response", "Shape", "Wheels", "z nominal", "z re-tuned", "z with effect",
         "Beyond noise",
     )  # fmt: skip
-    last = grid(ws, heads, rows, formats=["", "", "", "", "0.0", "0.0", "0.0"])
+    last = table(ws, heads, rows, formats=["", "", "", "", "0.0", "0.0", "0.0"])
     _diverging(ws, f"E{FIRST}:G{last}", STRONG)
     ws.freeze_panes = ws.cell(FIRST, 5)
     widths(ws, [28, 32, 14, 18, 12, 12, 12, 30])
     page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    ws.print_area = f"A1:H{FIRST - 1 + max(beyond, min(len(rows), PRINTED))}"
 
 
 def _wheels(wheels: str) -> str:
@@ -85,7 +91,7 @@ def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
     formats = [
         "", "", "", "", "0.0%", "", "0.0000", "0.0000", "", "0.000", "0.00", "", "0.0", "0.0", "0.00%",
     ]  # fmt: skip
-    grid(ws, heads, _rows(frame), formats=formats)
+    table(ws, heads, _rows(frame), formats=formats)
     if frame.empty:
         put(ws, FIRST, 1, "No effect is asked for.", color=MUTED)
     wide = [24, 30, 16, 9, 11, 16, 13, 11, 9, 10, 10, 34, 12, 13, 12, 34, 44, 44, 34]
@@ -107,11 +113,11 @@ def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
         "Id", "Effect", "Place", "Status", "Detectable size", "Times typical", "Typical size", "Absorbed, %",
         "Hidden by", "Looks like", "Mistaken for", "What happens in the car", "Shown by",
     )  # fmt: skip
-    grid(ws, heads, _rows(frame), formats=["", "", "", "", "", "0.000", "", "0.0"])
+    table(ws, heads, _rows(frame), formats=["", "", "", "", "", "0.000", "", "0.0"])
     wide = [24, 30, 20, 13, 34, 10, 30, 11, 34, 40, 40, 50, 44]
     wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
     ws.freeze_panes = ws.cell(FIRST, 4)
-    page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    page(ws, study, paper=A3, single=True)
 
 
 def gap_sheet(book: Workbook, found: Discovery, study: str) -> None:
@@ -126,12 +132,12 @@ def gap_sheet(book: Workbook, found: Discovery, study: str) -> None:
         for r in gap_rows(found)
     ]  # fmt: skip
     heads = ("Load case", "Response", "Nominal", "Re-tuned", "With effect", "Best decoy", "Noise floor")
-    last = grid(ws, heads, rows, formats=["", "", *["0.00"] * 5])
+    last = table(ws, heads, rows, formats=["", "", *["0.00"] * 5])
     scale = ColorScaleRule("num", 1, NEUTRAL, "num", 3, "FCE0BC", "num", 10, POSITIVE)
     ws.conditional_formatting.add(f"C{FIRST}:F{last}", scale)
     ws.freeze_panes = ws.cell(FIRST, 3)
     widths(ws, [28, 34, *[13.0] * 5])
-    page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    page(ws, study, single=True)
 
 
 def held_out_sheet(book: Workbook, found: Discovery, study: str) -> None:
@@ -141,7 +147,7 @@ def held_out_sheet(book: Workbook, found: Discovery, study: str) -> None:
     title(ws, f"Load cases held out: {study}", below)
     rows = [(case_label(h.load_case), h.tuned.rms, h.with_effect.rms, h.gain) for h in found.held_out]
     heads = ("Load case", "RMS re-tuned", "RMS with effect", "Gain, ln density")
-    grid(ws, heads, rows, formats=["", "0.00", "0.00", "0.0"])
+    table(ws, heads, rows, formats=["", "0.00", "0.00", "0.0"])
     if not rows:
         put(ws, FIRST, 1, "No effect was found, so there is nothing to predict better.", color=MUTED)
     widths(ws, [30, 15, 15, 17])
@@ -161,10 +167,10 @@ def parameters_sheet(book: Workbook, found: Discovery, study: str) -> None:
         "Path", "Parameter", "Group", "Unit", "Nominal", "Re-tuned", "With effect", "sd",
         "Distance re-tuned, sd", "Distance with effect, sd", "Bounds",
     )  # fmt: skip
-    last = grid(ws, heads, _rows(frame), formats=["", "", "", "", *["0.0000"] * 4, "0.00", "0.00", ""])
+    last = table(ws, heads, _rows(frame), formats=["", "", "", "", *["0.0000"] * 4, "0.00", "0.00", ""])
     _diverging(ws, f"I{FIRST}:J{last}", 2.0)
     ws.freeze_panes = ws.cell(FIRST, 2)
-    widths(ws, [18, 44, 15, 8, *[12.0] * 4, 14, 14, 10])
+    widths(ws, [24, 44, 15, 8, *[12.0] * 4, 14, 14, 10])
     page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -10,8 +9,8 @@ import numpy as np
 
 from doe_kc.discovery.result import Discovery, Estimate, Finding
 from doe_kc.effects.hypothesis import Size
-from doe_kc.reporting.correlation_bars import with_sd
 from doe_kc.reporting.discovery_words import number, unit_words
+from doe_kc.rounding import with_sd
 
 SEEN = 2.0
 """Standard deviations above zero from which a size that cannot be negative is told from none."""
@@ -34,7 +33,7 @@ class FoundSize:
         """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
         unit = unit_words(self.size.unit)
         if self.seen:
-            return f"{value_sd(self.estimate.value, self.estimate.sd)}{unit}"
+            return f"{with_sd(self.estimate.value, self.estimate.sd)}{unit}"
         limit = f"{number(self.limit)}{unit}"
         if self.size.growth == "compliance":
             return f"not told from rigid (above {limit}, 95 %)"
@@ -62,13 +61,6 @@ def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
             size.value(amplitude + ONE_SIDED * float(sd[i])),
             not one_sided or amplitude >= SEEN * float(sd[i]),
         )
-
-
-def value_sd(value: float, sd: float) -> str:
-    """`value ± sd`, both to the second significant digit of sd, without an exponent for ordinary sizes."""
-    if math.isfinite(sd) and sd > 0.0 and abs(value) < 1e6:
-        return with_sd(value, sd)
-    return number(value, 4)
 
 
 def size_words(found: Discovery, finding: Finding) -> str:

@@ -11,8 +11,7 @@ from doe_kc.discovery.result import Discovery, VerdictKind
 from doe_kc.discovery.standing import Standing, Status, said_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import response_name
+from doe_kc.reporting.names import case_label, response_name
 from doe_kc.solver.load_cases import LOAD_CASES
 
 HEADLINES: dict[VerdictKind, str] = {

@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.influence.result import Influence
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.series import draw_series
 from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.reporting.workbook_cells import NEGATIVE, NEUTRAL, POSITIVE
-from doe_kc.reporting.workbook_matrix import Layout, case_label, layout
+from doe_kc.reporting.workbook_matrix import Layout, layout
 from doe_kc.typing import FloatArray
 
 ANNOTATE = 5.0

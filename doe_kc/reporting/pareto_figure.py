@@ -11,8 +11,8 @@ from scipy.stats import rankdata
 
 from doe_kc.correlation.pareto.front import VIOLATION, Front
 from doe_kc.errors import InputError
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.style import PALETTE, figure, label, save
-from doe_kc.reporting.workbook_matrix import case_label
 from doe_kc.typing import FloatArray
 
 SIZE = (11.69, 5.4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import partial
 from pathlib import Path
 
@@ -11,8 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, SIDES
+from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.measurement import Gradient, Measurement
+from doe_kc.reporting.names import input_label, response_axis
 from doe_kc.reporting.series import draw_series
 from doe_kc.reporting.style import A4, PALETTE, figure, label
 from doe_kc.typing import FloatArray
@@ -43,10 +45,10 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
             _gradient(row[side], gradients[response, name])
         _residual(row[2], measurement, load_case, response)
         _same_scale(row[0], row[1])
-        label(row[0], None, f"{_short(response)} / {RESPONSE_UNITS[response]}")
-        label(row[2], None, f"residual / {RESPONSE_UNITS[response]}")
+        label(row[0], None, response_axis(response))
+        label(row[2], None, f"residual [{RESPONSE_UNITS[response]}]")
     for ax in axes[-1]:
-        label(ax, f"{run.record.case.channel} / {case.input_unit}", None)
+        label(ax, _without_remark(input_label(load_case, case.input_unit)), None)
     for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
         ax.set_title(title, fontsize=9)
     fig.suptitle(f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11, parse_math=False)
@@ -68,9 +70,9 @@ def write_rig_figures(measurement: Measurement, folder: Path, *, workers: int | 
     )
 
 
-def _short(response: str) -> str:
+def _without_remark(axis: str) -> str:
     """Label without its remark on signs, which does not fit a small panel."""
-    return RESPONSE_LABELS[response].split(" (")[0].replace("Wheel centre", "WC").replace(" angle", "")
+    return re.sub(r" \([^)]*\)", "", axis)
 
 
 def _panel(ax: Axes, measurement: Measurement, load_case: str, response: str, side: int) -> None:

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.series import draw_series
 from doe_kc.reporting.style import CYCLE, PALETTE, figure, label
 from doe_kc.reporting.surrogate_tables import left_out_predictions, left_out_sd
-from doe_kc.reporting.workbook_matrix import case_label
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
 from doe_kc.surrogates.validation import NOMINAL, WIDTH

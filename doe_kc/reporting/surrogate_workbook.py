@@ -6,18 +6,20 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from openpyxl.styles import Alignment
 from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.influence.result import percent_of_column
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.surrogate_tables import judged_document
-from doe_kc.reporting.workbook_cells import A3, colour_scale, page, put, title, widths
+from doe_kc.reporting.workbook_cells import A3, colour_scale, page, put, three_digits, title, widths
 from doe_kc.reporting.workbook_file import new_book, write_book
-from doe_kc.reporting.workbook_matrix import case_label
-from doe_kc.reporting.workbook_tables import Value, table
+from doe_kc.reporting.workbook_table import FIRST, Value, table
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.surrogates.selection import EXACT, MARGIN
 from doe_kc.typing import FloatArray
 
 LEGEND = (
@@ -25,7 +27,8 @@ LEGEND = (
     ("RMSE", "Root mean square left-out error, in the characteristic's unit."),
     ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration."),
     ("Sharpness", "Half width of the 95 % interval over the characteristic's standard deviation."),
-    ("Chosen", "The simplest model whose left-out squared error is within 10 % of the best one's."),
+    ("Chosen", f"The simplest model whose left-out squared error is within {MARGIN:.0%} of the best one's, "
+     f"or whose 1 - Q2 is at most {EXACT:g}."),
     ("Left out", "Models with many hyper-parameters are refitted to each fold; linear and radial ones leave "
      "one design out in closed form; the quadratic one chooses its terms anew in each fold."),
     ("Influence", "Gradient of the chosen model at the unchanged axle times the parameter's step, percent of "
@@ -69,9 +72,11 @@ def _quality(book: Workbook, report: SurrogateReport, study: str) -> None:
         own: list[Value] = [case_label(entry.load_case), entry.label, entry.unit, SURROGATES[name].label]
         own += [float(d[k]) for k in ("q2", "rmse", "coverage", "calibrated_coverage", "sharpness")]
         rows.append([*own, *(float(documents[m][entry.id]["q2"]) for m in models)])
-    row = table(ws, 4, [*heads, *(f"Q2 {m}" for m in models)], rows, number="0.0000")
-    ws.auto_filter.ref = f"A4:{get_column_letter(len(heads) + len(models))}{row - 1}"
-    widths(ws, [24, 34, 9, 22, *[11.0] * (5 + len(models))])
+    table(ws, [*heads, *(f"Q2 {m}" for m in models)], rows, formats="0.0000")
+    rmse = heads.index("RMSE") + 1
+    for r, values in enumerate(rows, start=FIRST):
+        ws.cell(r, rmse).number_format = three_digits(float(values[rmse - 1] or 0.0))
+    widths(ws, [24, 34, 9, 22, *[12.0] * (5 + len(models))])
     ws.freeze_panes = "C5"
     page(ws, study, paper=A3, single=True)
 
@@ -88,13 +93,15 @@ def _matrix(
     for i, variable in enumerate(report.space.variables):
         step = f"{variable.parameter.step:g} {variable.unit}".removesuffix(" -")
         rows.append([variable.path, step, *(_finite(v) for v in values[i])])
-    row = table(ws, 4, heads, rows, number="0")
-    colour_scale(ws, f"C5:{get_column_letter(2 + len(entries))}{row - 1}")
+    last = table(ws, heads, rows, formats="0", filtered=False)
+    for c in range(3, len(heads) + 1):
+        ws.cell(FIRST - 1, c).alignment = Alignment(textRotation=90, horizontal="center", vertical="bottom")
+    ws.row_dimensions[FIRST - 1].height = 5.2 * max(map(len, heads))
+    colour_scale(ws, f"C{FIRST}:{get_column_letter(2 + len(entries))}{last}")
     if agreement:
-        _agreement(ws, row + 1, report)
-    ws.row_dimensions[4].height = 90
+        _agreement(ws, last + 2, report)
     ws.freeze_panes = "C5"
-    widths(ws, [22, 12, *[11.0] * len(entries)])
+    widths(ws, [36, 12, *[7.0] * len(entries)])
     page(ws, study, paper=A3, single=True)
 
 
@@ -120,7 +127,7 @@ def _legend(book: Workbook, report: SurrogateReport, study: str, date: str) -> N
     )
     skipped = [(f"{name} left out", reason) for name, reason in report.fitted.skipped.items()]
     rows: list[Sequence[Value]] = [*LEGEND, ("Designs", counts), *skipped]
-    table(ws, 4, ("Term", "Meaning"), rows)
+    table(ws, ("Term", "Meaning"), rows, filtered=False)
     widths(ws, [18, 130])
     page(ws, study)
 

@@ -9,8 +9,8 @@ from openpyxl.workbook import Workbook
 from doe_kc import __version__
 from doe_kc.influence.identifiability import COLLINEAR, NO_INFLUENCE
 from doe_kc.influence.result import NONLINEAR_PERCENT, Influence
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import frame, page, put, title, widths
-from doe_kc.reporting.workbook_matrix import case_label
 from doe_kc.solver.load_cases import LOAD_CASES
 
 MATRIX = {

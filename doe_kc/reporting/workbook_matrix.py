@@ -14,6 +14,7 @@ from scipy.stats import rankdata
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.influence.result import Influence
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
     FLAGGED,
@@ -24,6 +25,7 @@ from doe_kc.reporting.workbook_cells import (
     page,
     put,
     remark,
+    three_digits,
     title,
     widths,
 )
@@ -72,11 +74,6 @@ class Layout:
 def section(entry: Characteristic) -> str:
     """KINEMATICS or COMPLIANCES, as Appendix C splits the load cases."""
     return "KINEMATICS" if entry.load_case in KINEMATICS else "COMPLIANCES"
-
-
-def case_label(load_case: str) -> str:
-    """Name of a load case as it heads its columns."""
-    return LOAD_CASES[load_case].label if load_case in LOAD_CASES else load_case.capitalize()
 
 
 def layout(influence: Influence) -> Layout:
@@ -297,6 +294,4 @@ def _values(
 
 def _formats(values: FloatArray) -> list[str]:
     """Number formats that show three digits of each column's largest entry."""
-    peaks = np.nan_to_num(np.abs(values)).max(axis=0)
-    digits = [min(7, max(0, 2 - math.floor(math.log10(p)))) if p > 0 else 0 for p in peaks]
-    return ["0." + "0" * d if d else "0" for d in digits]
+    return [three_digits(float(p)) for p in np.nan_to_num(np.abs(values)).max(axis=0)]

@@ -4,25 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
-from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.influence.relations import Link, Relations
 from doe_kc.influence.selection_result import Selection, Variable
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
     FLAGGED,
-    HEADER,
-    frame,
     page,
     put,
     title,
     widths,
 )
-from doe_kc.reporting.workbook_matrix import case_label
+from doe_kc.reporting.workbook_table import FIRST, Value, table
 
-Value = str | float | int | None
 VARIABLE_HEADS = (
     "Order",
     "Path",
@@ -72,9 +68,8 @@ def relations_sheet(book: Workbook, relations: Relations, study: str) -> None:
         )
         for e in relations.by_characteristic
     ]
-    row = table(ws, 4, ("Load case", "Characteristic", "Unit", *numbers), rows)
-    ws.auto_filter.ref = f"A4:{get_column_letter(3 + relations.longest)}{row - 1}"
-    put(ws, row + 1, 1, "Characteristics that move together", bold=True)
+    last = table(ws, ("Load case", "Characteristic", "Unit", *numbers), rows)
+    put(ws, last + 2, 1, "Characteristics that move together", bold=True)
     groups: list[Sequence[Value]] = [
         (
             f"|r| of {g.weakest:.3f} and more",
@@ -84,8 +79,8 @@ def relations_sheet(book: Workbook, relations: Relations, study: str) -> None:
         )
         for g in relations.together
     ]
-    row = table(ws, row + 2, ("Correlation", "", "", *numbers), groups)
-    put(ws, row + 1, 1, "What each parameter moves most", bold=True)
+    last = table(ws, ("Correlation", "", "", *numbers), groups, start=last + 3, filtered=False)
+    put(ws, last + 2, 1, "What each parameter moves most", bold=True)
     moved: list[Sequence[Value]] = [
         (
             e.parameter.path,
@@ -96,7 +91,7 @@ def relations_sheet(book: Workbook, relations: Relations, study: str) -> None:
         for e in relations.by_parameter
         if e.links
     ]
-    table(ws, row + 2, ("Path", "Parameter", "Unit", *numbers), moved)
+    table(ws, ("Path", "Parameter", "Unit", *numbers), moved, start=last + 3, filtered=False)
     widths(ws, [25, 40, 9, *[40.0] * relations.longest])
     ws.freeze_panes = "D5"
     page(ws, study, paper=A3)
@@ -119,18 +114,17 @@ def selection_sheet(book: Workbook, selection: Selection | None, study: str) -> 
         page(ws, study)
         return
     title(ws, f"Selection of variables: {study}", _summary(selection))
-    row = table(ws, 4, VARIABLE_HEADS, [_variable(v) for v in selection.variables], number="0.000")
-    ws.auto_filter.ref = f"A4:O{row - 1}"
-    for k, variable in enumerate(selection.variables, start=5):
+    last = table(ws, VARIABLE_HEADS, [_variable(v) for v in selection.variables], formats="0.000")
+    for k, variable in enumerate(selection.variables, start=FIRST):
         if variable.at_bound:
             for c in range(1, len(VARIABLE_HEADS) + 1):
                 ws.cell(k, c).fill = FLAGGED
-    put(ws, row + 1, 2, "Forecast with these moves (linear)", bold=True)
+    put(ws, last + 2, 2, "Forecast with these moves (linear)", bold=True)
     outcomes: list[Sequence[Value]] = [
         ("", o.characteristic, o.unit, o.baseline, o.target, o.sd, o.expected, o.before, o.after)
         for o in selection.outcomes
     ]
-    table(ws, row + 2, OUTCOME_HEADS, outcomes, number="0.0000")
+    table(ws, OUTCOME_HEADS, outcomes, formats="0.0000", start=last + 3, filtered=False)
     widths(ws, [7, 32, 34, 13, 32, 13, 18, 16, 11, 11, 15, 15, 11, 11, 44])
     ws.freeze_panes = "C5"
     page(ws, study, paper=A3, single=True)
@@ -169,24 +163,3 @@ def _variable(v: Variable) -> Sequence[Value]:
         v.upper,
         note,
     )
-
-
-def table(
-    ws: Worksheet,
-    row: int,
-    heads: Sequence[str],
-    rows: Sequence[Sequence[Value]],
-    *,
-    number: str = "0.00",
-) -> int:
-    """Heads in `row`, rows below; returns the next free row."""
-    for c, text in enumerate(heads, start=1):
-        put(ws, row, c, text, bold=True, fill=HEADER, wrap=True)
-    for r, values in enumerate(rows, start=row + 1):
-        for c, value in enumerate(values, start=1):
-            if isinstance(value, str):
-                put(ws, r, c, value, horizontal="left", indent=1)
-            else:
-                put(ws, r, c, value, number=number if isinstance(value, float) else None)
-    frame(ws, range(row, row + len(rows) + 1), range(1, len(heads) + 1))
-    return row + len(rows) + 1

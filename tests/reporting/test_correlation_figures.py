@@ -9,11 +9,12 @@ import pytest
 from matplotlib.axes import Axes
 
 from doe_kc.errors import RunError
-from doe_kc.reporting.correlation_bars import parameter_figure, with_sd
+from doe_kc.reporting.correlation_bars import parameter_figure
 from doe_kc.reporting.correlation_convergence import convergence_figure
 from doe_kc.reporting.correlation_curves import case_views, curve_figure
-from doe_kc.reporting.correlation_dna import REACH, dna_figure, short
+from doe_kc.reporting.correlation_dna import REACH, dna_figure
 from doe_kc.reporting.correlation_figures import write_correlation_figures
+from doe_kc.rounding import short
 from tests.correlation.cases import measured
 from tests.reporting.correlations import CAR, all_three, odd, real, typed
 
@@ -82,18 +83,6 @@ def test_parameters_mark_bounds_and_unseen_ones() -> None:
     assert (marks.count("<"), marks.count(">")) == (1, 1)
     assert sum(bool(p.get_hatch()) for p in ax.patches) == 1
     assert len(parameter_figure(real(), "S").axes) == 2
-
-
-def test_numbers_read_well() -> None:
-    assert [short(v) for v in (0.0, -4.0, 0.012345, 123456.0, np.nan)] == [
-        "0",
-        "-4.000",
-        "0.01235",
-        "123456",
-        "–",
-    ]
-    assert with_sd(-395.1377, 0.6378) == "-395.14 ± 0.64"
-    assert with_sd(1.25, np.nan) == "1.250"
 
 
 def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:

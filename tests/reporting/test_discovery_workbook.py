@@ -43,10 +43,15 @@ def test_sheets_and_rows(car: str, tmp_path: Path) -> None:
     assert found.sentences[0] in str(text[0])
 
 
-def test_the_worst_disagreement_is_the_first(tmp_path: Path) -> None:
+def test_what_is_beyond_noise_comes_first_and_is_printed_the_worst_on_top(tmp_path: Path) -> None:
     ws = written(tmp_path, "named")["Disagreement"]
     sizes = [abs(float(v)) for v in column(ws, "z re-tuned") if isinstance(v, int | float)]
-    assert sizes == sorted(sizes, reverse=True)
+    marked = [bool(v) for v in column(ws, "Beyond noise")]
+    beyond = sum(marked)
+    assert 0 < beyond < len(sizes) and all(marked[:beyond])
+    for part in (sizes[:beyond], sizes[beyond:]):
+        assert part == sorted(part, reverse=True)
+    assert str(ws.print_area).endswith(f"$H${4 + beyond}")
     assert "re-tuned" in str(column(ws, "Beyond noise")[0])
 
 

@@ -11,10 +11,10 @@ from markupsafe import Markup
 
 from doe_kc.comparison.deviation import rms_deviation
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, TYRE_LOAD, CaseCurves
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
 from doe_kc.measurement import Measurement
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import BAND, CaseView, case_views, response_name
+from doe_kc.reporting.correlation_curves import BAND, CaseView, case_views
+from doe_kc.reporting.names import case_label, response_axis
 from doe_kc.reporting.page.section import Section, embedded, render
 
 
@@ -66,10 +66,9 @@ def curves_html(
 
 
 def _response(response: str) -> dict[str, str]:
-    change = "" if response == TYRE_LOAD else "Δ "
     return {
         "label": RESPONSE_LABELS[response],
-        "axis": f"{change}{response_name(response)} [{RESPONSE_UNITS[response]}]",
+        "axis": response_axis(response),
         "unit": RESPONSE_UNITS[response],
     }
 

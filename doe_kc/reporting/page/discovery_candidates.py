@@ -6,9 +6,9 @@ import math
 from typing import Any
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.correlation_characteristics import case_label
 from doe_kc.reporting.discovery_evidence import Candidate, EvidenceStep, evidence_steps
 from doe_kc.reporting.discovery_held_out import gain_words
+from doe_kc.reporting.names import case_label
 from doe_kc.reporting.page.section import Section, render
 
 LEAD = (

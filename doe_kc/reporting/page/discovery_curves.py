@@ -7,13 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, TYRE_LOAD
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import response_name
 from doe_kc.reporting.discovery_curves import worst_views
 from doe_kc.reporting.discovery_gaps import COLOURS, gap_rows
 from doe_kc.reporting.discovery_views import ModelView, model_names, model_views
+from doe_kc.reporting.names import case_label, response_axis, response_name
 from doe_kc.reporting.page.curves import ShownModel, curves_html
 from doe_kc.reporting.page.section import Section, render
 from doe_kc.typing import FloatArray
@@ -64,9 +63,7 @@ def _response(key: str) -> dict[str, str]:
     if loop:
         name = f"{response_name(response)}, half-width of the loop"
         return {"label": name[0].upper() + name[1:], "axis": f"{name} [{unit}]", "unit": unit}
-    change = "" if response == TYRE_LOAD else "Δ "
-    axis = f"{change}{response_name(response)} [{unit}]"
-    return {"label": RESPONSE_LABELS[response], "axis": axis, "unit": unit}
+    return {"label": RESPONSE_LABELS[response], "axis": response_axis(response), "unit": unit}
 
 
 def _case(case: str, views: list[ModelView], models: list[ShownModel]) -> dict[str, Any]:

@@ -7,11 +7,10 @@ from typing import Any
 from matplotlib.colors import LogNorm, to_hex
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.correlation_characteristics import case_label
-from doe_kc.reporting.correlation_curves import response_name
 from doe_kc.reporting.discovery_grid import GridCell, MapGrid, discovery_grids
 from doe_kc.reporting.discovery_heat_map import COLOURS, QUIET, beyond_words, shape_words, signed
 from doe_kc.reporting.discovery_words import contrast_words
+from doe_kc.reporting.names import case_label, response_name
 from doe_kc.reporting.page.section import Section, render
 
 LEAD = (

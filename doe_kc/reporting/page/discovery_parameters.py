@@ -6,11 +6,11 @@ import math
 from typing import Any
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.correlation_bars import with_sd
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_parameters import arrow_colour
 from doe_kc.reporting.discovery_tables import TunedParameter, tuned_parameters
 from doe_kc.reporting.page.section import Section, render
+from doe_kc.rounding import with_sd
 
 LEAD = (
     "Where an effect is missing, re-tuning bends parameters that have nothing to do with it. Circles: "

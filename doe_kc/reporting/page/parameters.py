@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.reporting.correlation_bars import with_sd
 from doe_kc.reporting.correlation_parameters import ParameterRow, parameter_rows
 from doe_kc.reporting.page.section import Section, render
+from doe_kc.rounding import with_sd
 
 LEAD = (
     "Bars run from the baseline (tick) to the final value (dot) between lower and upper bound; whiskers are "

@@ -1,0 +1,24 @@
+"""Numbers rounded for reading: no more digits than their uncertainty bears."""
+
+from __future__ import annotations
+
+import math
+
+MOST_DECIMALS = 6
+
+
+def short(value: float) -> str:
+    """Four significant digits without an exponent for ordinary sizes."""
+    if not math.isfinite(value):
+        return "–"
+    digits = max(0, min(5, 3 - math.floor(math.log10(abs(value))))) if value else 0
+    return f"{value:.{digits}f}"
+
+
+def with_sd(value: float, sd: float) -> str:
+    """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
+    if not math.isfinite(sd) or sd <= 0.0:
+        return short(value)
+    place = min(1 - math.floor(math.log10(sd)), MOST_DECIMALS)
+    digits = max(place, 0)
+    return f"{round(value, place):.{digits}f} ± {round(sd, place):.{digits}f}"
