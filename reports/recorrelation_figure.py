@@ -70,8 +70,8 @@ def _directions(ax: Axes, cases: Sequence[Case], share: float) -> None:
         label="linear theory of gauss_newton",
     )  # fmt: skip
     ax.axvline(SEEN, color=PALETTE["grey"], lw=0.9)
-    ax.annotate(" visible to the rig", (SEEN, 0.5), fontsize=7)
-    ax.annotate("not visible ", (SEEN, 0.5), fontsize=7, ha="right")
+    ax.annotate(" visible to the rig", (SEEN, 1.48), fontsize=7)
+    ax.annotate("not visible ", (SEEN, 1.48), fontsize=7, ha="right")
     ax.set_xscale("log")
     label(
         ax,

@@ -134,7 +134,7 @@ def evaluations_sheet(book: Workbook, found: Correlation, study: str) -> None:
         ws.cell(FIRST + found.run.best, c).fill = FLAGGED
     ws.freeze_panes = ws.cell(FIRST, 4)
     # a head breaks at its blank only
-    named = [max(11.0, 1.3 * len(head.split(",")[0])) for head in heads[len(heads) - len(names) :]]
+    named = [max(11.0, 1.1 * len(head.split(",")[0]) + 1.0) for head in heads[len(heads) - len(names) :]]
     widths(ws, [11, 23, 13, 13, 9, 9, 34, 13, 12, 9, *named])
     page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
     ws.page_setup.fitToWidth = -(-len(heads) // COLUMNS_PER_PAGE)

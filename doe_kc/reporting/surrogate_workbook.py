@@ -96,7 +96,7 @@ def _matrix(
     last = table(ws, heads, rows, formats="0", filtered=False)
     for c in range(3, len(heads) + 1):
         ws.cell(FIRST - 1, c).alignment = Alignment(textRotation=90, horizontal="center", vertical="bottom")
-    ws.row_dimensions[FIRST - 1].height = 5.2 * max(map(len, heads))
+    ws.row_dimensions[FIRST - 1].height = 6.0 * max(map(len, heads))
     colour_scale(ws, f"C{FIRST}:{get_column_letter(2 + len(entries))}{last}")
     if agreement:
         _agreement(ws, last + 2, report)

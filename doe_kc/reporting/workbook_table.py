@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from openpyxl.styles import Alignment
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
@@ -31,8 +32,13 @@ def table(
     """
     numeric = [any(len(r) > c and not isinstance(r[c], str) for r in rows) for c in range(len(heads))]
     for c, text in enumerate(heads, start=1):
-        side = "right" if numeric[c - 1] else "left"
-        put(ws, start, c, text, bold=True, fill=HEADER, wrap=True, vertical="bottom", horizontal=side)
+        head = put(ws, start, c, text, bold=True, fill=HEADER)
+        head.alignment = Alignment(
+            horizontal="right" if numeric[c - 1] else "left",
+            vertical="bottom",
+            wrap_text=True,
+            indent=int(not numeric[c - 1]),
+        )
     for r, values in enumerate(rows):
         color = MUTED if r < len(muted) and muted[r] else None
         for c, value in enumerate(values, start=1):
