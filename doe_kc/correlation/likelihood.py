@@ -135,8 +135,8 @@ def build_likelihood(
 ) -> Likelihood:
     """Data of the records, within the sweeps of the model, and the targets that were typed in.
 
-    The mean curves of the loops. only_targets: curves that are objectives only. A typed target replaces
-    the curve that its characteristic is read off.
+    The mean curves of the loops, but those that the study drops. only_targets: curves that are objectives
+    only. A typed target replaces the curve that its characteristic is read off.
     """
     measured = {} if measurement is None else measurement.characteristics
     typed = [
@@ -144,7 +144,7 @@ def build_likelihood(
         for t in targets.characteristics
         if t.entry.id not in measured or t.value != measured[t.entry.id].value
     ]
-    replaced = {(t.entry.load_case, t.entry.response) for t in typed}
+    replaced = {(t.entry.load_case, t.entry.response) for t in typed} | targets.dropped
     wanted = {(c.load_case, c.response) for c in targets.curves}
     curves = [
         c

@@ -20,8 +20,9 @@ class CorrelationOptions(Strict):
     batch: candidates confirmed side by side in one round. first: designs of the opening sample, by
     default the method's own. gradients: whether `ego` learns the exact sensitivities of its best designs:
     "auto" where the solver gives them, true insists on it, false learns values alone. data: curves that
-    `gauss_newton` fits: all that were measured, or those with an objective. set_first: parameters set from
-    the records before the correlation. sampled: let designs of an earlier `sample` campaign count as known.
+    `gauss_newton` fits: all that were measured, or those with an objective; never those switched off.
+    set_first: parameters set from the records before the correlation. sampled: let designs of an earlier
+    `sample` campaign count as known.
     """
 
     method: str = "ego"

@@ -16,10 +16,12 @@ from doe_kc.comparison.interval import FLOOR, constraint_interval
 from doe_kc.curves import RIG_RESPONSES, CaseCurves
 from doe_kc.errors import InputError
 from doe_kc.measurement import Measurement
+from doe_kc.solver.load_cases import LOAD_CASES
 from doe_kc.targets.names import check_names
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
 
+STATIC = "static"
 NOISE_FLOOR = 10.0
 """A curve's Norm is its range, at least this many noise RMS: a flat curve's noise is not divided by ~0."""
 
@@ -48,7 +50,32 @@ def build_targets(
             f"{source}: no characteristic has a target and an objective or constraint; give measurement = "
             '"FOLDER" or a [[characteristics]] with match and target.'
         )
-    return Targets(tuple(found), lines, measurement.manifest.name if measurement else source)
+    return Targets(
+        tuple(found),
+        lines,
+        measurement.manifest.name if measurement else source,
+        frozenset(_dropped(found, characteristics, curves)),
+    )
+
+
+def _dropped(
+    found: Sequence[Target], characteristics: Sequence[CharacteristicOptions], curves: Sequence[CurveOptions]
+) -> Iterator[tuple[str, str]]:
+    """Curves whose objective the study says is false, or whose characteristics are neither objective nor
+    constraint by its own words."""
+    active = {(t.entry.load_case, t.entry.response) for t in found if t.active}
+    off = {
+        (t.entry.load_case, t.entry.response)
+        for t in found
+        if not t.active
+        and (own := [o for o in characteristics if fnmatchcase(t.entry.id, o.match)])
+        and (last(own, "objective"), last(own, "constraint")) == (False, False)
+    }
+    for case in (STATIC, *LOAD_CASES):
+        for response in RIG_RESPONSES:
+            said = last([o for o in curves if fnmatchcase(f"{case}.{response}", o.match)], "objective")
+            if said is False or (said is None and (case, response) in off - active):
+                yield case, response
 
 
 def _targets(

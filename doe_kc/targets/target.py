@@ -83,11 +83,15 @@ class CurveTarget:
 
 @dataclass(frozen=True)
 class Targets:
-    """All targets. Characteristics that have a target but are not `active` are followed only."""
+    """All targets. Characteristics that have a target but are not `active` are followed only.
+
+    dropped: (load case, response) of the curves that the study takes out of the correlation.
+    """
 
     characteristics: tuple[Target, ...]
     curves: tuple[CurveTarget, ...]
     source: str
+    dropped: frozenset[tuple[str, str]] = frozenset()
 
     @cached_property
     def rows(self) -> np.ndarray:

@@ -20,6 +20,7 @@ from doe_kc.measurement import Measurement, reduce_measurement
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.targets import build_targets
+from doe_kc.targets.options import CharacteristicOptions
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import VariableOptions, build_space
 
@@ -35,10 +36,16 @@ def measured(car: str) -> Measurement:
     return reduce_measurement(RIG / car)
 
 
-def problem(car: str = "car_b", options: VariableOptions | None = None, axle: Axle | None = None) -> Problem:
+def problem(
+    car: str = "car_b",
+    options: VariableOptions | None = None,
+    axle: Axle | None = None,
+    *,
+    characteristics: Sequence[CharacteristicOptions] = (),
+) -> Problem:
     """All variables of the nominal axle against a car's records."""
     model = axle if axle is not None else read_axle(AXLE)
-    targets = build_targets(model, measured(car), [], [], source="test")
+    targets = build_targets(model, measured(car), characteristics, [], source="test")
     return Problem(
         axle=model,
         space=build_space(model, options or VariableOptions(), "test"),

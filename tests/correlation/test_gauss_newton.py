@@ -8,6 +8,8 @@ import pytest
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, Settings
 from doe_kc.correlation.posterior import posterior
+from doe_kc.correlation.problem import Evaluated, Problem
+from doe_kc.targets.options import CharacteristicOptions
 from tests.correlation.cases import problem, solver, truth
 
 
@@ -34,3 +36,24 @@ def test_fits_the_curves_to_noise_and_recovers_what_the_data_see(car: str) -> No
     ]
     assert len(seen) > 30
     assert np.mean(np.abs(distance) <= 2.0) >= 0.9
+
+
+def test_what_the_records_alone_would_violate_is_met_where_it_is_a_constraint() -> None:
+    free = problem("car_b")
+    fitted = _fitted(free).outcome.characteristics[free.targets.rows]
+    names = [t.entry.id for t in free.targets.characteristics]
+    at = names.index("vertical.bump_steer")
+    low, high = fitted[at] + 0.3, fitted[at] + 0.6
+    options = [CharacteristicOptions(match="vertical.bump_steer", low=low, high=high)]
+    case = problem("car_b", characteristics=options)
+    held = _fitted(case)
+    assert held.rating is not None and held.rating.feasible
+    value = held.outcome.characteristics[case.targets.rows][at]
+    assert low <= value <= low + 0.02 * (high - low), "it leans on the wall that the records pull it to"
+
+
+def _fitted(case: Problem) -> Evaluated:
+    method = METHODS["gauss_newton"](case, Settings(seed=1, budget=30))
+    run = run_method(case, method, solver(case.axle), budget=30)
+    assert method.stopped.startswith("converged")
+    return run.evaluated[run.best]

@@ -7,7 +7,7 @@ import pytest
 
 from doe_kc.correlation.likelihood import build_likelihood, corner_error
 from doe_kc.measurement.smoothing import local_weights
-from doe_kc.targets import CharacteristicOptions, build_targets
+from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
 
 
@@ -60,6 +60,29 @@ def test_typed_targets_alone_are_data() -> None:
     assert found.size == 1
     value = base.characteristics[targets.rows[0]]
     assert found.residual(None, base.characteristics) == pytest.approx([(value + 5.0) / 0.5])
+
+
+def test_what_the_study_switches_off_is_no_data() -> None:
+    case = problem("car_b")
+    data = {(c.load_case, c.response) for c in case.likelihood.curves}
+    off = [
+        CharacteristicOptions(match="lateral.camber_change", objective=False, constraint=False),
+        CharacteristicOptions(match="brake.*", objective=False),
+    ]
+    targets = build_targets(
+        case.axle, measured("car_b"), off, [CurveOptions(match="drive.toe", objective=False)], source="test"
+    )
+    kept = {(c.load_case, c.response) for c in build_likelihood(case.axle, measured("car_b"), targets).curves}
+    assert data - kept == {("lateral", "camber"), ("drive", "toe")}
+
+
+def test_a_static_angle_that_is_switched_off_is_no_datum() -> None:
+    case = problem("car_b")
+    off = [CharacteristicOptions(match="static.toe", objective=False, constraint=False)]
+    targets = build_targets(case.axle, measured("car_b"), off, [], source="test")
+    found = build_likelihood(case.axle, measured("car_b"), targets)
+    assert "toe" in {f.response for f in case.likelihood.figures}
+    assert "toe" not in {f.response for f in found.figures}
 
 
 def test_corners_are_granted_an_error() -> None:

@@ -2,7 +2,8 @@
 
 Minimizes |r(u)|^2 + |(u - u0) / P|^2 between the bounds, r the residuals in standard deviations of the
 data and P the prior standard deviations: the most probable axle (Gauss-Newton in a trust region; J. Nocedal,
-S. J. Wright, Numerical Optimization, 2006, chapter 10). Levels are ignored: its steps are continuous.
+S. J. Wright, Numerical Optimization, 2006, chapter 10) that meets the constraints, each of which adds a steep
+term outside its interval. Levels are ignored: its steps are continuous.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.methods._base import Method, Settings, register
 from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
+from doe_kc.correlation.walls import Walls
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
 
@@ -25,12 +27,17 @@ SMALLEST = 1e-4
 """Radius, share of the bounds, below which the search gives up."""
 POOR, GOOD = 0.25, 0.75
 """Actual over predicted decrease below which the region shrinks, above which it grows."""
+TURNS = 20
+"""Tries to find the walls that the step leans on."""
 
 
 @final
 @register
 class GaussNewton(Method):
-    """State: the incumbent with its residual and normal equations, and the trust region's radius."""
+    """State: the incumbent with its residual and normal equations, and the trust region's radius.
+
+    Constraints are walls of one-sided squares; a step knows by linearization which of them it leans on.
+    """
 
     id: ClassVar[str] = "gauss_newton"
     label: ClassVar[str] = "Gauss-Newton with exact sensitivities"
@@ -39,6 +46,7 @@ class GaussNewton(Method):
     def __init__(self, problem: Problem, settings: Settings) -> None:
         del settings
         self._problem, self._data = problem, problem.likelihood
+        self._walls = Walls.of(problem.targets)
         self._origin = problem.space.start
         self._weight = problem.space.prior_sd**-2.0
         self._radius = 1.0
@@ -59,8 +67,7 @@ class GaussNewton(Method):
         point = self._incumbent.point
         lower = np.maximum(-point, -self._radius)
         upper = np.minimum(1.0 - point, self._radius)
-        step = bounded_step(self._hessian, self._gradient, lower, upper)
-        self._predicted = float(-(2.0 * self._gradient @ step + step @ self._hessian @ step))
+        step = self._step(self._incumbent, lower, upper)
         return [Candidate(point + step, self.id, self._prediction(self._incumbent, step))]
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
@@ -86,6 +93,25 @@ class GaussNewton(Method):
         """The most probable axle, which need not have the best rating."""
         return self._incumbent.index if self._incumbent is not None else 0
 
+    def _step(self, incumbent: Evaluated, lower: FloatArray, upper: FloatArray) -> FloatArray:
+        """The step of the linearized problem; sets what it promises."""
+        values = incumbent.outcome.characteristics[self._walls.rows]
+        slopes = self._expansion.characteristics[self._walls.rows]
+        sides = self._walls.sides(values)
+        for _ in range(TURNS):
+            leaning = slopes[sides != 0] / self._walls.sd[sides != 0, None]
+            pushed = self._walls.distance(values, sides)[sides != 0]
+            hessian = self._hessian + leaning.T @ leaning
+            step = bounded_step(hessian, self._gradient + leaning.T @ pushed, lower, upper)
+            following = self._walls.sides(values + slopes @ step)
+            if np.array_equal(following, sides):
+                break
+            sides = following
+        smooth = 2.0 * self._gradient @ step + step @ self._hessian @ step
+        before, after = self._walls.excess(values), self._walls.excess(values + slopes @ step)
+        self._predicted = float(before @ before - after @ after - smooth)
+        return step
+
     def _accept(self, answer: Evaluated) -> None:
         try:
             expansion = self._problem.linearize(answer.point)
@@ -107,7 +133,8 @@ class GaussNewton(Method):
             return np.inf
         residual = self._data.residual(answer.outcome.curves, answer.outcome.characteristics)
         moved = answer.point - self._origin
-        return float(residual @ residual + self._weight @ moved**2)
+        beyond = self._walls.excess(answer.outcome.characteristics[self._walls.rows])
+        return float(residual @ residual + self._weight @ moved**2 + beyond @ beyond)
 
     def _prediction(self, incumbent: Evaluated, step: FloatArray) -> Prediction:
         rows = self._problem.targets.rows
