@@ -61,12 +61,22 @@ def disturbed(times: float, car: int) -> tuple[Problem, dict[str, float]]:
     return replace(problem, targets=exact), values
 
 
+def continuous(problem: Problem) -> Problem:
+    """The same without levels."""
+    free = tuple(replace(v, levels=None) for v in problem.space.variables)
+    return replace(problem, space=replace(problem.space, variables=free))
+
+
 def case(times: float, car: int, plan: Plan, cache: Path) -> Case:
     """One disturbed car with all its runs."""
     name = f"recorrelation-{times:g}-{car}"
     fit = Fit(**cached(cache, f"{name}-fit", lambda: asdict(fitted(*disturbed(times, car)))))
     make = lru_cache(maxsize=1)(lambda: disturbed(times, car)[0])
     ego = [cached_trace(cache, name, make, "ego", s, plan.budget) for s in range(1, plan.seeds + 1)]
+    fine = [
+        cached_trace(cache, f"{name}-continuous", lambda: continuous(make()), "ego", s, plan.budget)
+        for s in range(1, plan.seeds + 1)
+    ]
     newton = cached_trace(cache, name, make, "gauss_newton", 1, BUDGET)
     view = cached(cache, f"{name}-view", partial(_view, times, car))
     prior, start = np.array(fit.prior), np.array(fit.start)
@@ -82,6 +92,7 @@ def case(times: float, car: int, plan: Plan, cache: Path) -> Case:
         axes=np.array(view["axes"]),
         visible=np.array(view["visible"]),
         ego=ego,
+        fine=fine,
         newton=newton,
         fit=fit,
     )
@@ -115,11 +126,13 @@ def run_table(cases: Sequence[Case]) -> pd.DataFrame:
         {
             "times": c.times,
             "car": c.car,
+            "variables": variables,
             **{k: v for k, v in asdict(t).items() if k in KEPT},
             "start": t.best[0],
         }
         for c in cases
-        for t in (*c.ego, c.newton)
+        for variables, runs in (("levels", c.ego), ("continuous", [*c.fine, c.newton]))
+        for t in runs
     ]
     return pd.DataFrame(rows)
 
@@ -148,6 +161,7 @@ def check(cases: Sequence[Case], plan: Plan) -> None:
         assert all(t.rating > 0.1 * t.best[0] for t in c.ego)
         if plan == Plan():
             assert all(t.feasible and t.rating > 0.01 * t.best[0] for t in c.ego)
+            assert all(t.feasible and t.rating > -0.05 for t in c.fine)
 
 
 def main() -> None:

@@ -16,6 +16,8 @@ from doe_kc.typing import FloatArray
 class Case:
     """One disturbed car. All (d,) in prior sd about nominal: moved, the truth; points of the runs `ego`.
 
+    fine: runs of `ego` with continuous variables.
+
     seen: singular values of the whitened Jacobian at the truth, rig noise, in prior sd, falling; axes:
     (d, d) their directions in columns. visible: what records of that noise would see.
     """
@@ -31,6 +33,7 @@ class Case:
     axes: FloatArray
     visible: FloatArray
     ego: list[Trace]
+    fine: list[Trace]
     newton: Trace
     fit: Fit
 

@@ -14,6 +14,7 @@ from report_figures import legend, title
 from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.typing import FloatArray
 
+FREE = PALETTE["green"]
 EGO, NEWTON = PALETTE["vermillion"], PALETTE["blue"]
 SIZES = (PALETTE["orange"], PALETTE["vermillion"], PALETTE["purple"])
 SEEN = 3.0**0.5
@@ -38,6 +39,11 @@ def _convergence(ax: Axes, cases: Sequence[Case]) -> None:
             ax.step(steps, -np.array(run.best), where="post", color=colour, lw=0.9, alpha=0.8, label=word)
             if run.feasible_at:
                 ax.plot(run.feasible_at, -run.best[run.feasible_at - 1], "o", ms=4, color=colour, mec="black")
+    free = [t for c in cases for t in c.fine]
+    for k, run in enumerate(free):
+        word = f"ego, continuous variables ({len(free)} runs)" if k == 0 else None
+        steps = np.arange(1, run.evaluations + 1)
+        ax.step(steps, -np.array(run.best), where="post", color=FREE, lw=0.8, alpha=0.8, label=word)
     for k, run in enumerate(c.newton for c in cases):
         word = f"gauss_newton ({len(cases)} runs)" if k == 0 else None
         ax.step(
