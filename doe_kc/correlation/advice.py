@@ -1,10 +1,15 @@
-"""Sentences about what the bounds allow, for a correlation that cannot reach what it is asked for."""
+"""Sentences about what bounds and levels allow, for a correlation that cannot reach what it is asked for."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.reach import conflict, reaches, unreachable
+
+COARSE = 0.25
+"""Share of the rating that half a level of one variable may cost unmentioned."""
 
 
 def reach_sentences(problem: Problem, baseline: Evaluated, expansion: Linearization) -> list[str]:
@@ -38,3 +43,24 @@ def conflict_sentences(problem: Problem, best: Evaluated, expansion: Linearizati
         f"No design within the bounds meets {names}{clause}, to first order: widen bounds, weight what "
         "matters more, try --method pareto for the trade-off, or look for an effect that the model lacks."
     ]
+
+
+def level_sentences(problem: Problem, best: Evaluated, expansion: Linearization) -> list[str]:
+    """One for every objective that half a level of a variable moves by more than its target's error, and by
+    a share of the rating that other levels hardly make up for."""
+    variables = problem.space.variables
+    half = np.array([0.0 if v.levels is None else 0.5 / (v.levels - 1) for v in variables])
+    moves = np.abs(expansion.characteristics[problem.targets.rows]) * half
+    out = []
+    for target, row in zip(problem.targets.characteristics, moves, strict=True):
+        if target.objective is None or not row.any():
+            continue
+        at = int(np.argmax(row))
+        cost = target.objective.linear * row[at] / target.objective.norm
+        if row[at] > target.sd and cost > COARSE * abs(best.merit):
+            out.append(
+                f"{target.entry.id}: half a level of {variables[at].path} moves it by {row[at]:.2g} "
+                f"{target.entry.unit}, {cost:.2g} of the rating ({best.merit:.2g}); give its variables more "
+                'levels, or levels = "continuous".'
+            )
+    return out

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from doe_kc.campaign.runner import Campaign
-from doe_kc.correlation.advice import conflict_sentences, reach_sentences
+from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate, Run, run_method
@@ -179,11 +179,12 @@ def posterior_at(problem: Problem, expansion: Linearization | None) -> Posterior
 
 
 def notes_on(problem: Problem, run: Run, at_best: Linearization | None) -> tuple[str, ...]:
-    """Targets out of reach and constraints in conflict, in sentences."""
+    """Targets out of reach, constraints in conflict and levels too coarse, in sentences."""
     best, at_start = run.evaluated[run.best], expansion_at(problem, run.evaluated[0])
     if at_best is None or at_start is None:
         return ()
     return (
         *reach_sentences(problem, run.evaluated[0], at_start),
         *conflict_sentences(problem, best, at_best),
+        *level_sentences(problem, best, at_best),
     )
