@@ -38,9 +38,9 @@ HERE: Mapping[str, str] = {
     "9": "`ego` rises fastest and ends highest; `pareto` and `hybrid` follow. The advantage of MO-SHERPA\n"
     "is not seen: `ego` has a model of every objective, as `pareto` has, and spends no evaluations on\n"
     "the rest of the front. What `pareto` gives beyond the rating is the front itself. `gauss_newton`\n"
-    "fits curves within their noise, not the rating: given all curves it follows the lateral camber\n"
-    "that the model cannot show and spoils others; given the curves with an objective it needs a\n"
-    "handful of evaluations, and its rating is limited by constraints that it knows nothing of.",
+    "fits curves within their noise, not the rating, in a handful of evaluations, and keeps the\n"
+    "constraints; its rating is no measure of it. The lateral camber, which the model cannot show, is\n"
+    "left out because the study switches its curves off.",
     "9b": "No algorithm meets all constraints. All of them push variables to their bounds for the three on\n"
     "lateral camber and leave the other characteristics far worse than the baseline (mean improvement\n"
     "below zero): what the thesis warns of. The ratings differ by a few percent, again with `ego`\n"

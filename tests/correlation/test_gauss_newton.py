@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doe_kc.axle import with_values
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, Settings
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Evaluated, Problem
+from doe_kc.correlation.walls import Walls
 from doe_kc.targets.options import CharacteristicOptions
-from tests.correlation.cases import problem, solver, truth
+from tests.correlation.cases import outcome, problem, solver, truth
 
 
 @pytest.mark.parametrize("car", ["car_b", "car_e"])
@@ -50,6 +52,19 @@ def test_what_the_records_alone_would_violate_is_met_where_it_is_a_constraint() 
     assert held.rating is not None and held.rating.feasible
     value = held.outcome.characteristics[case.targets.rows][at]
     assert low <= value <= low + 0.02 * (high - low), "it leans on the wall that the records pull it to"
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_meets_constraints_from_a_start_that_violates_most_of_them(seed: int) -> None:
+    nominal = problem("car_b")
+    rng = np.random.default_rng(seed)
+    point = nominal.space.start + rng.uniform(-0.3, 0.3, nominal.space.dimension)
+    values = {n: v for n, v in nominal.space.values(np.clip(point, 0.0, 1.0)).items() if "." in n}
+    case = problem("car_b", axle=with_values(nominal.axle, values))
+    base = outcome(case.axle, {}).characteristics[Walls.of(case.targets).rows]
+    assert np.count_nonzero(Walls.of(case.targets).excess(base)) > 5
+    best = _fitted(case)
+    assert best.rating is not None and best.rating.feasible
 
 
 def _fitted(case: Problem) -> Evaluated:

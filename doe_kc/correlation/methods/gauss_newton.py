@@ -12,6 +12,8 @@ from collections.abc import Sequence
 from typing import ClassVar, final
 
 import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import lsq_linear
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
@@ -27,8 +29,10 @@ SMALLEST = 1e-4
 """Radius, share of the bounds, below which the search gives up."""
 POOR, GOOD = 0.25, 0.75
 """Actual over predicted decrease below which the region shrinks, above which it grows."""
-TURNS = 20
-"""Tries to find the walls that the step leans on."""
+TURNS = 50
+"""Newton steps within one step's linearized problem."""
+SHARES = tuple(0.5**k for k in range(12))
+"""Of a Newton step, tried in turn."""
 
 
 @final
@@ -94,23 +98,42 @@ class GaussNewton(Method):
         return self._incumbent.index if self._incumbent is not None else 0
 
     def _step(self, incumbent: Evaluated, lower: FloatArray, upper: FloatArray) -> FloatArray:
-        """The step of the linearized problem; sets what it promises."""
+        """The step of the linearized problem; sets what it promises.
+
+        Piecewise quadratic and convex: Newton steps for the walls leant on, shortened while they do not gain.
+        """
         values = incumbent.outcome.characteristics[self._walls.rows]
         slopes = self._expansion.characteristics[self._walls.rows]
-        sides = self._walls.sides(values)
+
+        def cost(step: FloatArray) -> float:
+            beyond = self._walls.excess(values + slopes @ step)
+            return float(2.0 * self._gradient @ step + step @ self._hessian @ step + beyond @ beyond)
+
+        step = np.zeros_like(self._gradient)
+        before = value = cost(step)
         for _ in range(TURNS):
-            leaning = slopes[sides != 0] / self._walls.sd[sides != 0, None]
-            pushed = self._walls.distance(values, sides)[sides != 0]
-            hessian = self._hessian + leaning.T @ leaning
-            step = bounded_step(hessian, self._gradient + leaning.T @ pushed, lower, upper)
-            following = self._walls.sides(values + slopes @ step)
-            if np.array_equal(following, sides):
+            sides = self._walls.sides(values + slopes @ step)
+            on = sides != 0
+            leaning = slopes[on] / self._walls.sd[on, None]
+            following = self._leant(leaning, self._walls.distance(values, sides)[on], lower, upper)
+            trials = (step + share * (following - step) for share in SHARES)
+            better = next(((t, c) for t in trials if (c := cost(t)) < value - CONVERGED / TURNS), None)
+            if better is None:
                 break
-            sides = following
-        smooth = 2.0 * self._gradient @ step + step @ self._hessian @ step
-        before, after = self._walls.excess(values), self._walls.excess(values + slopes @ step)
-        self._predicted = float(before @ before - after @ after - smooth)
+            step, value = better
+        self._predicted = before - value
         return step
+
+    def _leant(
+        self, leaning: FloatArray, distance: FloatArray, lower: FloatArray, upper: FloatArray
+    ) -> FloatArray:
+        """The best step with squares of distance + leaning @ step; by rows, as the walls are far stiffer."""
+        if not distance.size:
+            return bounded_step(self._hessian, self._gradient, lower, upper)
+        root = np.linalg.cholesky(self._hessian)
+        rows = np.vstack([root.T, leaning])
+        values = np.concatenate([-solve_triangular(root, self._gradient, lower=True), -distance])
+        return np.asarray(lsq_linear(rows, values, (lower, upper), method="bvls").x)
 
     def _accept(self, answer: Evaluated) -> None:
         try:
