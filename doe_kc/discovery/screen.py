@@ -22,6 +22,8 @@ from doe_kc.typing import FloatArray
 
 PROBE = 0.3
 """First size at which an effect is solved for, in typical sizes."""
+SMALLER = 0.1
+"""Factor of the first size where the effect is not linear below it."""
 STEPS = 4
 SHARES = (1.0, 0.5, 0.2, 0.05)
 """Of a step, tried one after the other until one gains."""
@@ -63,7 +65,8 @@ def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
     """The hypothesis on its own; one without equilibria comes back as failed."""
     model = found.model.extended(hypothesis)
     try:
-        results = [_followed(model, found, project, s) for s in _starts(hypothesis)]
+        starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, SMALLER * PROBE), strict=True)
+        results = [follow(model, found, project, *s) for s in starts]
         change = _typical(model, found, hypothesis)
     except NotConverged as error:
         empty = np.zeros(len(hypothesis.sizes))
@@ -95,8 +98,8 @@ def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArr
         return np.asarray(small / PROBE)
 
 
-def _starts(hypothesis: Hypothesis) -> list[FloatArray]:
-    base = np.array([0.0 if s.growth == "shape" or s.signed else PROBE for s in hypothesis.sizes])
+def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
+    base = np.array([0.0 if s.growth == "shape" or s.signed else first for s in hypothesis.sizes])
     shapes = [i for i, s in enumerate(hypothesis.sizes) if s.growth == "shape"]
     out = []
     for shape in SHAPES if shapes else (0.0,):
@@ -121,19 +124,27 @@ class _Followed:
     followed: bool = True
 
 
-def _followed(model: EffectModel, found: Fit, project: Projection, start: FloatArray) -> _Followed:
-    """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing."""
+def follow(
+    model: EffectModel, found: Fit, project: Projection, start: FloatArray, smaller: FloatArray
+) -> _Followed:
+    """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing.
+
+    A promise that is worse than the model without the effect is none: along a straight line the effect could
+    be absent. Then the search begins anew, from `smaller`, where the effect is closer to linear.
+    """
     place = slice(found.z.size, found.z.size + start.size)
     low, high = model.lower[place], model.upper[place]
     plain = project.residual(found.residual)
     without = float(plain @ plain)
     best = _solved(model, found, project, start, place, None)
-    for _ in range(STEPS if start.size else 0):
+    for k in range(STEPS if start.size else 0):
         projected = project(best.columns)
         hessian = projected.T @ projected + np.eye(start.size)
         slope = projected.T @ best.reduced + best.amplitudes
         step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
         predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
+        if k == 0 and predicted > without + 2.0 * HOPELESS and not np.array_equal(start, smaller):
+            return follow(model, found, project, smaller, smaller)
         if without - predicted < 2.0 * HOPELESS:
             return replace(best, amplitudes=best.amplitudes + step, cost=predicted, followed=False)
         trial = _better(model, found, project, best, step, place)

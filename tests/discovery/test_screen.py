@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,7 +12,7 @@ from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.projection import projection
-from doe_kc.discovery.screen import rescreened, screen
+from doe_kc.discovery.screen import PROBE, SMALLER, follow, rescreened, screen
 from doe_kc.discovery.standing import standings, wrong_name_chance
 from tests.discovery.cases import library, model
 
@@ -95,3 +97,43 @@ def test_ninety_nine_per_cent_right_needs_the_strength_of_the_closed_form() -> N
     for correlation in (0.9, 0.95, 0.99):
         strength = norm.ppf(0.99) * np.sqrt(2.0 / (1.0 - correlation))
         assert wrong_name_chance(float(strength), correlation) == pytest.approx(0.01, abs=1e-3)
+
+
+class Saturating:
+    """A model of one effect that makes 200 a / (1 + 5 a) standard deviations of one datum, and a fit."""
+
+    lower, upper, z = np.zeros(1), np.full(1, 6.0), np.zeros(0)
+
+    def __init__(self, true: float) -> None:
+        self.residual_of = -self.made(true)
+
+    @staticmethod
+    def made(a: float) -> np.ndarray:
+        return np.array([200.0 * a / (1.0 + 5.0 * a)])
+
+    def residual(self, z: np.ndarray) -> np.ndarray:
+        return self.residual_of + self.made(float(z[0]))
+
+    def growth(self, z: np.ndarray, residual: np.ndarray, *, which: slice) -> np.ndarray:
+        return np.array([[200.0 / (1.0 + 5.0 * float(z[0])) ** 2]])
+
+
+class Untuned:
+    """No parameter to project out."""
+
+    def __call__(self, columns: np.ndarray) -> np.ndarray:
+        return columns
+
+    def residual(self, residual: np.ndarray) -> np.ndarray:
+        return residual
+
+
+def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() -> None:
+    model: Any = Saturating(true=0.03)
+    found: Any = SimpleNamespace(z=model.z, residual=model.residual_of)
+    untuned: Any = Untuned()
+    given_up = follow(model, found, untuned, np.array([PROBE]), np.array([PROBE]))
+    assert not given_up.followed
+    followed = follow(model, found, untuned, np.array([PROBE]), np.array([SMALLER * PROBE]))
+    assert followed.followed
+    assert followed.amplitudes == pytest.approx([0.03], abs=1e-3)
