@@ -4,23 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-LARGEST = 3.0
-"""Typical sizes."""
+from doe_kc.effects.hypothesis import Size
+
 RELEVANT = 0.1
 """Typical sizes below which an effect is a trace: seen, but not worth a name."""
 CONFIDENT = 2.0
 """Standard deviations by which a size must be beyond either."""
 
-Sized = Iterable[tuple[float, float]]
-"""Amplitude in typical sizes, and its standard deviation."""
+Sized = Iterable[tuple[Size, float, float]]
+"""Amplitude of a size in typical ones, and its standard deviation."""
 
 
 def believed(sizes: Sized) -> bool:
     """Whether none is surely beyond what such a part has."""
-    return not any(abs(a) - CONFIDENT * sd > LARGEST for a, sd in sizes)
+    return not any(abs(a) - CONFIDENT * sd > size.most for size, a, sd in sizes)
 
 
 def matters(sizes: Sized) -> bool:
     """Whether one is surely more than a trace; an effect without a size does when it is there."""
     counted = list(sizes)
-    return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for a, sd in counted)
+    return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)

@@ -64,7 +64,7 @@ def _finding(
     sd = _with_law(hypothesis, amplitudes, np.sqrt(np.diag(final.covariance))[place], found.shares)
     own = next(s for s in step.screened if s.hypothesis == hypothesis)
     detectability = _detectability(found.plain, place) if sizes else own.detectability
-    counted = [(abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if s.growth != "shape"]
+    counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if s.growth != "shape"]
     chances = _wrong_names(step, own, detectability)
     rivals = tuple(
         Rival(effect, p)
@@ -83,7 +83,7 @@ def _finding(
         detectability=detectability,
         wrong_name=max(chances.values(), default=0.0),
         alike=_alike(step, own, chances),
-        largest=max((a for a, _ in counted), default=1.0),
+        largest=max((a for _, a, _ in counted), default=1.0),
         believed=believed(counted),
         relevant=matters(counted),
         elsewhere=_elsewhere(step, hypothesis),

@@ -23,8 +23,10 @@ from doe_kc.solver.suite import solve
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-LARGEST = 6.0
-"""Amplitude, in typical sizes, that a search does not go beyond."""
+BEYOND = 2.0
+"""Times what is believed: the amplitude that a search does not go beyond."""
+RIG = 6.0
+"""The same for the nuisances of the rig, in their standard deviations."""
 DIFFERENCE = 1e-3
 """Step of amplitudes for their derivatives, in typical sizes."""
 NO_CHARACTERISTICS = np.zeros(0)
@@ -94,15 +96,15 @@ class EffectModel:
     @cached_property
     def lower(self) -> FloatArray:
         """(d + m,) lower bounds."""
-        free = [-LARGEST if s.signed or s.growth == "shape" else 0.0 for s in self.sizes]
-        rig = np.full(self.dimension - self.parameters, -LARGEST)
+        free = [-BEYOND * s.most if s.signed or s.growth == "shape" else 0.0 for s in self.sizes]
+        rig = np.full(self.dimension - self.parameters, -RIG)
         return np.concatenate([np.zeros(self.parameters), rig, free])
 
     @cached_property
     def upper(self) -> FloatArray:
         """(d + m,) upper bounds."""
-        others = self.dimension - self.parameters + len(self.sizes)
-        return np.concatenate([np.ones(self.parameters), np.full(others, LARGEST)])
+        rig = np.full(self.dimension - self.parameters, RIG)
+        return np.concatenate([np.ones(self.parameters), rig, [BEYOND * s.most for s in self.sizes]])
 
     def extended(self, hypothesis: Hypothesis) -> EffectModel:
         """The model with one more effect."""

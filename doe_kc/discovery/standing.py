@@ -10,7 +10,6 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr
 
-from doe_kc.discovery.belief import LARGEST
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
@@ -87,7 +86,7 @@ def standings(
 
 def said_limit(size: Size, amplitude: float) -> float | None:
     """The option's number at an amplitude from which it is excluded; None beyond any believed size."""
-    return size.value(amplitude) if amplitude <= LARGEST else None
+    return size.value(amplitude) if amplitude <= size.most else None
 
 
 def _whole(screened: Screened) -> FloatArray:

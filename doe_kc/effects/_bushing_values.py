@@ -18,13 +18,15 @@ AXES = ("Fx", "Fy", "Fz")
 class BushingValues(Effect):
     """`added = true` puts the values on top of the bushing's own; by default they replace them.
 
-    quantity: middle part of the axle values, as in `llr.preload.Fx`. typical: size by bushing.
+    quantity: middle part of the axle values, as in `llr.preload.Fx`. typical: size by bushing. most:
+    largest size that is believed, in typical ones.
     """
 
     quantity: ClassVar[str]
     unit: ClassVar[str]
     signed: ClassVar[bool]
     typical: ClassVar[Mapping[str, float]]
+    most: ClassVar[float] = 3.0
 
     @abstractmethod
     def default(self) -> dict[str, list[float]]:
@@ -34,7 +36,9 @@ class BushingValues(Effect):
         out = []
         for name, value in self.typical.items():
             key = name.upper()
-            sizes = [Size(key, value, self.unit, index=i, signed=self.signed) for i in range(3)]
+            sizes = [
+                Size(key, value, self.unit, index=i, signed=self.signed, most=self.most) for i in range(3)
+            ]
             out.append(Hypothesis(self.id, key, tuple(sizes), {"added": True}))
         return tuple(out)
 

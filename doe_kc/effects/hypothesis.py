@@ -22,7 +22,8 @@ class Size:
     a = 1, in `unit`. growth: amount, value = typical a; compliance, value = typical a^(-1/power), rigid at
     0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(0.7 a), a number
     that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off.
-    signed: whether a may be negative (shapes always may).
+    signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
+    have.
     """
 
     key: str
@@ -32,6 +33,7 @@ class Size:
     index: int | None = None
     signed: bool = False
     power: float = 1.0
+    most: float = 3.0
 
     @property
     def name(self) -> str:

@@ -53,7 +53,8 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "unexplained": {"tie_rod_free_play": {"gap_mm": 0.2}},
     "two": {"strut_friction": {"force_N": 120.0}, "rig_channel_gain": {"toe": 1.06}},
     "steady": {"strut_friction": {"force_N": 150.0}},
-    "lead": {"bushing_progression": {"UPB": [0.1, 0.1, 0.1]}},
+    "lead": {"tie_rod_compliance": {"k_N_mm": 3000.0}},
+    "progression": {"bushing_progression": {"UPB": [0.1, 0.1, 0.1]}},
     "beyond": {"hub_compliance": {"camber_Nm_deg": 15000.0, "toe_Nm_deg": 30000.0}},
 }
 """Name of a car -> effects in it."""

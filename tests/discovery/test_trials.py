@@ -14,6 +14,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search import with_conditioning
 from doe_kc.discovery.trials import Trial, stiffer_first
+from doe_kc.effects.hypothesis import Size
 from doe_kc.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
@@ -42,8 +43,11 @@ def test_of_two_places_that_say_the_same_the_stiffer_leads(
 
 
 def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
-    assert believed([(3.5, 0.3)]) and not believed([(1.0, 0.1), (-3.5, 0.2)])
-    assert matters([(0.3, 0.09)]) and not matters([(0.3, 0.11)])
+    size = Size("k", 1.0, "-")
+    assert believed([(size, 3.5, 0.3)])
+    assert not believed([(size, 1.0, 0.1), (size, -3.5, 0.2)])
+    assert believed([(replace(size, most=4.0), -3.5, 0.2)])
+    assert matters([(size, 0.3, 0.09)]) and not matters([(size, 0.3, 0.11)])
     assert matters([])
 
 

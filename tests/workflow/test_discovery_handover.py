@@ -112,7 +112,7 @@ def test_an_effect_states_value_sd_and_unit() -> None:
 
 
 def test_a_list_option_becomes_one_parameter() -> None:
-    finding = discovery("lead").findings[0]
+    finding = discovery("progression").findings[0]
     entry = effect_entry(finding)
     assert entry["location"] == "UPB"
     assert list(entry["parameters"]) == ["UPB"]
@@ -168,7 +168,7 @@ def test_the_terminal_says_verdict_gap_and_what_next(car: str) -> None:
 
 def test_the_axle_says_when_its_effects_are_leads_only() -> None:
     assert axle_note(discovery("none")) == "no effect missing; re-tuned"
-    assert "leads, not confirmed: bushing progression" in axle_note(discovery("lead"))
+    assert "leads, not confirmed: tie-rod compliance" in axle_note(discovery("lead"))
 
 
 def test_an_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:
