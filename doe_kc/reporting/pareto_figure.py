@@ -71,9 +71,9 @@ def _pair(ax: Axes, front: Front) -> None:
 
 def _marked(front: Front) -> list[tuple[int, str, str, str]]:
     """Place, colour, marker with line, and words of the designs that stand out; shapes differ as well."""
-    best = (0, BEST, "o-", f"best rating {front.ratings[0]:.3g}: design {front.indices[0]}")
+    best = (0, BEST, "o-", f"best rating {front.ratings[0]:.3g}: evaluation {front.indices[0] + 1}")
     knee = front.knee
-    words = f"knee, rating {front.ratings[knee]:.3g}: design {front.indices[knee]}"
+    words = f"knee, rating {front.ratings[knee]:.3g}: evaluation {front.indices[knee] + 1}"
     return [best, (knee, KNEE, "s--", words)]
 
 

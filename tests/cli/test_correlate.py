@@ -178,7 +178,7 @@ def test_pareto_hands_over_its_front(tmp_path: Path) -> None:
     study = study_in(tmp_path, method="pareto", budget=12)
     document_of(study)
     front = (study / "out" / "correlate" / "pareto_front.csv").read_text().splitlines()
-    assert front[0].startswith("design,") and front[0].endswith("rating,knee")
+    assert front[0].startswith("evaluation,") and front[0].endswith("rating,knee")
     assert sum(line.endswith("True") for line in front[1:]) == 1
     assert (study / "out" / "correlate" / "pareto_front.png").exists()
 

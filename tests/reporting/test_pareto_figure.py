@@ -41,7 +41,7 @@ def test_draws_every_design_and_names_best_and_knee() -> None:
     legend = left.get_legend()
     assert legend is not None
     words = [t.get_text() for t in legend.get_texts()]
-    assert words[0].endswith("design 7") and words[1].endswith("design 13")
+    assert words[0].endswith("evaluation 8") and words[1].endswith("evaluation 14")
     assert len(left.lines) == 11 + 2 + 1
     assert "Brake force" in right.get_xlabel() and "Vertical motion" in right.get_ylabel()
 

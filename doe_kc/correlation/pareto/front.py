@@ -36,9 +36,9 @@ class Front:
     knee: int
 
     def to_frame(self) -> pd.DataFrame:
-        """One row a design: index, objectives, rating, whether it is the knee."""
+        """One row a design: objectives, rating, whether it is the knee; index: its evaluation, from 1."""
         frame = pd.DataFrame(
-            self.values, columns=list(self.names), index=pd.Index(self.indices, name="design")
+            self.values, columns=list(self.names), index=pd.Index(np.add(self.indices, 1), name="evaluation")
         )
         return frame.assign(rating=self.ratings, knee=np.arange(len(frame)) == self.knee)
 
