@@ -40,6 +40,7 @@ class Answer:
     held_out: Mapping[str, tuple[float, float]]
     diagnosable: Mapping[str, tuple[float, float]]
     excluded: tuple[Excluded, ...]
+    not_testable: frozenset[str]
     seconds: float
 
     @property
@@ -69,7 +70,7 @@ class Answer:
         return self.verdict
 
 
-FAILED = Answer("failed", (), (), (), {}, {}, {}, (), float("nan"))
+FAILED = Answer("failed", (), (), (), {}, {}, {}, (), frozenset(), float("nan"))
 """The analyser gave none."""
 
 
@@ -93,6 +94,7 @@ def read_answer(data: Mapping[str, Any] | None) -> Answer:
             for name, d in (data.get("diagnosable") or {}).items()
         },
         excluded=read_excluded(data.get("excluded") or ()),
+        not_testable=frozenset(data.get("not_testable") or ()),
         seconds=float(data.get("seconds") or "nan"),
     )
 

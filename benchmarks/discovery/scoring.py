@@ -37,11 +37,12 @@ class Estimate:
 @dataclass(frozen=True)
 class Score:
     """exact: the names are the hidden effects, no more and no less. found: all of these are named. top: the
-    first name is one of them. in_class: each is named or in a class. wrong: some name is not what is there;
-    trace: some name is clutter, rightly sized but too small to matter. missed: answered that nothing is
-    missing. placed: an unexplained deviation is reported where it is. located: right places over places
-    asked. closed, decoy: share of the gap that the named effects, and the best other one, close; nan where
-    the answer gives none. excluded: hidden effects that are excluded below their size, over those not named.
+    first name is one of them. in_class: each is named or in a class. open: each is that, or said not to be
+    testable with these records. wrong: some name is not what is there; trace: some name is clutter, rightly
+    sized but too small to matter. missed: answered that nothing is missing. placed: an unexplained deviation
+    is reported where it is. located: right places over places asked. closed, decoy: share of the gap that
+    the named effects, and the best other one, close; nan where the answer gives none. excluded: hidden
+    effects that are excluded below their size, over those not named.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Score:
     found: bool
     top: bool
     in_class: bool
+    open: bool
     wrong: bool
     trace: bool
     missed: bool
@@ -102,6 +104,9 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         found=bool(truth.ids) and truth.ids <= names,
         top=answer.first in truth.ids,
         in_class=bool(truth.ids) and truth.ids <= answer.offered,
+        open=bool(truth.ids)
+        and answer.verdict in ("named", "class", "none")
+        and truth.ids <= answer.offered | answer.not_testable,
         wrong=bool(names - truth.ids - small),
         trace=bool(small),
         missed=bool(truth.ids or truth.outside) and answer.verdict == "none",

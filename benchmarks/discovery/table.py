@@ -18,6 +18,7 @@ MEASURES: dict[str, Measure] = {
     "all found": lambda s: s.found,
     "first right": lambda s: s.top,
     "named or in a class": lambda s: s.in_class,
+    "or said not testable": lambda s: s.open,
     "wrong name": lambda s: s.wrong,
     "trace named": lambda s: s.trace,
     "missed": lambda s: s.missed,
@@ -25,7 +26,7 @@ MEASURES: dict[str, Measure] = {
     "right place": lambda s: s.placed,
     "failed": lambda s: s.verdict == "failed",
 }
-HAVING = ("all found", "first right", "named or in a class")
+HAVING = ("all found", "first right", "named or in a class", "or said not testable")
 LEFT_OUT = {
     "null": (*HAVING, "missed", "right place"),
     "outside": (*HAVING, "exact set"),

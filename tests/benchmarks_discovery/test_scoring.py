@@ -62,6 +62,23 @@ def test_finding_nothing_is_right_for_null_cars_only() -> None:
     assert not any(s.wrong for s in found)
 
 
+@pytest.mark.parametrize(
+    ("verdict", "said", "is_open"),
+    [
+        ("none", ["steering_friction", "hub_compliance"], True),
+        ("none", ["hub_compliance"], False),
+        ("unexplained", ["steering_friction", "hub_compliance"], False),
+    ],
+)
+def test_an_effect_that_is_said_not_to_be_testable_is_left_open(
+    verdict: str, said: list[str], is_open: bool
+) -> None:
+    answer = pretend.always_none(TRUTHS[3]) | {"verdict": verdict, "not_testable": said}
+    found = score(TRUTHS[3], read_answer(answer), Predicted(50.0, 0.001))
+    assert found.open is is_open
+    assert not found.in_class
+
+
 def test_luck_names_wrongly_and_is_sure() -> None:
     found = [s for seed in range(20) for s in _scores(lambda t, at=seed: pretend.lucky(t, at))]
     assert sum(s.wrong for s in found) / len(found) > 0.7
