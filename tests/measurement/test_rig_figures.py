@@ -19,9 +19,9 @@ def test_every_panel_has_its_unit(car_a: Measurement) -> None:
     assert len(axes) == 21
     for row, response in enumerate(RIG_RESPONSES):
         unit = RESPONSE_UNITS[response]
-        assert axes[3 * row].get_ylabel().endswith(f"/ {unit}")
-        assert axes[3 * row + 2].get_ylabel() == f"residual / {unit}"
-    assert [ax.get_xlabel() for ax in axes[-3:]] == ["pad_z / mm"] * 3
+        assert axes[3 * row].get_ylabel().endswith(f" [{unit}]")
+        assert axes[3 * row + 2].get_ylabel() == f"residual [{unit}]"
+    assert [ax.get_xlabel() for ax in axes[-3:]] == ["Pad travel [mm]"] * 3
     assert any("26.26 ± 0.04 N/mm" in t.get_text() for t in axes[18].texts)
 
 
