@@ -39,7 +39,7 @@ class Plan:
     times: tuple[float, ...] = (1.0, 2.0)
 
 
-QUICK = Plan(cars=("car_b",), seeds=1, budget=28, synthetic=2, times=(1.0,))
+QUICK = Plan(cars=("car_b",), seeds=1, budget=16, synthetic=2, times=(1.0,))
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ class Plan:
     budget: int = 100
 
 
-QUICK = Plan(times=(1.0,), cars=1, seeds=1, budget=28)
+QUICK = Plan(times=(1.0,), cars=1, seeds=1, budget=12)
 
 
 def space() -> Space:
