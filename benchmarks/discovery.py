@@ -17,9 +17,9 @@ from _common import RESULTS, machine
 
 from benchmarks.discovery.cases import HASHES, cases, publish  # isort: skip  # after the thread limits
 from benchmarks.discovery.report import Run, write  # isort: skip
-from benchmarks.discovery.running import analyse_missing, answer_place, fingerprint  # isort: skip
+from benchmarks.discovery.running import analyse_missing, answer_place, fingerprint, follow_up  # isort: skip
 from benchmarks.discovery.suites import SUITES  # isort: skip
-from benchmarks.discovery.unsealing import scores  # isort: skip
+from benchmarks.discovery.unsealing import followups, scores  # isort: skip
 from benchmarks.discovery.vehicles import BASES  # isort: skip
 
 DEFAULT = Path(tempfile.gettempdir()) / "doe_kc_discovery"
@@ -53,8 +53,10 @@ def main() -> None:
         chosen = [c for c in chosen if answer_place(folder, c).exists()]
     else:
         analyse_missing(chosen, folder, workers=given.workers)
+        follow_up(chosen, folder, workers=given.workers)
     run = Run(" ".join(["python", *sys.argv]), given.base, given.seed, code, machine())
-    print("\n".join(write(scores(chosen, folder), run, given.results)))
+    found, followed = scores(chosen, folder), followups(chosen, folder)
+    print("\n".join(write(found, run, given.results, followed)))
 
 
 if __name__ == "__main__":

@@ -10,18 +10,27 @@ import json
 import math
 import tempfile
 import time
+import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from benchmarks.discovery.followup import VARIABLES
 from benchmarks.discovery.generator import RECORDS
 
 
-def analyse(axle_path: Path, measurement_dir: Path, *, exclude: Sequence[str], out: Path) -> dict[str, Any]:
-    """The answer of `doe-kc discover` as data. exclude: effects that its library has to do without."""
+def analyse(case: Path, *, exclude: Sequence[str], out: Path) -> dict[str, Any]:
+    """The answer of `doe-kc discover` as data, on a folder with a model, records and maybe measured parts.
+
+    exclude: effects that its library has to do without.
+    """
+    from doe_kc.variables import VariableOptions
     from doe_kc.workflow.discover import discover_folder
 
-    return dict(discover_folder(axle_path, measurement_dir, exclude=exclude, out=out))
+    told = case / VARIABLES
+    variables = VariableOptions.model_validate(tomllib.loads(told.read_text())) if told.exists() else None
+    found = discover_folder(case / "axle.toml", case / RECORDS, variables=variables, exclude=exclude, out=out)
+    return dict(found)
 
 
 def keep(answer: dict[str, Any], path: Path) -> None:
@@ -50,9 +59,7 @@ def main() -> None:
     given = parser.parse_args()
     started = time.perf_counter()
     with tempfile.TemporaryDirectory() as scratch:
-        answer = analyse(
-            given.case / "axle.toml", given.case / RECORDS, exclude=given.exclude, out=Path(scratch)
-        )
+        answer = analyse(given.case, exclude=given.exclude, out=Path(scratch))
     keep({**answer, "seconds": time.perf_counter() - started}, given.answer)
 
 

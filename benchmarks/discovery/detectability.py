@@ -91,7 +91,7 @@ def _against_rivals(
         if effect.id == ident:
             continue
         for hypothesis in effect.hypotheses():
-            sizes = [s for s in hypothesis.sizes if s.growth != "shape"]
+            sizes = [s for s in hypothesis.sizes if not s.shape]
             columns = []
             for chosen in [s.name for s in sizes] or [""]:
                 at = {s.name: float(s.name == chosen) for s in hypothesis.sizes}

@@ -46,6 +46,23 @@ def contradicted(effect: TrueEffect, statement: Excluded) -> bool:
     )
 
 
+def unshown(effect: TrueEffect, excluded: Sequence[Excluded]) -> bool:
+    """Whether the answer says that the records do not show the effect in its place: it is excluded in other
+    places only, or its largest number is without a limit."""
+    statements = said_of(effect, excluded)
+    if not statements:
+        return any(e.id == effect.id for e in excluded)
+    sizes = {
+        s.name: s
+        for h in EFFECTS[effect.id].hypotheses()
+        if (h.location or "") == effect.location
+        for s in h.sizes
+    }
+    known = {name: abs(v / sizes[name].typical) for name, v in effect.parameters.items() if name in sizes}
+    largest = max(known, key=lambda name: known[name], default="")
+    return all(s.above.get(largest) is None for s in statements)
+
+
 def _beyond(size: Size, value: float, limit: float) -> bool:
     if size.growth == "compliance":
         return value < limit

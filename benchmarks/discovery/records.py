@@ -13,6 +13,7 @@ from benchmarks.discovery.sensors import INPUT_WHITE, RESOLUTION, Levels, kind, 
 from doe_kc.axle import Axle
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.measurement.channels import RIG_NAMES
+from doe_kc.solver.load_cases.lateral_offset import LateralOffset
 from doe_kc.typing import FloatArray
 
 RUNS = 3
@@ -89,7 +90,7 @@ def _manifest(clean: CleanRecords, nominal: Axle, rng: np.random.Generator, name
         f"reference_wheel_load_N = {nominal.values['tyre.static_load']:g}",
         'body = "clamped"',
         'steering = "wheel held"',
-        "lateral_offset_mm = 30.0",
+        f"lateral_offset_mm = {_offset(clean):.1f}",
         f"rack_mm_per_rev = {nominal.rack_mm_per_rev:g}",
         "[alignment]   # static values at ride height, from the alignment bench",
         *rows,
@@ -103,3 +104,9 @@ def _manifest(clean: CleanRecords, nominal: Axle, rng: np.random.Generator, name
         files = ", ".join(f'"{_file(case, run)}"' for run in range(RUNS))
         lines.append(f"{case} = [{files}]")
     return "\n".join(lines) + "\n"
+
+
+def _offset(clean: CleanRecords) -> float:
+    """mm behind the contact point, of the load case that has one."""
+    cases = (loop.case for loop in clean.loops.values())
+    return next((c.offset for c in cases if isinstance(c, LateralOffset)), LateralOffset.offset)

@@ -15,6 +15,7 @@ from benchmarks.discovery.table import (
     calibration_lines,
     closed_lines,
     excluded_wrongly,
+    followup_lines,
     located,
     parameter_lines,
     suite_table,
@@ -54,8 +55,8 @@ class Run:
     machine: str
 
 
-def lines(found: Sequence[Score], run: Run) -> list[str]:
-    """Markdown."""
+def lines(found: Sequence[Score], run: Run, followed: Sequence[Score] = ()) -> list[str]:
+    """Markdown. followed: of the cars whose advised tests were carried out, after these."""
     seconds = np.array([s.seconds for s in found if np.isfinite(s.seconds)])
     took = f"{np.median(seconds):.0f} s, longest {seconds.max():.0f} s" if seconds.size else "-"
     return [
@@ -77,25 +78,26 @@ def lines(found: Sequence[Score], run: Run) -> list[str]:
         f"- Excluded below their true size, of hidden effects that are not named: {excluded_wrongly(found)}",
         *parameter_lines(found),
         *closed_lines(found),
+        *followup_lines(found, followed),
         *calibration_lines(found),
         "",
         "![Who is taken for whom](discovery.png)",
     ]
 
 
-def write(found: Sequence[Score], run: Run, folder: Path, name: str = "discovery") -> list[str]:
+def write(found: Sequence[Score], run: Run, folder: Path, followed: Sequence[Score] = ()) -> list[str]:
     """All files; returns the text."""
     folder.mkdir(parents=True, exist_ok=True)
-    text = lines(found, run)
-    (folder / f"{name}.md").write_text("\n".join(text) + "\n")
-    with (folder / f"{name}.csv").open("w", newline="") as file:
+    text = lines(found, run, followed)
+    (folder / "discovery.md").write_text("\n".join(text) + "\n")
+    with (folder / "discovery.csv").open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(COLUMNS)
         for s in found:
             writer.writerow([_cell(getattr(s, column)) for column in COLUMNS])
     matrix = confusion(found)
-    write_csv(matrix, folder / f"{name}_confusion.csv")
-    draw(matrix, folder / f"{name}.png")
+    write_csv(matrix, folder / "discovery_confusion.csv")
+    draw(matrix, folder / "discovery.png")
     return text
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from benchmarks.discovery.answer import Answer, Named
-from benchmarks.discovery.exclusions import contradicted, said_of
+from benchmarks.discovery.exclusions import contradicted, said_of, unshown
 from benchmarks.discovery.sides import numbers, place
 from benchmarks.discovery.truth import DELETED, TrueEffect, Truth
 
@@ -106,7 +106,9 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         in_class=bool(truth.ids) and truth.ids <= answer.offered,
         open=bool(truth.ids)
         and answer.verdict in ("named", "class", "none")
-        and truth.ids <= answer.offered | answer.not_testable,
+        and all(
+            e.id in answer.offered | answer.not_testable or unshown(e, answer.excluded) for e in truth.effects
+        ),
         wrong=bool(names - truth.ids - small),
         trace=bool(small),
         missed=bool(truth.ids or truth.outside) and answer.verdict == "none",

@@ -11,7 +11,7 @@ from benchmarks.discovery.answer import read_answer
 from benchmarks.discovery.cases import Case, case_folder, unseal
 from benchmarks.discovery.detectability import detectability
 from benchmarks.discovery.generator import RECORDS, HiddenCar
-from benchmarks.discovery.running import stored
+from benchmarks.discovery.running import stored, stored_followup
 from benchmarks.discovery.scoring import Predicted, Score, score
 from benchmarks.discovery.truth import read_truth
 from doe_kc.correlation.likelihood import record_likelihood
@@ -25,6 +25,16 @@ def scores(chosen: Sequence[Case], folder: Path) -> list[Score]:
         car = unseal(case, folder)
         predicted = _predicted(case, car, folder)
         out.append(score(read_truth(car.key), read_answer(stored(folder, case)), predicted))
+    return out
+
+
+def followups(chosen: Sequence[Case], folder: Path) -> list[Score]:
+    """Of the cars whose advised tests were carried out, after these."""
+    out = []
+    for case in chosen:
+        answer = stored_followup(folder, case)
+        if answer is not None:
+            out.append(score(read_truth(unseal(case, folder).key), read_answer(answer)))
     return out
 
 

@@ -121,6 +121,16 @@ class Likelihood:
             start += curve.size
 
 
+def rewhitened(rows: FloatArray, before: Likelihood, after: Likelihood) -> FloatArray:
+    """(M, ...) of the same data, from units of one likelihood's errors to those of another."""
+    if before is after:
+        return rows
+    out = rows.copy()
+    for (old, place), new in zip(before.slices(), after.curves, strict=True):
+        out[place] = new.whitened(old.root @ rows[place])
+    return out
+
+
 def record_likelihood(axle: Axle, measurement: Measurement) -> Likelihood:
     """All that the records say, within the sweeps of the model: both branches of every loop, and statics.
 

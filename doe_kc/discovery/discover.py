@@ -50,6 +50,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     stands = _standings(found, every, len(library))
     outside = beyond(model.space, found.plain)
     ambiguous = classes(relevant) if judged.kind == "class" else ()
+    separating = _separating(found, relevant, ambiguous)
     return Discovery(
         verdict=judged.kind,
         sentences=sentences(judged, relevant, whole, remaining, somewhere, outside, widened),
@@ -68,11 +69,12 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         gaps=each,
         held_out=predicted,
         returned=returned(found.tuned, found.plain) if relevant else (),
-        next_tests=next_tests(judged, relevant, ambiguous, stands, separating(found, relevant, ambiguous)),
+        next_tests=next_tests(judged, relevant, ambiguous, stands, separating),
         seconds=time.perf_counter() - started,
         scan=somewhere,
         widened=widened,
         beyond=outside,
+        separating=separating,
     )
 
 
@@ -86,7 +88,7 @@ def best_decoy(found: Search, relevant: Sequence[Finding]) -> Trial | None:
     return None
 
 
-def separating(
+def _separating(
     found: Search, relevant: Sequence[Finding], ambiguous: Sequence[Sequence[str]]
 ) -> dict[tuple[str, str], tuple[ExtraTest, ...]]:
     """Of every class, the load cases that tell its first effect from each other one."""
@@ -102,14 +104,14 @@ def separating(
 
 
 def _standings(found: Search, every: Sequence[Finding], count: int) -> tuple[Standing, ...]:
-    critical = float(np.sqrt(2.0 * threshold(count)))
+    critical, last = float(np.sqrt(2.0 * threshold(count))), found.steps[-1].before
     members: list[tuple[Screened, Status]] = []
     for f in every:
         for step in accepted_steps(found):
             if step.trials[0].hypothesis == f.hypothesis:
                 own = next(s for s in step.screened if s.hypothesis == f.hypothesis)
+                own = own.with_errors(step.before.model.likelihood, last.model.likelihood)
                 members.append((own, "found" if f.relevant else "trace"))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
-    tunable = projection(found.plain, effects=False)
-    return standings(found.plain, tunable, others, members, critical)
+    return standings(last, projection(last, effects=False), others, members, critical)

@@ -30,10 +30,11 @@ LISTED = 2
 
 @dataclass(frozen=True)
 class ExtraTest:
-    """words: the load case. separation: standard deviations between the two explanations."""
+    """words: the load case. separation: standard deviations between the two explanations. case: to be run."""
 
     words: str
     separation: float
+    case: LoadCase
 
 
 def extra_tests(one: Fit, other: Fit) -> tuple[ExtraTest, ...]:
@@ -41,7 +42,7 @@ def extra_tests(one: Fit, other: Fit) -> tuple[ExtraTest, ...]:
     found = []
     for words, case, like in _candidates(one.model):
         try:
-            found.append(ExtraTest(words, _separation(one, other, case, like)))
+            found.append(ExtraTest(words, _separation(one, other, case, like), case))
         except NotConverged:
             continue
     found.sort(key=lambda t: -t.separation)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import log_ndtr, logsumexp
+from scipy.special import log_ndtr, logsumexp, ndtr
 
 from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.fit import Fit
@@ -64,8 +64,10 @@ def _finding(
     sd = _with_law(hypothesis, amplitudes, np.sqrt(np.diag(final.covariance))[place], found.shares)
     own = next(s for s in step.screened if s.hypothesis == hypothesis)
     detectability = _detectability(found.plain, place) if sizes else own.detectability
-    counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if s.growth != "shape"]
+    counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_names(step, own, detectability)
+    for effect, chance in _mistaken(step).items():
+        chances[effect] = max(chances.get(effect, 0.0), chance)
     rivals = tuple(
         Rival(effect, p)
         for effect, p in sorted(shares.items(), key=lambda item: -item[1])
@@ -133,11 +135,11 @@ def estimate(size: Size, amplitude: float, sd: float) -> Estimate:
     A size that cannot be negative is taken at the mean of its half-line's Gaussian, so that one that the
     data do not see is not given as exactly nothing.
     """
-    if not (size.signed or size.growth == "shape") and sd > 0.0:
+    if not (size.signed or size.shape) and sd > 0.0:
         inverse_mills = float(np.exp(-0.5 * (amplitude / sd) ** 2 - log_ndtr(amplitude / sd)))
         amplitude += sd * inverse_mills / float(np.sqrt(2.0 * np.pi))
     step = min(0.01, 0.1 * sd)
-    floor = 0.0 if size.signed or size.growth == "shape" else step
+    floor = 0.0 if size.signed or size.shape else step
     at = max(amplitude, floor)
     slope = (size.value(at + step) - size.value(at - step)) / (2.0 * step) if step > 0.0 else 0.0
     return Estimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
@@ -161,6 +163,21 @@ def _wrong_names(step: Step, own: Screened, detectability: float) -> dict[str, f
         if effect != own.hypothesis.effect and not s.failed:
             chance = wrong_name_chance(detectability, float(direction @ _unit(project(s.change))))
             out[effect] = max(out.get(effect, 0.0), chance)
+    return out
+
+
+def _mistaken(step: Step) -> dict[str, float]:
+    """Effect id -> chance that noise alone puts its refit before the best one's, in truth the right one.
+
+    Phi(-d / 2), d the distance of what both predict in standard deviations of the records.
+    """
+    best, *rest = step.trials
+    out: dict[str, float] = {}
+    for t in rest:
+        effect = t.hypothesis.effect
+        if effect != best.hypothesis.effect:
+            apart = float(np.linalg.norm(t.fit.residual - best.fit.residual))
+            out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
     return out
 
 

@@ -14,6 +14,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
 from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.model import EffectModel
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
@@ -88,7 +89,7 @@ class Fit:
         total -= float(np.sum(np.log(self.model.prior_sd)))
         sd = np.sqrt(np.diag(self.covariance))
         for i, size in enumerate(self.model.sizes, start=self.model.dimension):
-            if not (size.signed or size.growth == "shape"):
+            if not (size.signed or size.shape):
                 total += float(log_ndtr(self.z[i] / sd[i])) + float(np.log(2.0))
         return total
 
@@ -146,13 +147,10 @@ def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     return float(seen @ seen + np.sum(((z - model.centre) / model.prior_sd) ** 2))
 
 
-def rewhitened(found: Fit, model: EffectModel) -> Fit:
+def with_errors(found: Fit, model: EffectModel) -> Fit:
     """The fit's point against the same records with other errors, those of `model`; nothing is solved."""
-    residual, jacobian = found.residual.copy(), found.jacobian.copy()
-    pairs = zip(found.model.likelihood.slices(), model.likelihood.curves, strict=True)
-    for (before, place), now in pairs:
-        residual[place] = now.whitened(before.root @ residual[place])
-        jacobian[place] = now.whitened(before.root @ jacobian[place])
+    errors = found.model.likelihood, model.likelihood
+    residual, jacobian = rewhitened(found.residual, *errors), rewhitened(found.jacobian, *errors)
     return replace(
         found, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, found.z, residual)
     )

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky
 
-from doe_kc.correlation.likelihood import Branches, CurveData
+from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
 from doe_kc.curves import TYRE_LOAD
-from doe_kc.discovery.fit import Fit, followed, rewhitened
+from doe_kc.discovery.fit import Fit, followed, with_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.measurement.noise import smooth_correlation
@@ -54,13 +54,25 @@ def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
     for i in sorted(range(len(made)), key=lambda i: -made[i].square):
         for share in SHARES[1:]:
             tried = [share if k == i else s for k, s in enumerate(shares)]
-            wider = rewhitened(exact, granted(exact.model, made, tried))
+            wider = with_errors(exact, granted(exact.model, made, tried))
             evidence = marginal(wider)
             if evidence > most:
                 best, most, shares[i] = wider, evidence, share
     names = [h.name for h in exact.model.members]
     found = followed(best, best.model) if any(shares) else exact
     return found, dict(zip(names, shares, strict=True))
+
+
+def closed(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
+    """Of each member whose law was opened, the records' errors with all laws opened but its own."""
+    if not any(shares.values()):
+        return {}
+    made, names = changes(exact), [h.name for h in exact.model.members]
+    return {
+        name: granted(exact.model, made, [shares[n] * (n != name) for n in names]).likelihood
+        for name in names
+        if shares[name]
+    }
 
 
 def marginal(found: Fit) -> float:
@@ -81,7 +93,7 @@ def granted(model: EffectModel, made: Sequence[Made], shares: Sequence[float]) -
     """
     likelihood = model.likelihood
     curves = [_widened(curve, i, made, shares) for i, curve in enumerate(likelihood.curves)]
-    return replace(model, likelihood=replace(likelihood, curves=tuple(curves)))
+    return model.with_errors(replace(likelihood, curves=tuple(curves)))
 
 
 def changes(exact: Fit) -> list[Made]:

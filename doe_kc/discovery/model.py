@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
-from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.calibration import input_gains
@@ -96,7 +96,7 @@ class EffectModel:
     @cached_property
     def lower(self) -> FloatArray:
         """(d + m,) lower bounds."""
-        free = [-BEYOND * s.most if s.signed or s.growth == "shape" else 0.0 for s in self.sizes]
+        free = [-BEYOND * s.most if s.signed or s.shape else 0.0 for s in self.sizes]
         rig = np.full(self.dimension - self.parameters, -RIG)
         return np.concatenate([np.zeros(self.parameters), rig, free])
 
@@ -113,6 +113,11 @@ class EffectModel:
     def without(self, hypothesis: Hypothesis) -> EffectModel:
         """The model with one effect less."""
         return replace(self, members=tuple(h for h in self.members if h != hypothesis))
+
+    def with_errors(self, likelihood: Likelihood) -> EffectModel:
+        """The model against the same records with other errors."""
+        sides = None if self.sides is None else rewhitened(self.sides, self.likelihood, likelihood)
+        return replace(self, likelihood=likelihood, sides=sides)
 
     def places(self) -> Iterator[tuple[Hypothesis, slice]]:
         """Each member with the places of its amplitudes in z."""

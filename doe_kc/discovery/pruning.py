@@ -2,36 +2,58 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, followed, with_errors
 
 DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""
 
 
-def pruned(found: Fit, least: float, bench: Bench) -> tuple[Fit, dict[str, float]]:
+def pruned(
+    found: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]
+) -> tuple[Fit, dict[str, float]]:
     """The fit without the members that cost more evidence than they bring.
 
-    Also what the model would lose without each but the latest, ln evidence.
+    Also what the model would lose without each but the latest, ln evidence. without_law: of a member whose
+    law is open, errors that do not grant it, or what it makes would pass for an error of the records.
     """
     losses: dict[str, float] = {}
     while len(found.model.members) > 1:
         losses = {h.name: _loss(found, place) for h, place in list(found.model.places())[:-1]}
         members = [(h, p) for h, p in found.model.places() if losses.get(h.name, np.inf) < DOUBTFUL * least]
-        starts = [(found.model.without(h), np.delete(found.z, np.r_[place])) for h, place in members]
+        withs = [_judged(found, without_law.get(h.name)) for h, _ in members]
+        starts = [
+            (w.model.without(h), np.delete(w.z, np.r_[place]))
+            for w, (h, place) in zip(withs, members, strict=True)
+        ]
         tuning = found.jacobian[:, : found.model.dimension]
         fewer = bench.fitted(starts, "taking effects out", tuning)
-        for (h, _), f in zip(members, fewer, strict=True):
+        for (h, _), w, f in zip(members, withs, fewer, strict=True):
             if f is not None:
-                losses[h.name] = found.evidence - f.evidence
-        kept = [f for f in fewer if f is not None]
-        best = max(kept, key=lambda f: f.evidence, default=None)
-        if best is None or found.evidence - best.evidence > least:
+                losses[h.name] = w.evidence - f.evidence
+        kept = {h.name: f for (h, _), f in zip(members, fewer, strict=True) if f is not None}
+        least_lost = min(kept, key=lambda name: losses[name], default="")
+        if not least_lost or losses[least_lost] > least:
             break
-        found = best
+        found = _with_errors(kept[least_lost], found.model.likelihood)
     return found, losses
+
+
+def _judged(found: Fit, errors: Likelihood | None) -> Fit:
+    """The fit under the errors that a member is judged by."""
+    return found if errors is None else _with_errors(found, errors)
+
+
+def _with_errors(found: Fit, errors: Likelihood) -> Fit:
+    if found.model.likelihood is errors:
+        return found
+    model = found.model.with_errors(errors)
+    return followed(with_errors(found, model), model)
 
 
 def _loss(found: Fit, place: slice) -> float:

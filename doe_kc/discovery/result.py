@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.scan import Scan
@@ -108,7 +109,8 @@ class Discovery:
     axle; tuned: after re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
     scan: places of the generic scan at the re-tuned axle, None where noise explains what remains there.
     widened: by how much all ranges of the parameters are wider than the study's, 1 where the records do not
-    ask for that; beyond: paths of the parameters that the final axle has outside the study's.
+    ask for that; beyond: paths of the parameters that the final axle has outside the study's. separating: of
+    the first effect of a class and each other one, load cases that tell them apart, best first.
     """
 
     verdict: VerdictKind
@@ -133,6 +135,7 @@ class Discovery:
     scan: Scan | None = None
     widened: float = 1.0
     beyond: tuple[str, ...] = ()
+    separating: Mapping[tuple[str, str], tuple[ExtraTest, ...]] = field(default_factory=dict)
 
     @property
     def fitted(self) -> Fit:

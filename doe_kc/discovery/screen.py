@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
@@ -60,6 +61,11 @@ class Screened:
     visible: FloatArray
     failed: str = ""
 
+    def with_errors(self, before: Likelihood, after: Likelihood) -> Screened:
+        """Its changes in units of other errors of the same records; what was concluded stays."""
+        change = rewhitened(self.change, before, after)
+        return replace(self, change=change, columns=rewhitened(self.columns, before, after))
+
 
 def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
     """The hypothesis on its own; one without equilibria comes back as failed."""
@@ -90,7 +96,7 @@ def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
 
 def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArray:
     """(M,) change of the data at typical size; to first order where the axle has no equilibrium there."""
-    amplitudes = np.array([0.0 if s.growth == "shape" else 1.0 for s in hypothesis.sizes])
+    amplitudes = np.array([0.0 if s.shape else 1.0 for s in hypothesis.sizes])
     try:
         return model.residual(np.concatenate([found.z, amplitudes])) - found.residual
     except NotConverged:
@@ -99,8 +105,8 @@ def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArr
 
 
 def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
-    base = np.array([0.0 if s.growth == "shape" or s.signed else first for s in hypothesis.sizes])
-    shapes = [i for i, s in enumerate(hypothesis.sizes) if s.growth == "shape"]
+    base = np.array([0.0 if s.shape or s.signed else first for s in hypothesis.sizes])
+    shapes = [i for i, s in enumerate(hypothesis.sizes) if s.shape]
     out = []
     for shape in SHAPES if shapes else (0.0,):
         start = base.copy()
@@ -216,7 +222,7 @@ def _summary(
 def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> FloatArray:
     """(m,) see `Screened`. columns: (M + d, m) and change (M + d,) of the effect, re-tuning projected out."""
     out = np.full(len(hypothesis.sizes), np.nan)
-    amounts = [i for i, s in enumerate(hypothesis.sizes) if s.growth != "shape"]
+    amounts = [i for i, s in enumerate(hypothesis.sizes) if not s.shape]
     if len(amounts) == 1:
         out[amounts] = np.linalg.norm(change)
     elif amounts:
@@ -229,7 +235,8 @@ def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> 
 def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
     """The score test at another model with the columns known from an earlier one: no new solution.
 
-    amplitudes and gain to first order; hypotheses without sizes keep their amplitude, there or not.
+    known: its changes in the other model's errors. amplitudes and gain to first order; hypotheses without
+    sizes keep their amplitude, there or not.
     """
     if known.failed:
         return known

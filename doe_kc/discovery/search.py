@@ -12,8 +12,8 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
-from doe_kc.discovery.fit import Fit, fit, followed, rewhitened
-from doe_kc.discovery.granted import opened
+from doe_kc.discovery.fit import Fit, fit, followed, with_errors
+from doe_kc.discovery.granted import closed, opened
 from doe_kc.discovery.leaders import compatible, leaders
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
@@ -76,14 +76,19 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
     steps: list[Step] = []
     losses: dict[str, float] = {}
     shares: dict[str, float] = {}
+    without_law: dict[str, Likelihood] = {}
     while True:
-        step = _step(current, library, bench, steps[-1].screened if steps else ())
+        step = _step(current, library, bench, steps[-1] if steps else None)
         steps.append(step)
         if not step.accepted or len(step.trials[0].fit.model.members) > MOST:
             break
-        current, lost = pruned(step.trials[0].fit, threshold(len(library)), bench)
+        current, lost = pruned(step.trials[0].fit, threshold(len(library)), bench, without_law)
         losses |= {step.trials[0].hypothesis.name: step.trials[0].gain, **lost}
-        current, shares = opened(to_records(with_conditioning(current, model.axle, bench), model.likelihood))
+        exact = to_records(with_conditioning(current, model.axle, bench), model.likelihood)
+        current, shares = opened(exact)
+        without_law = closed(exact, shares)
+        if current.model.likelihood is not step.trials[0].fit.model.likelihood:
+            current = settled(current, bench)
     return Search(tuned, tuple(steps), current, to_records(current, model.likelihood), losses, shares)
 
 
@@ -105,10 +110,20 @@ def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
     return found
 
 
+def settled(current: Fit, bench: Bench) -> Fit:
+    """The fit at its own optimum, on derivatives taken there.
+
+    What parameters hide almost wholly shows by what is left between two large columns, which derivatives of
+    a model nearby do not give.
+    """
+    (found,) = bench.fitted([(current.model, current.z)], "settling", current.jacobian)
+    return found or current
+
+
 def to_records(current: Fit, likelihood: Likelihood) -> Fit:
     """The fit to the records' own errors alone, from where it is."""
-    own = replace(current.model, likelihood=likelihood)
-    return followed(rewhitened(current, own), own)
+    own = current.model.with_errors(likelihood)
+    return followed(with_errors(current, own), own)
 
 
 def tune(model: EffectModel) -> Fit:
@@ -133,12 +148,13 @@ def _step(
     current: Fit,
     library: Sequence[Hypothesis],
     bench: Bench,
-    known: Sequence[Screened],
+    last: Step | None,
 ) -> Step:
-    """known: the step before; its columns tell which hypotheses are worth a screening anew."""
+    """last: the step before; its columns tell which hypotheses are worth a screening anew."""
     project, shapes = projection(current), contrasts(current.model.likelihood)
     before = remaining_map(shapes, current.residual, project)
     candidates = [h for h in library if compatible(current.model, h)]
+    known = _in_errors(last, current.model.likelihood) if last else ()
     quick = {s.hypothesis.name: rescreened(current, project, s) for s in known}
     again = [h for h in candidates if h.name not in quick or quick[h.name].gain > PROMISING]
     full = {s.hypothesis.name: s for s in bench.screened(current, again)}
@@ -154,3 +170,8 @@ def _step(
     temper = max(1.0, after.mean_square)
     passes = trials[0].gain / temper > least
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
+
+
+def _in_errors(step: Step, likelihood: Likelihood) -> list[Screened]:
+    """What a step screened, in other errors of the records."""
+    return [s.with_errors(step.before.model.likelihood, likelihood) for s in step.screened]

@@ -113,11 +113,39 @@ def next_tests(
         for f in findings:
             ident = f.hypothesis.effect
             out.setdefault(ident, f"To confirm {_known(ident)}: {EFFECTS[ident].shown_by}.")
-    hidden = [s for s in standings if s.status == "not testable"]
-    for effect in dict.fromkeys(s.hypothesis.effect for s in hidden):
-        if all(s.status == "not testable" for s in standings if s.hypothesis.effect == effect):
-            out.setdefault(effect, f"Not testable here, {_known(effect)}: {EFFECTS[effect].shown_by}.")
+    for effect, best in _hidden(standings):
+        how = f"{_bench(best)}{EFFECTS[effect].shown_by}"
+        out.setdefault(effect, f"Not testable here, {_known(effect)}: {how}.")
     return tuple(list(out.values())[:ADVISED])
+
+
+def _hidden(standings: Sequence[Standing]) -> list[tuple[str, Standing]]:
+    """Effects of which no place is testable, each with the place that measured parts show best; those that
+    they show come first, by how many parts that takes."""
+    places: dict[str, list[Standing]] = {}
+    for s in standings:
+        places.setdefault(s.hypothesis.effect, []).append(s)
+    best = [
+        (effect, min(each, key=_effort))
+        for effect, each in places.items()
+        if all(s.status == "not testable" for s in each)
+    ]
+    return sorted(best, key=lambda item: _effort(item[1]))
+
+
+def _effort(standing: Standing) -> tuple[float, float]:
+    test = standing.bench
+    return (float("inf"), 0.0) if test is None else (len(test.parts), -test.separation)
+
+
+def _bench(standing: Standing) -> str:
+    test = standing.bench
+    if test is None:
+        return ""
+    return (
+        f"measure {', '.join(test.parts)} on a bench, then its typical size makes {test.separation:.0f} "
+        "standard deviations; or "
+    )
 
 
 def _separated(one: str, other: str, tests: Sequence[ExtraTest]) -> str:

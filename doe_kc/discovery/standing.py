@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr
 
+from doe_kc.discovery.component_test import ComponentTest, component_tests
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
@@ -22,8 +23,8 @@ POWER = 0.84
 ALIKE = 0.8
 """|correlation| after re-tuning from which two effects are listed as alike."""
 UNSURE = 0.005
-"""Share of a change's square below which what re-tuning leaves of it is not believed: it is linear to first
-order only, and parameters that follow so far bend."""
+"""Share of a change's square below which deviations that re-tuning leaves of it are not believed: it is
+linear to first order only, and parameters that follow so far bend."""
 HIDING = 3
 """Parameters listed that hide an effect."""
 
@@ -36,7 +37,8 @@ class Standing:
     found in 80 % of cars whatever the others are; inf when re-tuning absorbs nearly all, nan for a shape.
     detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
     parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
-    remaining change is the same, with the correlation.
+    remaining change is the same, with the correlation. bench: of one that is not testable, parts to measure
+    that would show it.
     """
 
     hypothesis: Hypothesis
@@ -46,6 +48,7 @@ class Standing:
     hidden_by: tuple[tuple[str, float], ...]
     alike: tuple[tuple[str, float], ...]
     limits: tuple[float, ...] = ()
+    bench: ComponentTest | None = None
 
 
 def standings(
@@ -68,10 +71,12 @@ def standings(
     moves = _moves(found, np.array([s.change for s in everything]).T)
     out = []
     for i, s in enumerate(everything):
-        limits = np.array([_limit(v, w, critical) for v, w in zip(s.visible, _whole(s), strict=True)])
+        by_bounds = float(np.linalg.norm(changes[found.residual.size :, i]))
+        limits = _limits(s, by_bounds, critical)
         amounts = limits[~np.isnan(limits)]
         whole = float(np.linalg.norm(s.change))
-        detectable = float(amounts.min()) if amounts.size else _limit(s.detectability, whole, critical)
+        seen = _trusted(s.detectability, whole, by_bounds)
+        detectable = float(amounts.min()) if amounts.size else _limit(seen, critical)
         status: Status = known.get(i) or _status(s, detectable)
         alike = tuple(
             (everything[j].hypothesis.name, float(correlation[i, j]))
@@ -81,6 +86,10 @@ def standings(
         hidden_by = _hiding(found, moves[:, i], s)
         stands = Standing(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
         out.append(stands)
+    hidden = [i for i, s in enumerate(out) if s.status == "not testable"]
+    tests = component_tests(found, [everything[i] for i in hidden], critical + POWER)
+    for i, test in zip(hidden, tests, strict=True):
+        out[i] = replace(out[i], bench=test)
     return tuple(out)
 
 
@@ -89,18 +98,31 @@ def said_limit(size: Size, amplitude: float) -> float | None:
     return size.value(amplitude) if amplitude <= size.most else None
 
 
-def _whole(screened: Screened) -> FloatArray:
-    """(m,) what each size makes at its typical value before re-tuning, standard deviations."""
+def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray:
+    """(m,) see `Standing`. by_bounds: see `_trusted`."""
     sizes = screened.hypothesis.sizes
-    if sum(s.growth != "shape" for s in sizes) == 1:
-        return np.full(len(sizes), np.linalg.norm(screened.change))
-    return np.asarray(np.linalg.norm(screened.columns, axis=0))
+    if sum(not s.shape for s in sizes) == 1:
+        seen = _trusted(screened.detectability, float(np.linalg.norm(screened.change)), by_bounds)
+        return np.array([np.nan if s.shape else _limit(seen, critical) for s in sizes])
+    whole = np.linalg.norm(screened.columns, axis=0)
+    return np.array(
+        [_limit(_trusted(v, w, 0.0), critical) for v, w in zip(screened.visible, whole, strict=True)]
+    )
 
 
-def _limit(visible: float, whole: float, critical: float) -> float:
+def _trusted(visible: float, whole: float, by_bounds: float) -> float:
+    """Standard deviations that are believed of those that re-tuning leaves of an effect.
+
+    whole: before re-tuning. by_bounds: the part that is left because parameters would have to move too far,
+    which no bend of theirs undoes; the rest are deviations of the records.
+    """
+    left = visible**2 - by_bounds**2
+    return by_bounds if left <= UNSURE * whole**2 else visible
+
+
+def _limit(visible: float, critical: float) -> float:
     """Amplitude from which a size that makes `visible` standard deviations when typical would be found."""
-    hidden = visible**2 <= UNSURE * whole**2
-    return float("inf") if hidden else (critical + POWER) / visible
+    return float("inf") if visible <= 0.0 else (critical + POWER) / visible
 
 
 def _status(screened: Screened, detectable: float) -> Status:

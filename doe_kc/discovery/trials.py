@@ -46,7 +46,7 @@ def plausible(trial: Trial) -> bool:
     sd = np.sqrt(np.diag(trial.fit.covariance))
     count = len(trial.hypothesis.sizes)
     sizes = zip(trial.hypothesis.sizes, trial.fit.z[-count:], sd[-count:], strict=True) if count else ()
-    return believed((s, float(a), float(e)) for s, a, e in sizes if s.growth != "shape")
+    return believed((s, float(a), float(e)) for s, a, e in sizes if not s.shape)
 
 
 def stiffer_first(trials: list[Trial]) -> list[Trial]:

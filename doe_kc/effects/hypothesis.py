@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-Growth = Literal["amount", "compliance", "factor", "shape"]
+Growth = Literal["amount", "compliance", "factor", "shape", "bend"]
 
 ABSENT = 1e-4
 """Smallest amplitude of a size that cannot be negative: so small that it stands for none (rigid, no gap)."""
@@ -21,7 +21,8 @@ class Size:
     key: option of the effect's table; index: place in it where the option is a list. typical: value at
     a = 1, in `unit`. growth: amount, value = typical a; compliance, value = typical a^(-1/power), rigid at
     0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(0.7 a), a number
-    that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off.
+    that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend, value =
+    typical a, a shape that may go either way and is none at 0.
     signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
     have.
     """
@@ -40,8 +41,15 @@ class Size:
         """Unique in its hypothesis, e.g. `LLR[1]`."""
         return self.key if self.index is None else f"{self.key}[{self.index}]"
 
+    @property
+    def shape(self) -> bool:
+        """Whether the number says how and not how much."""
+        return self.growth in ("shape", "bend")
+
     def value(self, amplitude: float) -> float:
         """The option's number, in `unit`."""
+        if self.growth == "bend":
+            return self.typical * amplitude
         if self.growth == "amount":
             return self.typical * (amplitude if self.signed else max(amplitude, ABSENT))
         if self.growth == "compliance":

@@ -1,4 +1,7 @@
-"""Rack housing that slides along the sub-frame's Y on a spring; rack and pinion ride on it."""
+"""Rack housing that slides along the sub-frame's Y on a spring; rack and pinion ride on it.
+
+The mount's force is k h (1 + c q / (1 + q)), q = (h / reference)^2: it grows stiffer by the share c far out.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,10 @@ from typing import Any, ClassVar
 from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Size
+from doe_kc.errors import InputError
+
+SOFTEST = -0.88
+"""Stiffening at which the slope of the mount's force, at least k (1 + 9/8 c), is nearly zero."""
 
 
 @effect
@@ -20,6 +27,8 @@ class RackMountCompliance(Effect):
     table: ClassVar[str] = "rack_mount"
     options: ClassVar[Mapping[str, Option]] = {
         "k_N_mm": Option(6000.0, "N/mm"),
+        "stiffening": Option(0.0, "-", positive=False),
+        "reference_mm": Option(0.2, "mm"),
     }
 
     physics: ClassVar[str] = (
@@ -28,8 +37,26 @@ class RackMountCompliance(Effect):
     )
     mistaken_for: ClassVar[tuple[str, ...]] = ("scb.Tz", "tie_rod_compliance", "subframe_flexibility")
     shown_by: ClassVar[str] = "a dial gauge between rack housing and sub-frame under lateral force in phase"
-    sizes: ClassVar[tuple[Size, ...]] = (Size("k_N_mm", 6000.0, "N/mm", "compliance"),)
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("k_N_mm", 6000.0, "N/mm", "compliance"),
+        Size("stiffening", 0.15, "-", "bend", most=2.5),
+    )
+
+    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
+        checked = super().read(given, source)
+        if checked["stiffening"] <= SOFTEST:
+            raise InputError(
+                f"{source}: effect {self.id}: stiffening = {checked['stiffening']:g}, expected more than "
+                f"{SOFTEST}: the mount's force would fall while it deflects further."
+            )
+        return checked
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        changed = axle.changed({"rack_mount.rate": options["k_N_mm"]})
+        changed = axle.changed(
+            {
+                "rack_mount.rate": options["k_N_mm"],
+                "rack_mount.stiffening": options["stiffening"],
+                "rack_mount.reference": options["reference_mm"],
+            }
+        )
         return replace(changed, topology=replace(axle.topology, rack_mount=True))

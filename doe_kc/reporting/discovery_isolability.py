@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.standing import Status
@@ -78,16 +78,6 @@ def _changes(found: Discovery) -> dict[str, FloatArray]:
     return {
         name: rewhitened(s.change, step.before.model.likelihood, final) for name, (s, step) in last.items()
     }
-
-
-def rewhitened(rows: FloatArray, before: Likelihood, after: Likelihood) -> FloatArray:
-    """(M,) of the same data, from units of one likelihood's errors to those of another."""
-    if before is after:
-        return rows
-    out = rows.copy()
-    for (old, place), new in zip(before.slices(), after.curves, strict=True):
-        out[place] = new.whitened(old.root @ rows[place])
-    return out
 
 
 def isolability_figure(table: Isolability, study: str) -> Figure:

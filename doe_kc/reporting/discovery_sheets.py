@@ -105,16 +105,16 @@ def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
     ws = book.create_sheet("Library")
     below = (
         "Excluded: would have been found from the detectable size on. Not testable: re-tuning absorbs it, "
-        "or it shows too little; see what hides it."
+        "or it shows too little; see what hides it, and the parts that, measured on a bench, would show it."
     )
     title(ws, f"Library of effects: {study}", below)
     frame = library_frame(found)
     heads = (
         "Id", "Effect", "Place", "Status", "Detectable size", "Times typical", "Typical size", "Absorbed, %",
-        "Hidden by", "Looks like", "Mistaken for", "What happens in the car", "Shown by",
+        "Hidden by", "Parts to measure", "Looks like", "Mistaken for", "What happens in the car", "Shown by",
     )  # fmt: skip
     table(ws, heads, _rows(frame), formats=["", "", "", "", "", "0.000", "", "0.0"])
-    wide = [24, 30, 20, 13, 34, 10, 30, 11, 34, 40, 40, 50, 44]
+    wide = [24, 30, 20, 13, 34, 10, 30, 11, 34, 34, 40, 40, 50, 44]
     wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
     ws.freeze_panes = ws.cell(FIRST, 4)
     page(ws, study, paper=A3, single=True)

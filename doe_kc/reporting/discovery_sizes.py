@@ -53,7 +53,7 @@ def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
         finding.hypothesis.sizes, finding.estimates, range(place.start, place.stop), strict=True
     ):
         amplitude = float(found.fitted.z[i])
-        one_sided = not (size.signed or size.growth in ("shape", "factor"))
+        one_sided = not (size.signed or size.shape or size.growth == "factor")
         yield FoundSize(
             size,
             estimate,

@@ -90,6 +90,7 @@ def _library(standing: Standing, labels: Mapping[str, str]) -> dict[str, object]
         "typical": typical_words(h),
         "absorbed_percent": 100.0 * standing.absorbed,
         "hidden_by": hidden_words(standing),
+        "parts_to_measure": bench_words(standing),
         "looks_like": alike_words(standing, labels),
         "mistaken_for": mistaken_words(h.effect),
         "physics": EFFECTS[h.effect].physics,
@@ -100,6 +101,12 @@ def _library(standing: Standing, labels: Mapping[str, str]) -> dict[str, object]
 def hidden_words(standing: Standing) -> str:
     """Parameters that take the effect's place, with their move in standard deviations of the prior."""
     return ", ".join(f"{path} ({move:+.1f} sd)" for path, move in standing.hidden_by)
+
+
+def bench_words(standing: Standing) -> str:
+    """Parts that a bench has to measure for the effect to show, and by how much it then does."""
+    test = standing.bench
+    return "" if test is None else f"{', '.join(test.parts)} ({test.separation:.0f} sd)"
 
 
 def alike_words(standing: Standing, labels: Mapping[str, str]) -> str:

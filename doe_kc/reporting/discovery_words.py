@@ -123,7 +123,7 @@ def merged_sizes(hypothesis: Hypothesis) -> list[Size]:
 def _limit(size: Size, amplitudes: Sequence[float]) -> str:
     """Of one option; amplitudes: of each of its components."""
     said = [a if said_limit(size, a) is not None else math.nan for a in amplitudes]
-    if size.growth == "shape":
+    if size.shape:
         return ""
     if all(map(math.isnan, said)):
         return f"{size.key} not shown"

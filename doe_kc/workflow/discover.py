@@ -92,9 +92,18 @@ def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
 
 
 def discover_folder(
-    axle_path: Path, measurement_dir: Path, *, exclude: Sequence[str] = (), out: Path, workers: int = 1
+    axle_path: Path,
+    measurement_dir: Path,
+    *,
+    variables: VariableOptions | None = None,
+    exclude: Sequence[str] = (),
+    out: Path,
+    workers: int = 1,
 ) -> dict[str, object]:
-    """An axle file against a folder of records, without a study file; the answer as data."""
+    """An axle file against a folder of records, without a study file; the answer as data.
+
+    variables: as in a study, by default all of the axle.
+    """
     from doe_kc.axle import read_axle
     from doe_kc.measurement import reduce_measurement
     from doe_kc.workflow.discovery_document import discovery_document
@@ -103,7 +112,7 @@ def discover_folder(
     measurement = reduce_measurement(measurement_dir, half_track=axle.half_track)
     axle = recorded(axle, measurement)
     library = effect_library(axle, exclude)
-    space = discovery_space(axle, VariableOptions(), str(axle_path))
+    space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
     with processes(workers) as executor, Ledger(out / "discovery.sqlite") as ledger:
         found = discover(model, library, Bench(executor, ledger, workers=workers))

@@ -25,6 +25,7 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
     below it), null for a size that the records do not show. beyond_bounds: paths of parameters that the
     records ask to be outside the study's bounds. points_to: interface and law of the generic scan, where the
     verdict is unexplained. not_testable: ids of which no place is testable. gap: whitened RMS of all records.
+    further_tests: those of next_test that are computed, see `further_tests`.
     """
     findings = [effect_entry(f) for f in found.findings]
     open_ = found.verdict == "unexplained"
@@ -47,6 +48,7 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
         "points_to": _place(found),
         "beyond_bounds": list(found.beyond),
         "next_test": list(found.next_tests),
+        "further_tests": further_tests(found),
         "axle": None if axle_path is None else str(axle_path),
     }
     return {key: _finite(value) for key, value in document.items()}
@@ -89,9 +91,41 @@ def _place(found: Discovery) -> dict[str, Any] | None:
     }
 
 
+def further_tests(found: Discovery) -> list[dict[str, Any]]:
+    """Load cases that would tell two effects apart, and parts to measure that would show a hidden one.
+
+    separation: standard deviations; of a component test those that the effect makes at its typical size.
+    """
+    runs = [
+        {
+            "kind": "load_case",
+            "effects": list(pair),
+            "load_case": test.case.id,
+            "amplitude": test.case.amplitude,
+            "unit": test.case.unit,
+            "offset_mm": getattr(test.case, "offset", None),
+            "separation": test.separation,
+        }
+        for pair, tests in found.separating.items()
+        for test in tests
+    ]
+    parts = [
+        {
+            "kind": "component",
+            "effects": [s.hypothesis.effect],
+            "location": s.hypothesis.location,
+            "parts": list(s.bench.parts),
+            "separation": s.bench.separation,
+        }
+        for s in found.standings
+        if s.bench is not None
+    ]
+    return [*runs, *parts]
+
+
 def _excluded(standing: Standing) -> dict[str, Any]:
     h = standing.hypothesis
-    above = {s.key: {"value": _limit(s, standing), "unit": s.unit} for s in h.sizes if s.growth != "shape"}
+    above = {s.key: {"value": _limit(s, standing), "unit": s.unit} for s in h.sizes if not s.shape}
     return {"id": h.effect, "location": h.location, "above": above}
 
 

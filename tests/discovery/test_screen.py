@@ -68,7 +68,7 @@ def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) ->
 def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
     found = screen(tuned, projection(tuned), friction)
-    amounts = [s.growth != "shape" for s in friction.sizes]
+    amounts = [not s.shape for s in friction.sizes]
     assert found.visible[amounts] == pytest.approx(found.detectability)
     assert np.isnan(found.visible[~np.array(amounts)]).all()
 

@@ -26,7 +26,11 @@ DEFAULTS: dict[str, dict[str, float]] = {
     "hub_compliance": {"hub.camber": 6000.0, "hub.toe": 9000.0},
     "left_right_asymmetry": {"right.llr.Fx": 1.25, "right.llr.Fz": 1.25, "right.llr.Tx": 1.0, "llr.Fx": 1.0},
     "power_assist": {"power_assist.gain": 1.0, "power_assist.reference": 300.0},
-    "rack_mount_compliance": {"rack_mount.rate": 6000.0},
+    "rack_mount_compliance": {
+        "rack_mount.rate": 6000.0,
+        "rack_mount.stiffening": 0.0,
+        "rack_mount.reference": 0.2,
+    },
     "ride_height_offset": {"ride_height": 7.0},
     "rig_channel_gain": {},
     "rig_channel_offset": {},
@@ -150,8 +154,15 @@ def test_zero_and_negative_values(ident: str, key: str, value: float) -> None:
     if EFFECTS[ident].options[key].positive:
         with pytest.raises(InputError, match=f"{ident}: {key} = .*> 0"):
             applied(ident, {key: value})
-    else:
+    elif ident == "ride_height_offset":
         assert applied(ident, {key: value}).values["ride_height"] == value
+    else:
+        assert applied(ident, {key: value / 2.0}).values["rack_mount.stiffening"] == value / 2.0
+
+
+def test_a_mount_whose_force_would_fall_is_refused() -> None:
+    with pytest.raises(InputError, match=r"stiffening = -0.9, expected more than -0.88"):
+        applied("rack_mount_compliance", {"stiffening": -0.9})
 
 
 def test_the_near_key_is_suggested() -> None:

@@ -13,7 +13,7 @@ from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.reporting.discovery_effects import effect_frame, effect_rows
 from doe_kc.reporting.discovery_evidence import evidence_steps
 from doe_kc.reporting.discovery_grid import discovery_grids
-from doe_kc.reporting.discovery_isolability import isolability, rewhitened
+from doe_kc.reporting.discovery_isolability import isolability
 from doe_kc.reporting.discovery_sizes import found_sizes, size_words
 from doe_kc.reporting.discovery_tables import (
     disagreement_frame,
@@ -144,15 +144,6 @@ def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
     np.testing.assert_allclose(np.diag(table.correlation)[seen], 1.0)
     np.testing.assert_array_equal(table.correlation, table.correlation.T)
     assert "found" in table.statuses
-
-
-def test_changes_keep_their_curves_between_likelihoods() -> None:
-    before = discovery("named").search.tuned.model.likelihood
-    wider = replace(before, curves=tuple(replace(c, root=2.0 * c.root) for c in before.curves))
-    rows = np.random.default_rng(1).standard_normal(before.size)
-    curves = before.size - len(before.figures)
-    np.testing.assert_allclose(rewhitened(rows, before, wider)[:curves], rows[:curves] / 2.0)
-    np.testing.assert_array_equal(rewhitened(rows, before, before), rows)
 
 
 @pytest.mark.parametrize(

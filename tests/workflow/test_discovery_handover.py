@@ -27,7 +27,7 @@ CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 KEYS = [
     "verdict", "effects", "leads", "traces", "classes", "excluded", "not_testable", "unexplained_at", "gap",
     "held_out", "points_to",
-    "beyond_bounds", "next_test", "axle",
+    "beyond_bounds", "next_test", "further_tests", "axle",
 ]  # fmt: skip
 
 

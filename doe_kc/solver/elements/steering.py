@@ -30,7 +30,7 @@ class Steering(Element):
         carrier = cut(b, "rack housing|sub-frame", "", carrier, [("RIB", "L"), ("RIB", "R")])
         if b.topology.rack_mount:
             carrier, housing = _slider(b, "rack housing", carrier)
-            b.resist("rack housing", b.constant(b.parameter("rack_mount.rate")) * housing)
+            b.resist("rack housing", _mount(b, housing))
         b.bodies["rack"], travel = _slider(b, "rack", carrier)
         column = b.constant(b.parameter("scb.Tz") * b.parameter("steering.column"))
         angle = travel - b.control("rack")
@@ -48,6 +48,13 @@ def _assistance(b: Builder, windup: ca.SX) -> ca.SX:
     """Assist force over the column's own force."""
     share = (windup / b.constant(b.parameter("power_assist.reference"))) ** 2
     return b.constant(b.parameter("power_assist.gain")) * share / (1 + share)
+
+
+def _mount(b: Builder, travel: ca.SX) -> ca.SX:
+    """Force of the rack housing's mount."""
+    far = (travel / b.constant(b.parameter("rack_mount.reference"))) ** 2
+    stiffening = b.constant(b.parameter("rack_mount.stiffening"))
+    return b.constant(b.parameter("rack_mount.rate")) * travel * (1 + stiffening * far / (1 + far))
 
 
 def _slider(b: Builder, name: str, carrier: Body) -> tuple[Body, ca.SX]:

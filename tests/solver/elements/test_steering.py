@@ -64,8 +64,12 @@ def test_half_the_assistance_is_there_at_the_reference_force() -> None:
 def test_a_rack_mount_carries_rack_and_pinion() -> None:
     b = assembled(rack_mount=True)
     assert [j.label for j in b.joints] == ["rack housing", "rack"]
-    given = {"rack_mount.rate": 6000.0, "rack housing": 0.4}
+    linear = {"rack_mount.rate": 6000.0, "rack_mount.stiffening": 0.0, "rack_mount.reference": 0.2}
+    given = linear | {"rack housing": 0.4}
     assert number(b, b.resistances["rack housing"], given) == pytest.approx(2400.0)
+    # q = (0.4 / 0.2)^2 = 4, so that four fifths of the stiffening are there
+    stiffer = given | {"rack_mount.stiffening": 0.25}
+    assert number(b, b.resistances["rack housing"], stiffer) == pytest.approx(2400.0 * 1.2)
     # the pinion rides on the housing: its motion winds nothing up
     assert number(b, b.points["column force"], given) == pytest.approx(0.0)
     still = number(b, b.bodies["rack"].origin, given | {"rack housing": 0.0})
