@@ -15,6 +15,18 @@ def short(value: float) -> str:
     return f"{value:.{digits}f}"
 
 
+def number(value: float, digits: int = 3) -> str:
+    """Significant digits for reading, without an exponent for ordinary sizes."""
+    if not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    places = digits - 1 - math.floor(math.log10(abs(value)))
+    if places < -3 or places > 6:
+        return f"{value:.{digits}g}"
+    return f"{round(value, places):.{max(0, places)}f}"
+
+
 def with_sd(value: float, sd: float) -> str:
     """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
     if not math.isfinite(sd) or sd <= 0.0:
@@ -22,3 +34,11 @@ def with_sd(value: float, sd: float) -> str:
     place = min(1 - math.floor(math.log10(sd)), MOST_DECIMALS)
     digits = max(place, 0)
     return f"{round(value, place):.{digits}f} ± {round(sd, place):.{digits}f}"
+
+
+def sd_format(sd: float) -> str:
+    """Number format of a sheet for a value with this standard deviation, or of the deviation itself."""
+    if not math.isfinite(sd) or sd <= 0.0:
+        return "0.0000"
+    digits = max(0, min(1 - math.floor(math.log10(sd)), MOST_DECIMALS))
+    return "0." + "0" * digits if digits else "0"

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
-from doe_kc.rounding import short, with_sd
+import pytest
+
+from doe_kc.rounding import number, sd_format, short, with_sd
 
 
 def test_four_significant_digits_without_an_exponent() -> None:
@@ -22,3 +24,33 @@ def test_no_digit_that_the_uncertainty_does_not_bear() -> None:
 
 def test_a_value_without_a_sd_stands_alone() -> None:
     assert with_sd(1.25, math.nan) == with_sd(1.25, 0.0) == "1.250"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.0, "0"),
+        (math.nan, "–"),
+        (131567.0, "132000"),
+        (0.04567, "0.0457"),
+        (9e7, "9e+07"),
+        (-14.15, "-14.2"),
+    ],
+)
+def test_numbers_read_well(value: float, text: str) -> None:
+    assert number(value) in {text, text.replace("14.2", "14.1")}
+
+
+@pytest.mark.parametrize(
+    ("sd", "form"),
+    [
+        (1145.8, "0"),
+        (12.3, "0"),
+        (0.64, "0.00"),
+        (0.0021, "0.0000"),
+        (1e-9, "0.000000"),
+        (math.nan, "0.0000"),
+    ],
+)
+def test_a_sheet_shows_two_digits_of_the_deviation(sd: float, form: str) -> None:
+    assert sd_format(sd) == form

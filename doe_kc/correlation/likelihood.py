@@ -154,12 +154,12 @@ def build_likelihood(
         for t in targets.characteristics
         if t.entry.id not in measured or t.value != measured[t.entry.id].value
     ]
-    replaced = {(t.entry.load_case, t.entry.response) for t in typed} | targets.dropped
+    left_out = {(t.entry.load_case, t.entry.response) for t in typed} | targets.dropped
     wanted = {(c.load_case, c.response) for c in targets.curves}
     curves = [
         c
         for c in ([] if measurement is None else _measured(axle, measurement))
-        if (c.load_case, c.response) not in replaced
+        if (c.load_case, c.response) not in left_out
         and (not only_targets or (c.load_case, c.response) in wanted)
     ]
     order = list(CHARACTERISTICS)
@@ -169,7 +169,7 @@ def build_likelihood(
         if t.active
     ]
     static = [] if measurement is None else list(_static(measurement))
-    statics = [f for f in static if ("static", f.response) not in replaced]
+    statics = [f for f in static if ("static", f.response) not in left_out]
     return Likelihood(tuple(curves), (*statics, *figures))
 
 

@@ -24,7 +24,7 @@ class BushingProgression(BushingValues):
     typical: ClassVar[Mapping[str, float]] = dict.fromkeys(BUSHINGS, 0.05) | {"upb": 0.02}
 
     most: ClassVar[float] = 10.0
-    # typical is of a bushing that works over 2 mm; one that reaches its stop within 1 mm looks far sharper
+    """Typical is of a bushing that works over 2 mm; one that has its stop within 1 mm looks far sharper."""
 
     physics: ClassVar[str] = (
         "A bushing stiffens as it deflects, so that compliance curves flatten towards large loads."

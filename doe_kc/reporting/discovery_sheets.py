@@ -31,6 +31,7 @@ from doe_kc.reporting.workbook_cells import (
     widths,
 )
 from doe_kc.reporting.workbook_table import FIRST, Value, table
+from doe_kc.rounding import sd_format
 
 STRONG = 20.0
 """Standard deviations at which the colour of a disagreement is full."""
@@ -94,6 +95,8 @@ def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
     table(ws, heads, _rows(frame), formats=formats)
     if frame.empty:
         put(ws, FIRST, 1, "No effect is asked for.", color=MUTED)
+    for row, sd in enumerate(frame["sd"], start=FIRST):
+        ws.cell(row, 7).number_format = ws.cell(row, 8).number_format = sd_format(float(sd))
     wide = [24, 30, 16, 9, 11, 16, 13, 11, 9, 10, 10, 34, 12, 13, 12, 34, 44, 44, 34]
     wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
     ws.freeze_panes = ws.cell(FIRST, 4)

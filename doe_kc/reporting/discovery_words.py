@@ -12,6 +12,7 @@ from doe_kc.discovery.standing import Standing, Status, said_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.reporting.names import case_label, response_name
+from doe_kc.rounding import number
 from doe_kc.solver.load_cases import LOAD_CASES
 
 HEADLINES: dict[VerdictKind, str] = {
@@ -87,18 +88,6 @@ def wheels(contrast: Contrast) -> str:
 def unit_words(unit: str) -> str:
     """A blank and the unit, nothing for a ratio."""
     return "" if unit in ("", "-") else f" {unit}"
-
-
-def number(value: float, digits: int = 3) -> str:
-    """Significant digits for reading, without an exponent for ordinary sizes."""
-    if not math.isfinite(value):
-        return "–"
-    if value == 0.0:
-        return "0"
-    places = digits - 1 - math.floor(math.log10(abs(value)))
-    if places < -3 or places > 6:
-        return f"{value:.{digits}g}"
-    return f"{round(value, places):.{max(0, places)}f}"
 
 
 def limit_words(standing: Standing) -> str:

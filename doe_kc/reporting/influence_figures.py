@@ -87,7 +87,7 @@ def _number(value: float) -> str:
 
 
 def _name(entry: Characteristic) -> str:
-    return f"{entry.label} / {entry.unit}"
+    return f"{entry.label} [{entry.unit}]"
 
 
 def _case_names(ax: Axes, influence: Influence, at: Layout) -> None:

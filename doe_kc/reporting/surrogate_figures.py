@@ -68,7 +68,7 @@ def _panel(ax: Axes, report: SurrogateReport, j: int, predicted: FloatArray, sd:
         axis.set_major_locator(MaxNLocator(3))
     q2 = report.fitted.models[name].quality.q2[j]
     how = f"{name}, Q² {q2:.4f}" if np.isfinite(q2) else "never changes"
-    heads = f"{case_label(entry.load_case)}\n{entry.label} / {entry.unit}\n{how}"
+    heads = f"{case_label(entry.load_case)}\n{entry.label} [{entry.unit}]\n{how}"
     ax.set_title(heads, fontsize=6.5, parse_math=False)
 
 

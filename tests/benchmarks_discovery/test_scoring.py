@@ -15,6 +15,7 @@ from benchmarks.discovery.detectability import wrong_name
 from benchmarks.discovery.report import Run, write
 from benchmarks.discovery.scoring import Predicted, Score, score
 from benchmarks.discovery.statistics import brier, calibration_error, reliability, wilson
+from benchmarks.discovery.table import followup_lines
 from benchmarks.discovery.truth import TrueEffect, Truth
 
 RUN = Run("python x", "example", 1, "abc", "a machine")
@@ -77,6 +78,37 @@ def test_an_effect_that_is_said_not_to_be_testable_is_left_open(
     found = score(TRUTHS[3], read_answer(answer), Predicted(50.0, 0.001))
     assert found.open is is_open
     assert not found.in_class
+
+
+@pytest.mark.parametrize(
+    ("place", "above", "is_open"),
+    [
+        ("LLR", [370.0, None, 370.0], True),
+        ("LLR", [None, 370.0, None], False),
+        ("LLF", [370.0, 370.0, 370.0], True),
+        ("LLR", [None, 900.0, None], False),
+    ],
+    ids=["its component is not shown", "excluded", "only elsewhere", "excluded above its size"],
+)
+def test_a_place_that_the_records_do_not_show_is_left_open(
+    place: str, above: list[float | None], is_open: bool
+) -> None:
+    effect = TrueEffect("bushing_preload", 1.0, "LLR", {"LLR[0]": 40.0, "LLR[1]": 600.0}, False)
+    truth = Truth("x", "confounded", (effect,), {}, "", frozenset())
+    said = {"id": "bushing_preload", "location": place, "above": {place: {"value": above, "unit": "N"}}}
+    assert score(truth, read_answer({"verdict": "none", "excluded": [said]})).open is is_open
+
+
+def test_what_the_tests_advised_bring_is_told() -> None:
+    truths = [_truth(name, "confounded", "steering_friction") for name in "abc"]
+    first = [
+        score(truths[0], read_answer(pretend.perfect(truths[0]))),
+        *(score(t, read_answer(pretend.always_none(t))) for t in truths[1:]),
+    ]
+    again = [score(truths[1], read_answer(pretend.perfect(truths[1])))]
+    assert followup_lines(first, []) == []
+    (line,) = followup_lines(first, again)
+    assert "exact set 1/1" in line and "wrong name 0/1" in line and "at once or then: 2/3" in line
 
 
 def test_luck_names_wrongly_and_is_sure() -> None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from doe_kc.correlation.likelihood import build_likelihood, corner_error
+from doe_kc.correlation.likelihood import build_likelihood, corner_error, rewhitened
 from doe_kc.measurement.smoothing import local_weights
 from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
@@ -105,3 +107,14 @@ def test_what_the_reduction_makes_of_a_corner_is_within_the_error(width: float) 
         missed = np.abs(reduced - np.clip((grid - start) / width, 0.0, 1.0))
         error = corner_error(reduced, np.full(21, 1e-4))
         assert np.all(missed[2:-2] <= 1.5 * error[2:-2] + 1e-3)
+
+
+def test_rows_keep_their_curves_between_errors() -> None:
+    before = problem("car_b").likelihood
+    wider = replace(before, curves=tuple(replace(c, root=2.0 * c.root) for c in before.curves))
+    rows = np.random.default_rng(1).standard_normal((before.size, 2))
+    curves = before.size - len(before.figures)
+    found = rewhitened(rows, before, wider)
+    np.testing.assert_allclose(found[:curves], rows[:curves] / 2.0)
+    np.testing.assert_array_equal(found[curves:], rows[curves:])
+    assert rewhitened(rows, before, before) is rows

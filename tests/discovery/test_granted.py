@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, cost_of, fit
+from doe_kc.discovery.fit import Fit, cost_of, fit, with_errors
 from doe_kc.discovery.granted import changes, granted, marginal, opened
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
@@ -91,3 +91,20 @@ def test_a_law_of_another_shape_is_opened() -> None:
     assert shares["hub_compliance"] >= 0.02
     assert marginal(found) > marginal(exact)
     assert np.diag(found.covariance)[-2] > np.diag(exact.covariance)[-2]
+
+
+def test_other_errors_change_the_units_of_everything() -> None:
+    """Model and fit stay each other's: differences between the sides are in the new errors too."""
+    (hub,) = library("hub_compliance")
+    plain = model("named").extended(hub)
+    sided = replace(plain, sides=np.random.default_rng(1).standard_normal((plain.likelihood.size, 2)))
+    z = sided.centre.copy()
+    z[sided.dimension - 2 :] = 0.7, -1.2, 1.0, 0.5
+    residual = sided.residual(z)
+    found = Fit(sided, z, residual, np.zeros((residual.size, z.size)), cost_of(sided, z, residual), 1, True)
+    wide = granted(sided, changes(found), [SHARE])
+    moved = with_errors(found, wide)
+    np.testing.assert_allclose(wide.residual(z), moved.residual, rtol=0, atol=1e-8)
+    assert np.abs(moved.residual - residual).max() > 0.1
+    back = with_errors(moved, wide.with_errors(sided.likelihood))
+    np.testing.assert_allclose(back.residual, residual, rtol=0, atol=1e-8)

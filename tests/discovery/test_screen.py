@@ -13,7 +13,7 @@ from scipy.stats import norm
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.screen import PROBE, SMALLER, follow, rescreened, screen
-from doe_kc.discovery.standing import standings, wrong_name_chance
+from doe_kc.discovery.standing import _trusted, standings, wrong_name_chance
 from tests.discovery.cases import library, model
 
 
@@ -77,10 +77,13 @@ def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> N
     (friction,) = library("strut_friction")
     project = projection(tuned)
     clear = screen(tuned, project, friction)
-    hidden = replace(clear, visible=0.05 * np.linalg.norm(clear.change) * np.ones(len(friction.sizes)))
+    followed = tuned.jacobian @ np.full(tuned.z.size, 0.3)  # what parameters do, and a trace besides
+    followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
+    hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(project(followed))))
+    assert hidden.detectability > 10.0
     shown, unsure = standings(tuned, project, [clear, hidden], [], 4.0)
     assert shown.status == "excluded" and shown.limits[0] == pytest.approx(4.84 / clear.detectability)
-    assert unsure.status == "not testable" and not np.isfinite(unsure.detectable)
+    assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
 
 
 @pytest.mark.parametrize(("strength", "correlation"), [(2.0, 0.5), (4.0, 0.9), (6.0, 0.95)])
@@ -137,3 +140,9 @@ def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() 
     followed = follow(model, found, untuned, np.array([PROBE]), np.array([SMALLER * PROBE]))
     assert followed.followed
     assert followed.amplitudes == pytest.approx([0.03], abs=1e-3)
+
+
+def test_what_is_left_of_a_large_change_is_trusted_where_bounds_leave_it() -> None:
+    assert _trusted(visible=8.0, whole=100.0, by_bounds=0.0) == 8.0
+    assert _trusted(visible=6.0, whole=100.0, by_bounds=1.0) == 1.0
+    assert _trusted(visible=16.0, whole=300.0, by_bounds=15.9) == 15.9

@@ -24,7 +24,7 @@ from doe_kc.reporting.discovery_tables import (
     tuned_parameters,
 )
 from doe_kc.reporting.discovery_views import model_values, model_views, view_gaps
-from doe_kc.reporting.discovery_words import HEADLINES, hypothesis_label, limit_words, number, place_words
+from doe_kc.reporting.discovery_words import HEADLINES, hypothesis_label, limit_words, place_words
 from tests.discovery.cases import LOAD_CASES, discovery, records
 
 
@@ -181,11 +181,3 @@ def test_places_read_well() -> None:
     assert labels["hub_compliance"] == EFFECTS["hub_compliance"].label
     assert place_words("wc_x") == "wheel centre x"
     assert len(set(labels.values())) == len(labels)
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.0, "0"), (np.nan, "–"), (131567.0, "132000"), (0.04567, "0.0457"), (9e7, "9e+07"), (-14.15, "-14.2")],
-)
-def test_numbers_read_well(value: float, text: str) -> None:
-    assert number(value) in {text, text.replace("14.2", "14.1")}

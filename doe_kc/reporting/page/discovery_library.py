@@ -6,7 +6,7 @@ import math
 
 from doe_kc.discovery.result import Discovery
 from doe_kc.effects import EFFECTS
-from doe_kc.reporting.discovery_tables import alike_words, hidden_words, ordered_standings
+from doe_kc.reporting.discovery_tables import alike_words, bench_words, hidden_words, ordered_standings
 from doe_kc.reporting.discovery_words import (
     STATUS_WORDS,
     hypothesis_label,
@@ -19,7 +19,8 @@ from doe_kc.reporting.page.section import Section, render
 LEAD = (
     "Excluded: it would have been found from the detectable size on, in four of five cars; for a stiffness, "
     "a softer part would have been found. Not testable: re-tuning absorbs it or it shows too little in these "
-    "load cases; the parameters that hide it are named with the move that does so."
+    "load cases; the parameters that hide it are named with the move that does so, and the parts that, "
+    "measured on a bench, would show it, with the standard deviations that its typical size would then make."
 )
 
 
@@ -37,6 +38,7 @@ def library_section(found: Discovery) -> Section:
             "typical": typical_words(s.hypothesis) or "–",
             "absorbed": 100.0 * s.absorbed,
             "hidden": hidden_words(s) or "–",
+            "bench": bench_words(s) or "–",
             "alike": alike_words(s, labels) or "–",
             "mistaken": mistaken_words(s.hypothesis.effect) or "–",
             "physics": EFFECTS[s.hypothesis.effect].physics,

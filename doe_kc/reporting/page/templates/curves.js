@@ -68,7 +68,7 @@ for (const controls of document.querySelectorAll("[data-curves]")) (function () 
     const { item, response } = now(), unit = data.responses[response].unit;
     const names = data.models.map((m) => m.label), last = names[names.length - 1];
     const at = x === null ? [] : ["measured", ...names, last + " − measured"];
-    const heads = [...at, ...names.map((n) => "RMS " + n)].map((h) => h + " / " + unit);
+    const heads = [...at, ...names.map((n) => "RMS " + n)].map((h) => h + " [" + unit + "]");
     heads.unshift(x === null ? "" : format(x) + " " + item.unit);
     const table = document.createElement("table"), top = table.createTHead().insertRow(), body = table.createTBody();
     for (const head of heads) top.append(Object.assign(document.createElement("th"), { textContent: head }));

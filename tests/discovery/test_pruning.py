@@ -1,0 +1,46 @@
+"""Backward elimination: a member is judged by errors that do not hold its own law."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.fit import Fit, fit, with_errors
+from doe_kc.discovery.granted import changes, closed, granted
+from doe_kc.discovery.pruning import pruned
+from doe_kc.effects.hypothesis import Hypothesis
+from tests.discovery.cases import library, model
+
+REFITTED = 1e5
+"""ln evidence, so much that every member is tried without."""
+
+
+def two_fitted() -> tuple[Fit, Hypothesis]:
+    """A car with a compliant hub, fitted with that and a strut that bends; the hub."""
+    (hub,), (bent,) = library("hub_compliance"), library("strut_bending")
+    both = model("named").extended(hub).extended(bent)
+    return fit(both, np.append(both.centre[: both.dimension], np.ones(len(both.sizes)))), hub
+
+
+def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
+    """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
+    exact, hub = two_fitted()
+    wide = granted(exact.model, changes(exact), [0.5, 0.0])
+    found = fit(wide, exact.z, tuning=with_errors(exact, wide).jacobian[:, : wide.dimension])
+    _, fooled = pruned(found, REFITTED, Bench(), {})
+    judged, losses = pruned(found, REFITTED, Bench(), {hub.name: exact.model.likelihood})
+    assert losses[hub.name] > 1.5 * fooled[hub.name]
+    assert judged.model.members == (hub,)
+    assert judged.model.likelihood is wide.likelihood
+
+
+def test_errors_without_one_law_hold_those_of_the_others() -> None:
+    exact, _ = two_fitted()
+    names = [h.name for h in exact.model.members]
+    assert closed(exact, dict.fromkeys(names, 0.0)) == {}
+    found = closed(exact, dict.fromkeys(names, 0.1))
+    made = changes(exact)
+    for name, shares in zip(names, ([0.0, 0.1], [0.1, 0.0]), strict=True):
+        expected = granted(exact.model, made, shares).likelihood
+        for one, other in zip(found[name].curves, expected.curves, strict=True):
+            np.testing.assert_array_equal(one.root, other.root)
