@@ -30,7 +30,7 @@ def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     _, fooled = pruned(found, REFITTED, Bench(), {})
     judged, losses = pruned(found, REFITTED, Bench(), {hub.name: exact.model.likelihood})
     assert losses[hub.name] > 1.5 * fooled[hub.name]
-    assert judged.model.members == (hub,)
+    assert hub not in judged.model.members  # more is asked of it than it bears
     assert judged.model.likelihood is wide.likelihood
 
 
