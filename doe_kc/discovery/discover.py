@@ -107,11 +107,10 @@ def _standings(found: Search, every: Sequence[Finding], count: int) -> tuple[Sta
     critical, last = float(np.sqrt(2.0 * threshold(count))), found.steps[-1].before
     members: list[tuple[Screened, Status]] = []
     for f in every:
-        for step in accepted_steps(found):
-            if step.trials[0].hypothesis == f.hypothesis:
-                own = next(s for s in step.screened if s.hypothesis == f.hypothesis)
-                own = own.with_errors(step.before.model.likelihood, last.model.likelihood)
-                members.append((own, "found" if f.relevant else "trace"))
+        step = accepted_at(found, f.hypothesis)
+        own = next(s for s in step.screened if s.hypothesis == f.hypothesis)
+        own = own.with_errors(step.before.model.likelihood, last.model.likelihood)
+        members.append((own, "found" if f.relevant else "trace"))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
     return standings(last, projection(last, effects=False), others, members, critical)

@@ -25,6 +25,8 @@ from doe_kc.effects.hypothesis import Hypothesis
 
 MOST = 6
 """Effects, named ones and traces, after which the search ends."""
+MOST_STEPS = 12
+"""Steps after which it ends although effects still come in and out again."""
 FALSE_ALARM = 0.01
 """Chance that noise alone brings in any effect at a step."""
 ASKED = 2.3
@@ -80,7 +82,8 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
     while True:
         step = _step(current, library, bench, steps[-1] if steps else None)
         steps.append(step)
-        if not step.accepted or len(step.trials[0].fit.model.members) > MOST:
+        full = step.accepted and len(step.trials[0].fit.model.members) > MOST
+        if not step.accepted or full or len(steps) == MOST_STEPS:
             break
         current, lost = pruned(step.trials[0].fit, threshold(len(library)), bench, without_law)
         losses |= {step.trials[0].hypothesis.name: step.trials[0].gain, **lost}

@@ -114,7 +114,7 @@ def next_tests(
             ident = f.hypothesis.effect
             out.setdefault(ident, f"To confirm {_known(ident)}: {EFFECTS[ident].shown_by}.")
     for effect, best in _hidden(standings):
-        how = f"{_bench(best)}{EFFECTS[effect].shown_by}"
+        how = f"{EFFECTS[effect].shown_by}{_bench(best)}"
         out.setdefault(effect, f"Not testable here, {_known(effect)}: {how}.")
     return tuple(list(out.values())[:ADVISED])
 
@@ -143,8 +143,8 @@ def _bench(standing: Standing) -> str:
     if test is None:
         return ""
     return (
-        f"measure {', '.join(test.parts)} on a bench, then its typical size makes {test.separation:.0f} "
-        "standard deviations; or "
+        f"; or measure {', '.join(test.parts)} on a bench, after which its typical size stands out by "
+        f"{test.separation:.0f} standard deviations"
     )
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -84,7 +84,7 @@ def library(*effects: str) -> list[Hypothesis]:
     return [h for ident in effects or LIBRARY for h in EFFECTS[ident].hypotheses()]
 
 
-@lru_cache(maxsize=None)
+@cache
 def hidden_axle(car: str) -> Axle:
     """The axle of a car: nominal with scatter and its hidden effects."""
     values, scatter = nominal().values, OFF_NOMINAL.get(car, SCATTER)
@@ -94,7 +94,7 @@ def hidden_axle(car: str) -> Axle:
     return axle.conditioned(LOOPS_BEFORE.get(car, 0))
 
 
-@lru_cache(maxsize=None)
+@cache
 def records(car: str, seed: int = 1) -> Measurement:
     """Reduced records of a car: its solved curves on a measured car's grid, noise drawn from its model."""
     like = _noise()
@@ -135,7 +135,7 @@ def model(car: str) -> EffectModel:
     return EffectModel(nominal(), space(), record_likelihood(nominal(), records(car)))
 
 
-@lru_cache(maxsize=None)
+@cache
 def discovery(car: str) -> Discovery:
     """What is found in a car."""
     return discover(model(car), known_to(car))
