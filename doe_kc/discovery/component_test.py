@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.screen import UNSEEN, Screened
 from doe_kc.effects import EFFECTS
 from doe_kc.typing import FloatArray
 from doe_kc.variables.variable import Variable
@@ -104,6 +104,8 @@ def _chosen(tuning: _Tuning, screened: Screened, least: float) -> ComponentTest 
             for i in range(precision.size)
         ]
         i = int(np.argmax(gains))
+        if gains[i] <= shown:
+            break
         weight = _weight(covariance, precision, i)
         information = information + weight * np.outer(moves[i], moves[i])
         row = covariance[i]
@@ -126,6 +128,9 @@ def _columns(screened: Screened) -> FloatArray:
 
 
 def _shown(information: FloatArray) -> float:
-    """Standard deviations of the size that shows least, whatever the others are."""
-    floor = 1e-12 * float(np.trace(information)) * np.eye(information.shape[0])
+    """Standard deviations of the size that shows least, whatever the others are; 0 if none does anything."""
+    whole = float(np.trace(information))
+    if whole <= 0.0:
+        return 0.0
+    floor = UNSEEN * whole * np.eye(information.shape[0])
     return float(1.0 / np.sqrt(np.diag(np.linalg.inv(information + floor)).max()))

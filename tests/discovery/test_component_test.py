@@ -66,8 +66,9 @@ def test_it_brings_what_the_narrowed_prior_does(tuned: Fit, rack: Screened) -> N
 def test_what_no_part_shows_is_left(tuned: Fit, rack: Screened) -> None:
     unseen = replace(rack, change=1e-3 * rack.change)
     seen = replace(rack, change=np.r_[100.0, np.zeros(rack.change.size - 1)])
+    nothing = replace(rack, change=np.zeros(rack.change.size))
     rig = replace(rack, hypothesis=Hypothesis("rig_channel_gain", "toe", rack.hypothesis.sizes))
-    assert component_tests(tuned, [unseen, seen, rig], 5.0) == [None, None, None]
+    assert component_tests(tuned, [unseen, seen, nothing, rig], 5.0) == [None] * 4
 
 
 def test_no_more_parts_than_a_bench_gets_through(tuned: Fit, rack: Screened) -> None:

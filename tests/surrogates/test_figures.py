@@ -57,7 +57,7 @@ def test_one_panel_a_characteristic_with_its_unit_and_model() -> None:
     assert len(panels) == 4
     for ax, entry in zip(panels, ENTRIES, strict=True):
         assert entry.label in ax.get_title()
-        assert f"/ {entry.unit}" in ax.get_title()
+        assert f"[{entry.unit}]" in ax.get_title()
     assert "gp, Q² 1.0000" in panels[1].get_title()
     assert "never changes" in panels[3].get_title()
     assert [t.get_text() for t in panels[1].texts] == ["99 →"]
