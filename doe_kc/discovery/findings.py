@@ -17,7 +17,7 @@ from doe_kc.discovery.search import Search, Step, accepted_steps
 from doe_kc.discovery.standing import wrong_name_chance
 from doe_kc.discovery.trials import Trial
 from doe_kc.discovery.unseen import unseen
-from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.typing import FloatArray
 
 WEAK, STRONG = 6.0, 10.0
@@ -87,7 +87,7 @@ def _finding(
         alike=_alike(step, own, chances),
         largest=max((a for _, a, _ in counted), default=1.0),
         believed=believed(counted),
-        relevant=matters(counted),
+        relevant=matters(counted) and not _trace_would_do(step, hypothesis),
         elsewhere=_elsewhere(step, hypothesis),
     )
 
@@ -169,13 +169,15 @@ def _wrong_names(step: Step, own: Screened, detectability: float) -> dict[str, f
 def _mistaken(step: Step) -> dict[str, float]:
     """Effect id -> chance that noise alone puts its refit before the best one's, in truth the right one.
 
-    Phi(-d / 2), d the distance of what both predict in standard deviations of the records.
+    Phi(-d / 2), d the distance of what both predict in standard deviations of the records. A refit that does
+    without one of its sizes is not counted: a free play without a gap is a compliance by another name.
     """
     best, *rest = step.trials
     out: dict[str, float] = {}
     for t in rest:
         effect = t.hypothesis.effect
-        if effect != best.hypothesis.effect:
+        whole = all(s.signed or abs(a) > ABSENT for s, a, _ in _sizes(t))
+        if effect != best.hypothesis.effect and whole:
             apart = float(np.linalg.norm(t.fit.residual - best.fit.residual))
             out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
     return out
@@ -189,6 +191,26 @@ def _alike(step: Step, own: Screened, chances: Mapping[str, float]) -> tuple[str
     best = gains[own.hypothesis.effect]
     close = (e for e, g in gains.items() if (best - g) / step.temper < DECISIVE)
     return tuple(e for e in close if chances.get(e, 0.0) > ALIKE)
+
+
+def _trace_would_do(step: Step, own: Hypothesis) -> bool:
+    """Whether a trace of another effect explains the records about as well: every car has those."""
+    best = next(t.gain for t in step.trials if t.hypothesis == own)
+    return any(
+        t.hypothesis.effect != own.effect
+        and t.gain > 0.0
+        and (best - t.gain) / step.temper < DECISIVE
+        and not matters(_sizes(t))
+        for t in step.trials
+    )
+
+
+def _sizes(trial: Trial) -> list[tuple[Size, float, float]]:
+    """Sizes of the trial's effect that say how much, in typical ones, with their standard deviations."""
+    sizes = trial.hypothesis.sizes
+    sd = np.sqrt(np.diag(trial.fit.covariance))
+    known = [(s, float(trial.fit.z[i]), float(sd[i])) for i, s in enumerate(sizes, start=-len(sizes))]
+    return [item for item in known if not item[0].shape]
 
 
 def _elsewhere(step: Step, own: Hypothesis) -> tuple[str, ...]:

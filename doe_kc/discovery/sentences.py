@@ -120,7 +120,7 @@ def next_tests(
 
 
 def _hidden(standings: Sequence[Standing]) -> list[tuple[str, Standing]]:
-    """Effects of which no place is testable, each with the place that measured parts show best; those that
+    """Effects that hardly show in any place, each with the place that measured parts show best; those that
     they show come first, by how many parts that takes."""
     places: dict[str, list[Standing]] = {}
     for s in standings:
@@ -128,7 +128,7 @@ def _hidden(standings: Sequence[Standing]) -> list[tuple[str, Standing]]:
     best = [
         (effect, min(each, key=_effort))
         for effect, each in places.items()
-        if all(s.status == "not testable" for s in each)
+        if all(s.status == "not testable" or s.bench is not None for s in each)
     ]
     return sorted(best, key=lambda item: _effort(item[1]))
 

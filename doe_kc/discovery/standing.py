@@ -37,7 +37,7 @@ class Standing:
     found in 80 % of cars whatever the others are; inf when re-tuning absorbs nearly all, nan for a shape.
     detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
     parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
-    remaining change is the same, with the correlation. bench: of one that is not testable, parts to measure
+    remaining change is the same, with the correlation. bench: of one that hardly shows, parts to measure
     that would show it.
     """
 
@@ -86,7 +86,7 @@ def standings(
         hidden_by = _hiding(found, moves[:, i], s)
         stands = Standing(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
         out.append(stands)
-    hidden = [i for i, s in enumerate(out) if s.status == "not testable"]
+    hidden = [i for i, s in enumerate(out) if s.status in ("not testable", "trace")]
     tests = component_tests(found, [everything[i] for i in hidden], critical + POWER)
     for i, test in zip(hidden, tests, strict=True):
         out[i] = replace(out[i], bench=test)
