@@ -149,4 +149,6 @@ def known_to(car: str) -> list[Hypothesis]:
         (arm,) = library("steer_arm_compliance")
         weak = replace(arm, sizes=tuple(replace(s, typical=9.0) for s in arm.sizes))
         return [weak, *library("tie_rod_compliance", "hub_compliance", "strut_friction")]
+    if car in ("two", "steady", "friction"):  # friction takes its time
+        return library(*(e for e in LIBRARY if e != "bushing_progression"))
     return library()
