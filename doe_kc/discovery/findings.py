@@ -15,7 +15,7 @@ from doe_kc.discovery.result import Estimate, Finding, Rival
 from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import Search, Step, accepted_steps
 from doe_kc.discovery.standing import wrong_name_chance
-from doe_kc.discovery.trials import Trial
+from doe_kc.discovery.trials import Trial, amounts
 from doe_kc.discovery.unseen import unseen
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.typing import FloatArray
@@ -176,7 +176,7 @@ def _mistaken(step: Step) -> dict[str, float]:
     out: dict[str, float] = {}
     for t in rest:
         effect = t.hypothesis.effect
-        whole = all(s.signed or abs(a) > ABSENT for s, a, _ in _sizes(t))
+        whole = all(s.signed or abs(a) > ABSENT for s, a, _ in amounts(t))
         if effect != best.hypothesis.effect and whole:
             apart = float(np.linalg.norm(t.fit.residual - best.fit.residual))
             out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
@@ -200,17 +200,9 @@ def _trace_would_do(step: Step, own: Hypothesis) -> bool:
         t.hypothesis.effect != own.effect
         and t.gain > 0.0
         and (best - t.gain) / step.temper < DECISIVE
-        and not matters(_sizes(t))
+        and not matters(amounts(t))
         for t in step.trials
     )
-
-
-def _sizes(trial: Trial) -> list[tuple[Size, float, float]]:
-    """Sizes of the trial's effect that say how much, in typical ones, with their standard deviations."""
-    sizes = trial.hypothesis.sizes
-    sd = np.sqrt(np.diag(trial.fit.covariance))
-    known = [(s, float(trial.fit.z[i]), float(sd[i])) for i, s in enumerate(sizes, start=-len(sizes))]
-    return [item for item in known if not item[0].shape]
 
 
 def _elsewhere(step: Step, own: Hypothesis) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screen import Screened
 from doe_kc.effects import EFFECTS
-from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.effects.hypothesis import Hypothesis, Size
 
 TIED = 1.0
 """ln evidence up to which two places are taken for equally good."""
@@ -43,10 +43,15 @@ def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Tria
 
 def plausible(trial: Trial) -> bool:
     """Whether the effect's sizes are believed."""
+    return believed(amounts(trial))
+
+
+def amounts(trial: Trial) -> list[tuple[Size, float, float]]:
+    """Sizes of the trial's effect that say how much, in typical ones, with their standard deviations."""
+    sizes = trial.hypothesis.sizes
     sd = np.sqrt(np.diag(trial.fit.covariance))
-    count = len(trial.hypothesis.sizes)
-    sizes = zip(trial.hypothesis.sizes, trial.fit.z[-count:], sd[-count:], strict=True) if count else ()
-    return believed((s, float(a), float(e)) for s, a, e in sizes if not s.shape)
+    known = [(s, float(trial.fit.z[i]), float(sd[i])) for i, s in enumerate(sizes, start=-len(sizes))]
+    return [item for item in known if not item[0].shape]
 
 
 def stiffer_first(trials: list[Trial]) -> list[Trial]:
