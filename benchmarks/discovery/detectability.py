@@ -14,6 +14,7 @@ from scipy.linalg import qr
 from scipy.special import ndtr
 
 from benchmarks.discovery.car import Car
+from benchmarks.discovery.scatter import unequal_in_one
 from doe_kc.axle import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import linearize
@@ -66,13 +67,17 @@ def _residual(axle: Axle, likelihood: Likelihood) -> FloatArray:
 
 
 def _tuning(nominal: Axle, likelihood: Likelihood) -> FloatArray:
-    """(M + d, d) orthonormal basis of what the variables can do within their priors."""
+    """(M + d, d) orthonormal basis of what the variables can do within their priors, and what sides that are
+    unequal in every car can."""
     space = build_space(nominal, VariableOptions(), "detectability")
     held = {path for e in EFFECTS.values() for path in e.replaces}
     free = [i for i, path in enumerate(space.paths) if path not in held]
     slopes = linearize(nominal, space, space.start)
     rows = likelihood.jacobian(slopes.curves, slopes.characteristics)[:, free]
-    basis, _ = qr(np.vstack([rows, np.diag(1.0 / space.prior_sd[free])]), mode="economic")
+    blank = _residual(nominal, likelihood)
+    sides = [_residual(axle, likelihood) - blank for axle in unequal_in_one(nominal)]
+    sd = np.concatenate([space.prior_sd[free], np.ones(len(sides))])
+    basis, _ = qr(np.vstack([np.column_stack([rows, *sides]), np.diag(1.0 / sd)]), mode="economic")
     return np.asarray(basis)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -82,25 +83,36 @@ def _moved(parameter: Parameter, step: float) -> float:
 def unequal(axle: Axle, rng: np.random.Generator, share: float) -> dict[str, float]:
     """Internal values of both sides of a car that is not its own mirror image."""
     out: dict[str, float] = {}
-    for name in HARDPOINTS:
-        for coordinate in "xyz":
-            out |= _apart(axle.values, f"{name}.{coordinate}", share * POINT_SIDES * cut_normal(rng))
-    for name in BUSHINGS:
-        for of in ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz"):
-            ratio = math.exp(share * STIFFNESS_SIDES * cut_normal(rng))
-            out |= _ratio(axle.values, f"{name}.{of}", ratio)
-    for name in ("spring.rate", "tyre.rate"):
-        out |= _ratio(axle.values, name, math.exp(share * RATE_SIDES * cut_normal(rng)))
-    for name in ("static.toe", "static.camber"):
-        out |= _apart(axle.values, name, share * ANGLE_SIDES * cut_normal(rng))
+    for difference in _differences():
+        out |= difference(axle, share * cut_normal(rng))
     return out
 
 
-def _apart(values: Mapping[str, float], name: str, difference: float) -> dict[str, float]:
-    left, right = f"{name}@L", f"{name}@R"
-    return {left: values[left] - difference / 2, right: values[right] + difference / 2}
+def unequal_in_one(axle: Axle) -> list[Axle]:
+    """The axle with each difference between its sides by itself, of one standard deviation."""
+    return [axle.changed(difference(axle, 1.0)) for difference in _differences()]
 
 
-def _ratio(values: Mapping[str, float], name: str, ratio: float) -> dict[str, float]:
+def _differences() -> Iterator[Callable[[Axle, float], dict[str, float]]]:
+    """Of an axle and standard deviations, the internal values of both sides."""
+    for name in HARDPOINTS:
+        for coordinate in "xyz":
+            yield partial(_apart, f"{name}.{coordinate}", POINT_SIDES)
+    for name in BUSHINGS:
+        for of in ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz"):
+            yield partial(_ratio, f"{name}.{of}", STIFFNESS_SIDES)
+    for name in ("spring.rate", "tyre.rate"):
+        yield partial(_ratio, name, RATE_SIDES)
+    for name in ("static.toe", "static.camber"):
+        yield partial(_apart, name, ANGLE_SIDES)
+
+
+def _apart(name: str, sd: float, axle: Axle, step: float) -> dict[str, float]:
     left, right = f"{name}@L", f"{name}@R"
-    return {left: values[left] / math.sqrt(ratio), right: values[right] * math.sqrt(ratio)}
+    return {left: axle.values[left] - sd * step / 2, right: axle.values[right] + sd * step / 2}
+
+
+def _ratio(name: str, sd: float, axle: Axle, step: float) -> dict[str, float]:
+    left, right = f"{name}@L", f"{name}@R"
+    root = math.sqrt(math.exp(sd * step))
+    return {left: axle.values[left] / root, right: axle.values[right] * root}

@@ -13,6 +13,8 @@ from doe_kc.typing import FloatArray
 
 LEVEL = 0.05
 """Chance that noise alone passes the threshold somewhere on the map."""
+NOISE = 0.01
+"""Chance of a map's largest disagreement below which noise does not explain it."""
 DRAWS = 1000
 DOUBT = 0.2
 """Share added to every variance: what a few repeats leave open of the noise's own size."""

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.special import log_ndtr, logsumexp, ndtr
 
 from doe_kc.discovery.belief import believed, matters
+from doe_kc.discovery.disagreement import NOISE
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Estimate, Finding, Rival
@@ -21,7 +22,8 @@ from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.typing import FloatArray
 
 WEAK, STRONG = 6.0, 10.0
-"""Standard deviations below which an effect is never named, and from which it is named beside any other."""
+"""Standard deviations below which an effect is not named by them alone, and from which it is named beside any
+other."""
 BESIDE = 0.01
 """Share of the largest gain from which an effect between the two is named where laws had to be opened."""
 UNLISTED = 0.02
@@ -47,9 +49,13 @@ def findings(found: Search, unexplained: float) -> tuple[Finding, ...]:
 
 
 def _stands_out(found: Search, finding: Finding, least: float) -> bool:
-    """Whether the effect is more than what the law of a much larger one could leave behind."""
+    """Whether the effect is more than what the law of a much larger one could leave behind.
+
+    A weak one is named where noise did not explain what remained without it.
+    """
     strength = float(np.sqrt(2.0 * max(0.0, found.losses[finding.hypothesis.name])))
-    return strength >= STRONG or (strength >= WEAK and finding.gain >= least)
+    asked = accepted_at(found, finding.hypothesis).map.chance < NOISE
+    return strength >= STRONG or ((strength >= WEAK or asked) and finding.gain >= least)
 
 
 def _finding(
@@ -169,27 +175,28 @@ def _wrong_names(step: Step, own: Screened, detectability: float) -> dict[str, f
 def _mistaken(step: Step) -> dict[str, float]:
     """Effect id -> chance that noise alone puts its refit before the best one's, in truth the right one.
 
-    Phi(-d / 2), d the distance of what both predict in standard deviations of the records. A refit that does
-    without one of its sizes is not counted: a free play without a gap is a compliance by another name.
+    Phi(-d / 2), d the distance of what both predict in standard deviations of the records.
     """
     best, *rest = step.trials
     out: dict[str, float] = {}
     for t in rest:
         effect = t.hypothesis.effect
-        whole = all(s.signed or abs(a) > ABSENT for s, a, _ in amounts(t))
-        if effect != best.hypothesis.effect and whole:
+        if effect != best.hypothesis.effect and _whole(t):
             apart = float(np.linalg.norm(t.fit.residual - best.fit.residual))
             out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
     return out
 
 
+def _whole(trial: Trial) -> bool:
+    """Whether the sizes are there that make it: a free play without a gap is a compliance by another name."""
+    return all(abs(a) > max(ABSENT, sd) for s, a, sd in amounts(trial) if s.needed)
+
+
 def _alike(step: Step, own: Screened, chances: Mapping[str, float]) -> tuple[str, ...]:
     """Effects that the records hardly tell from this one and whose evidence is not decisively less."""
-    gains: dict[str, float] = {}
-    for t in step.trials:
-        gains[t.hypothesis.effect] = max(gains.get(t.hypothesis.effect, -np.inf), t.gain)
-    best = gains[own.hypothesis.effect]
-    close = (e for e, g in gains.items() if (best - g) / step.temper < DECISIVE)
+    best = max(t.gain for t in step.trials if t.hypothesis.effect == own.hypothesis.effect)
+    rivals = (t for t in step.trials if t.hypothesis.effect != own.hypothesis.effect and _whole(t))
+    close = dict.fromkeys(t.hypothesis.effect for t in rivals if (best - t.gain) / step.temper < DECISIVE)
     return tuple(e for e in close if chances.get(e, 0.0) > ALIKE)
 
 

@@ -24,6 +24,10 @@ OF_ONE_KIND = 2
 SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
 """Effects that a model may have in several places at once."""
 
+ABSORBED = 0.95
+"""Share from which what re-tuning leaves is a small difference of large changes, which a screening to first
+order in the parameters can miss."""
+
 
 def leaders(screened: Sequence[Screened], project: Projection, least: float) -> list[Screened]:
     """The best and its rivals, which would explain the same; a decoy of another kind is among them.
@@ -47,6 +51,12 @@ def leaders(screened: Sequence[Screened], project: Projection, least: float) -> 
     if not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
         out += [s for s in screened if s.hypothesis.effect != best.hypothesis.effect and not s.failed][:1]
     return out
+
+
+def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
+    """Those that a screening may have missed though a typical one would show by `least` of ln likelihood."""
+    shows = float(np.sqrt(2.0 * least))
+    return [s for s in screened if not s.failed and s.absorbed >= ABSORBED and s.detectability >= shows]
 
 
 def _explained(screened: Screened, project: Projection) -> FloatArray:

@@ -14,7 +14,7 @@ from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, followed, with_errors
 from doe_kc.discovery.granted import closed, opened
-from doe_kc.discovery.leaders import compatible, leaders
+from doe_kc.discovery.leaders import compatible, leaders, overlooked
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.pruning import pruned
@@ -163,8 +163,12 @@ def _step(
     full = {s.hypothesis.name: s for s in bench.screened(current, again)}
     screened = [full.get(h.name) or quick[h.name] for h in candidates]
     screened.sort(key=lambda s: -s.gain)
-    trials = tried(current, leaders(screened, project, threshold(len(library)) / 2.0), bench)
     least = threshold(len(library))
+    trials = tried(current, leaders(screened, project, least / 2.0), bench)
+    if not before.agrees and all(t.gain <= least for t in trials):
+        done = {t.hypothesis.name for t in trials}
+        more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
+        trials = sorted([*trials, *tried(current, more, bench)], key=lambda t: -t.gain)
     trials.sort(key=lambda t: t.gain > least and plausible(t), reverse=True)
     trials = stiffer_first(trials)
     if not trials:

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.disagreement import NOISE, Map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.result import Finding, VerdictKind
 
 SURE = 0.9
 """Probability against its rivals from which an effect is named by itself."""
-NOISE = 0.01
-"""Chance of a map's largest disagreement below which noise does not explain it."""
 CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
 CLEAR = 5.0

@@ -24,7 +24,7 @@ class Size:
     that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend, value =
     typical a, a shape that may go either way and is none at 0.
     signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
-    have.
+    have. needed: whether without it what is left is another effect.
     """
 
     key: str
@@ -35,6 +35,7 @@ class Size:
     signed: bool = False
     power: float = 1.0
     most: float = 3.0
+    needed: bool = False
 
     @property
     def name(self) -> str:

@@ -6,15 +6,11 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
 
-import numpy as np
-
 from doe_kc.axle.model import Axle
-from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.effects._base import Effect, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.load_cases import CASE_ORDER
-from doe_kc.typing import FloatArray
 
 
 @effect
@@ -43,26 +39,6 @@ class RigInputGain(Effect):
         return named_numbers(given or {"lateral": 1.05}, CASE_ORDER, where, "a load case", positive=True)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        return axle
-
-    def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
-        return replace(
-            curves,
-            cases={i: _stretched(c, options[i]) if i in options else c for i, c in curves.cases.items()},
-        )
-
-
-def _stretched(case: CaseCurves, gain: float) -> CaseCurves:
-    """Half-widths stay: a loop closes at the ends of its sweep, wherever those are."""
-    mean = {
-        name: np.array([_extended(gain * case.input, case.input, row) for row in curve])
-        for name, curve in case.mean.items()
-    }
-    return replace(case, mean=mean)
-
-
-def _extended(at: FloatArray, grid: FloatArray, row: FloatArray) -> FloatArray:
-    """Straight lines between the points of a curve and beyond its ends."""
-    right = np.clip(np.searchsorted(grid, at), 1, grid.size - 1)
-    slope = (row[right] - row[right - 1]) / (grid[right] - grid[right - 1])
-    return np.asarray(row[right - 1] + slope * (at - grid[right - 1]))
+        cases = axle.load_cases
+        wrong = {i: replace(cases[i], gain=gain) for i, gain in options.items() if i in cases}
+        return replace(axle, load_cases={**cases, **wrong})

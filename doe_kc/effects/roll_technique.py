@@ -42,7 +42,7 @@ class RollTechnique(Effect):
         roll = axle.load_cases.get("roll")
         if options["technique"] != "counter_phase" or type(roll) is not Roll:
             return axle
-        pads = PadRoll(roll.amplitude, roll.steps, half_track=axle.half_track, conditioning=roll.conditioning)
+        pads = PadRoll(**vars(roll), half_track=axle.half_track)
         return replace(axle, load_cases={**axle.load_cases, "roll": pads})
 
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:

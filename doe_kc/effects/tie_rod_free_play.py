@@ -43,7 +43,7 @@ class TieRodFreePlay(Effect):
 
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         sizes = (
-            Size("gap_mm", 0.2, "mm"),
+            Size("gap_mm", 0.2, "mm", needed=True),
             Size("contact_N_mm", 20000.0, "N/mm", "compliance"),
         )
         places = {"ROB": list(JOINTS)} | {joint: [joint] for joint in JOINTS}

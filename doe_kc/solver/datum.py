@@ -27,5 +27,5 @@ def control_gradient(k: Kernel, case: LoadCase, inputs: FloatArray, pads: Static
 
 
 def _controls(k: Kernel, case: LoadCase, inputs: FloatArray, pads: StaticPads) -> FloatArray:
-    values = {"preload": pads.preload, **case.controls(inputs, pads)}
+    values = {"preload": pads.preload, **case.driven(inputs, pads)}
     return control_matrix(k, values, len(inputs))

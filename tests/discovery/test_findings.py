@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from doe_kc.discovery.findings import _mistaken, _trace_would_do
+from doe_kc.discovery.findings import _alike, _mistaken, _stands_out, _trace_would_do
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library
 
@@ -44,5 +44,29 @@ def test_effects_that_predict_the_same_are_mistaken_for_each_other() -> None:
     near, far = (trial("hub_compliance", [0.5, 0.5], 99.0, apart) for apart in (1.0, 6.0))
     assert _mistaken(step(rod, near))["hub_compliance"] == pytest.approx(0.3085, abs=1e-4)
     assert _mistaken(step(rod, far))["hub_compliance"] < 0.002
-    # a free play without a gap is the tie rod's compliance by another name
-    assert _mistaken(step(rod, trial("tie_rod_free_play", [0.0, 2.0], 99.0))) == {}
+
+
+def test_a_free_play_without_a_gap_is_the_tie_rod_s_compliance_by_another_name() -> None:
+    rod = trial("tie_rod_compliance", [1.5], 100.0)
+    for gap, counted in ((0.0, False), (0.005, False), (0.1, True)):
+        play = trial("tie_rod_free_play", [gap, 2.0], 99.0)
+        chances = {"tie_rod_free_play": 0.4}
+        assert ("tie_rod_free_play" in _mistaken(step(rod, play))) is counted
+        own = SimpleNamespace(hypothesis=rod.hypothesis)
+        assert _alike(step(rod, play), own, chances) == (("tie_rod_free_play",) if counted else ())
+
+
+@pytest.mark.parametrize(
+    ("loss", "chance", "named"),
+    [(20.0, 0.5, True), (15.0, 0.5, False), (15.0, 0.005, True)],
+    ids=["six standard deviations", "less, and noise explains what was there", "less, and noise does not"],
+)
+def test_a_weak_effect_is_named_where_noise_does_not_explain_what_it_explains(
+    loss: float, chance: float, named: bool
+) -> None:
+    own = trial("tie_rod_compliance", [0.5], 15.0)
+    here = SimpleNamespace(trials=(own,), accepted=True, map=SimpleNamespace(chance=chance))
+    found: Any = SimpleNamespace(steps=[here], losses={own.hypothesis.name: loss})
+    finding: Any = SimpleNamespace(hypothesis=own.hypothesis, gain=15.0)
+    assert _stands_out(found, finding, 0.0) is named
+    assert not _stands_out(found, finding, 16.0)

@@ -43,34 +43,44 @@ def test_a_channel_s_gain(curves: CurveSet) -> None:
     assert found.static is curves.static
 
 
-def test_a_load_case_s_input(curves: CurveSet) -> None:
-    """Read at u is what the axle does at 1.25 u; a straight line goes on beyond the sweep."""
-    found = read(curves, "rig_input_gain", {"brake": 1.25}).cases["brake"]
-    true = curves.cases["brake"]
-    for response, curve in true.mean.items():
-        inside = np.abs(1.25 * true.input) <= true.input[-1]
-        for side in (0, 1):
-            expected = np.interp(1.25 * true.input, true.input, curve[side])
-            np.testing.assert_allclose(found.mean[response][side][inside], expected[inside], atol=1e-12)
-            end = curve[side][-1] + 0.25 * true.input[-1] * np.diff(curve[side])[-1] / np.diff(true.input)[-1]
-            assert found.mean[response][side][-1] == pytest.approx(end)
-    assert found.half_width is true.half_width
-    assert read(curves, "rig_input_gain", {"brake": 1.25}).cases["drive"] is curves.cases["drive"]
-
-
-def test_a_wrong_input_is_nearly_the_true_sweep_rescaled() -> None:
-    """Against load cases that really go further: what is left is the curvature between two points."""
-    axle = nominal()
-    cases = {i: axle.load_cases[i] for i in ("lateral", "steer")}
-    further = {i: replace(c, amplitude=1.05 * c.amplitude) for i, c in cases.items()}
+def test_a_wrong_input_is_the_sweep_that_goes_further() -> None:
+    """With friction too: loops close where the rig truly turned back."""
+    axle = apply_effect(nominal(), "steering_friction", {}, source="test")
+    axle = replace(axle, load_cases={i: axle.load_cases[i] for i in ("lateral", "roll", "steer")})
+    gains = {"lateral": 1.05, "roll": 0.9, "steer": 1.2}
+    cases = axle.load_cases.items()
+    further = {i: replace(c, amplitude=gains[i] * c.amplitude) for i, c in cases}
     true = curve_set(solve(replace(axle, load_cases=further), compiled=False))
-    said = read(
-        curve_set(solve(axle, list(cases), compiled=False)), "rig_input_gain", dict.fromkeys(cases, 1.05)
-    )
-    for ident in ("lateral", "steer"):
-        for response, tolerance in (("toe", 0.05), ("camber", 0.02), ("wc_x", 0.05)):
-            gap = said.cases[ident].mean[response] - true.cases[ident].mean[response]
-            assert np.abs(gap).max() < tolerance
+    said = apply_effect(axle, "rig_input_gain", {**gains, "brake": 1.1}, source="test")
+    found = observed(said, curve_set(solve(said, compiled=False)))
+    for ident, case in found.cases.items():
+        np.testing.assert_allclose(case.input * gains[ident], true.cases[ident].input, rtol=1e-12)
+        for response, curve in case.mean.items():
+            np.testing.assert_allclose(curve, true.cases[ident].mean[response], rtol=1e-9, atol=1e-9)
+            half = true.cases[ident].half_width[response]
+            np.testing.assert_allclose(case.half_width[response], half, rtol=1e-9, atol=1e-9)
+
+
+def test_a_wrong_steer_input_is_a_wrong_steering_ratio() -> None:
+    axle = replace(nominal(), load_cases={"steer": nominal().load_cases["steer"]})
+    ratio = apply_effect(axle, "steering_ratio", {"factor": 1.07}, source="test")
+    gain = apply_effect(axle, "rig_input_gain", {"steer": 1.07}, source="test")
+    one, other = (curve_set(solve(a, compiled=False)).cases["steer"] for a in (ratio, gain))
+    for response, curve in one.mean.items():
+        np.testing.assert_allclose(curve, other.mean[response], rtol=1e-9, atol=1e-9)
+
+
+def test_what_is_given_twice_stands_as_given_last() -> None:
+    axle = apply_effect(nominal(), "rig_input_gain", {"steer": 1.1, "brake": 0.9}, source="test")
+    axle = apply_effect(axle, "rig_input_gain", {"steer": 1.2}, source="test")
+    assert axle.effects["rig_input_gain"] == {"steer": 1.2, "brake": 0.9}
+    assert {i: c.gain for i, c in axle.load_cases.items() if c.gain != 1.0} == {"steer": 1.2, "brake": 0.9}
+
+
+def test_a_wrong_roll_by_the_pads() -> None:
+    axle = apply_effect(nominal(), "rig_input_gain", {"roll": 1.1}, source="test")
+    roll = apply_effect(axle, "roll_technique", {}, source="test").load_cases["roll"]
+    assert isinstance(roll, PadRoll) and roll.gain == 1.1
 
 
 def test_an_offset_of_the_static_alignment(curves: CurveSet) -> None:
@@ -129,7 +139,7 @@ def test_a_roll_case_of_another_kind_stays() -> None:
     assert type(nominal().load_cases["roll"]) is Roll
 
 
-@pytest.mark.parametrize("ident", ["rig_channel_gain", "rig_channel_offset", "rig_input_gain"])
+@pytest.mark.parametrize("ident", ["rig_channel_gain", "rig_channel_offset"])
 def test_the_axle_stays_as_it_is(ident: str) -> None:
     axle = apply_effect(nominal(), ident, {}, source="test")
     assert replace(axle, effects={}) == nominal()

@@ -35,11 +35,13 @@ class LoadCase(ABC):
     steps: equilibria per branch.
     conditioning: loops with friction that are driven before the one that counts, so that it closes. A rig
         records a steady loop; with 0, the loop begins right after the first rise from the static state.
+    gain: true input per input given, for a rig that applies another one than it says.
     """
 
     amplitude: float
     steps: int
     conditioning: int = field(default=0, kw_only=True)
+    gain: float = field(default=1.0, kw_only=True)
 
     id: ClassVar[str]
     label: ClassVar[str]
@@ -53,9 +55,13 @@ class LoadCase(ABC):
         """(2 steps + 1,) inputs from -amplitude to +amplitude, 0 among them."""
         return np.linspace(-1.0, 1.0, 2 * self.steps + 1) * self.amplitude
 
+    def driven(self, value: FloatArray, static: StaticPads) -> Controls:
+        """Controls of the axle at the inputs `value` (n,) as they are given, in `unit`."""
+        return self.controls(self.gain * value, static)
+
     @abstractmethod
     def controls(self, value: FloatArray, static: StaticPads) -> Controls:
-        """Controls of the axle at the inputs `value` (n,), in `unit`."""
+        """Controls of the axle at the true inputs `value` (n,), in `unit`."""
 
 
 LOAD_CASES: dict[str, LoadCase] = {}
