@@ -83,7 +83,7 @@ def _label(finding: Finding) -> str:
 
 def _one(finding: Finding) -> str:
     sizes = ", ".join(
-        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {with_sd(e.value, e.sd)} {e.unit}"
+        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {with_sd(e.value, e.sd)} {e.unit}".removesuffix(" -")
         for e in finding.estimates
     )
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
