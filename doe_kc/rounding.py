@@ -42,3 +42,8 @@ def sd_format(sd: float) -> str:
         return "0.0000"
     digits = max(0, min(1 - math.floor(math.log10(sd)), MOST_DECIMALS))
     return "0." + "0" * digits if digits else "0"
+
+
+def unit_words(unit: str) -> str:
+    """A blank and the unit, nothing for a ratio."""
+    return "" if unit in ("", "-") else f" {unit}"

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from doe_kc.rounding import number, sd_format, short, with_sd
+from doe_kc.rounding import number, sd_format, short, unit_words, with_sd
 
 
 def test_four_significant_digits_without_an_exponent() -> None:
@@ -54,3 +54,7 @@ def test_numbers_read_well(value: float, text: str) -> None:
 )
 def test_a_sheet_shows_two_digits_of_the_deviation(sd: float, form: str) -> None:
     assert sd_format(sd) == form
+
+
+def test_a_ratio_has_no_unit() -> None:
+    assert [unit_words(u) for u in ("-", "", "N/mm")] == ["", "", " N/mm"]

@@ -11,7 +11,7 @@ from doe_kc.discovery.scan import Scan
 from doe_kc.discovery.standing import Standing
 from doe_kc.discovery.verdict import Verdict
 from doe_kc.effects import EFFECTS
-from doe_kc.rounding import with_sd
+from doe_kc.rounding import unit_words, with_sd
 
 ADVISED = 6
 """Tests that are listed at most."""
@@ -83,7 +83,7 @@ def _label(finding: Finding) -> str:
 
 def _one(finding: Finding) -> str:
     sizes = ", ".join(
-        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {with_sd(e.value, e.sd)} {e.unit}".removesuffix(" -")
+        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {with_sd(e.value, e.sd)}{unit_words(e.unit)}"
         for e in finding.estimates
     )
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)

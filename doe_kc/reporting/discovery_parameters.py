@@ -14,8 +14,7 @@ from doe_kc.discovery.gaps import RETURNS_FROM
 from doe_kc.reporting import style
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_tables import TunedParameter
-from doe_kc.reporting.discovery_words import unit_words
-from doe_kc.rounding import short
+from doe_kc.rounding import short, unit_words
 
 SHOWN = 40
 ROW = 0.17

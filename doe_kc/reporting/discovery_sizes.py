@@ -9,8 +9,7 @@ import numpy as np
 
 from doe_kc.discovery.result import Discovery, Estimate, Finding
 from doe_kc.effects.hypothesis import Size
-from doe_kc.reporting.discovery_words import unit_words
-from doe_kc.rounding import number, with_sd
+from doe_kc.rounding import number, unit_words, with_sd
 
 SEEN = 2.0
 """Standard deviations above zero from which a size that cannot be negative is told from none."""

@@ -12,7 +12,7 @@ from doe_kc.discovery.standing import Standing, Status, said_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.reporting.names import case_label, response_name
-from doe_kc.rounding import number
+from doe_kc.rounding import number, unit_words
 from doe_kc.solver.load_cases import LOAD_CASES
 
 HEADLINES: dict[VerdictKind, str] = {
@@ -83,11 +83,6 @@ def contrast_words(contrast: Contrast) -> str:
 def wheels(contrast: Contrast) -> str:
     """Which way the wheels disagree."""
     return "both wheels" if contrast.wheels == "both" else "left against right"
-
-
-def unit_words(unit: str) -> str:
-    """A blank and the unit, nothing for a ratio."""
-    return "" if unit in ("", "-") else f" {unit}"
 
 
 def limit_words(standing: Standing) -> str:
