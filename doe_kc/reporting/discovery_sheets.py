@@ -101,6 +101,7 @@ def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
     wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
     ws.freeze_panes = ws.cell(FIRST, 4)
     page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    ws.print_area = f"A1:P{FIRST - 1 + max(1, len(frame))}"  # the rest is the same of every car
 
 
 def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
@@ -120,7 +121,8 @@ def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
     wide = [24, 30, 20, 13, 34, 10, 30, 11, 34, 34, 40, 40, 50, 44]
     wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
     ws.freeze_panes = ws.cell(FIRST, 4)
-    page(ws, study, paper=A3, single=True)
+    page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    ws.print_area = f"A1:K{FIRST - 1 + len(frame)}"  # the rest is the same of every car
 
 
 def gap_sheet(book: Workbook, found: Discovery, study: str) -> None:
