@@ -106,7 +106,9 @@ def test_what_the_tests_advised_bring_is_told() -> None:
         *(score(t, read_answer(pretend.always_none(t))) for t in truths[1:]),
     ]
     again = [score(truths[1], read_answer(pretend.perfect(truths[1])))]
-    assert followup_lines(first, []) == []
+    (line,) = followup_lines(first, [])
+    assert "none was carried out" in line and "at once: 1/3" in line
+    assert followup_lines([], []) == []
     (line,) = followup_lines(first, again)
     assert "exact set 1/1" in line and "wrong name 0/1" in line and "at once or then: 2/3" in line
 
