@@ -149,6 +149,8 @@ def known_to(car: str) -> list[Hypothesis]:
         (arm,) = library("steer_arm_compliance")
         weak = replace(arm, sizes=tuple(replace(s, typical=9.0) for s in arm.sizes))
         return [weak, *library("tie_rod_compliance", "hub_compliance", "strut_friction")]
-    if car in ("two", "steady", "friction"):  # friction takes its time
+    if car in ("two", "steady"):  # friction takes its time
+        return library("strut_friction", "rig_channel_gain", "hub_compliance")
+    if car == "friction":
         return library(*(e for e in LIBRARY if e != "bushing_progression"))
     return library()

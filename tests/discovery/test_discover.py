@@ -109,7 +109,7 @@ def test_white_noise_assumed_where_it_is_not_does_not_pass_for_agreement() -> No
 def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ignore[no-untyped-def]
     path = tmp_path / "discovery.sqlite"
     told: list[str] = []
-    few = library("hub_compliance", "tie_rod_compliance")
+    few = library("hub_compliance")
     with Ledger(path) as ledger:
         first = discover(model("named"), few, Bench(ledger=ledger))
     with Ledger(path) as ledger:
