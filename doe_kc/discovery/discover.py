@@ -24,11 +24,13 @@ from doe_kc.discovery.trials import Trial
 from doe_kc.discovery.verdict import classes, law_explains, verdict
 from doe_kc.discovery.widening import beyond, searched
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.threads import one_thread
 
 WORST = 8
 """Unexplained disagreements that are listed."""
 
 
+@one_thread()
 def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | None = None) -> Discovery:
     """model: the axle without any effect, its tunable parameters and its records."""
     started = time.perf_counter()

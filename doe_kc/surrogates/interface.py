@@ -9,8 +9,8 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.surrogates.threads import one_thread
 from doe_kc.surrogates.training import check_points, check_training
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 

@@ -16,7 +16,7 @@ from doe_kc.surrogates.kernel import Kernel, training_covariance
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn
 from doe_kc.surrogates.models.gp import FittedGaussianProcess, GaussianProcess, Trend
 from doe_kc.surrogates.posterior import condition
-from doe_kc.surrogates.threads import one_thread
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 from tests.surrogates.problems import differences, points, problem
 

@@ -15,7 +15,7 @@ from doe_kc.surrogates.models.linear import Linear
 from doe_kc.surrogates.models.rbf import FittedRadialBasis, RadialBasis
 from doe_kc.surrogates.ordinary_kriging import OrdinaryKriging, ordinary_kriging
 from doe_kc.surrogates.ridge import FittedLinear
-from doe_kc.surrogates.threads import one_thread
+from doe_kc.threads import one_thread
 from tests.surrogates.problems import differences, points, problem
 
 P = problem()

@@ -20,6 +20,6 @@ def _controller() -> Any:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Inside, linear algebra of this process runs in the calling thread."""
+    """Inside, or in a function decorated by it, linear algebra of this process is in the calling thread."""
     with _controller().limit(limits=1):
         yield
