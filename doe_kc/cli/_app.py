@@ -61,8 +61,16 @@ def main() -> NoReturn:
 
 
 def _on_interrupt(handler: Callable[[int, FrameType | None], None]) -> None:
+    own = os.getpid()
+
+    def mine(number: int, frame: FrameType | None) -> None:
+        if os.getpid() == own:
+            handler(number, frame)
+        elif number == signal.SIGTERM:  # a worker so new that it has no handlers of its own yet
+            os._exit(RunError.exit_code)
+
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, handler)
+        signal.signal(number, mine)
 
 
 def _leave(_signal: int, _frame: FrameType | None) -> None:
