@@ -13,6 +13,7 @@ from pydantic import Field
 from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
 from doe_kc.axle.schema import Positive, Strict
 from doe_kc.correlation.options import CorrelationOptions
+from doe_kc.discovery.options import DiscoveryOptions
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
 from doe_kc.sampling.options import SamplingOptions
@@ -24,6 +25,8 @@ from doe_kc.true_solver.options import SolverOptions
 from doe_kc.variables import Space, VariableOptions, build_space
 
 FEWEST_POINTS = 3
+STORES = "store"
+"""Folder under `out` of the files that make a repetition quick."""
 
 
 class InfluenceOptions(Strict):
@@ -50,6 +53,7 @@ class StudyFile(Strict):
     characteristics: list[CharacteristicOptions] = Field(default=[])
     curves: list[CurveOptions] = Field(default=[])
     correlation: CorrelationOptions = CorrelationOptions()
+    discovery: DiscoveryOptions = DiscoveryOptions()
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,7 @@ class Study:
     characteristics: tuple[CharacteristicOptions, ...]
     curves: tuple[CurveOptions, ...]
     correlation: CorrelationOptions
+    discovery: DiscoveryOptions
 
     @property
     def folder(self) -> Path:
@@ -86,7 +91,16 @@ class Study:
     @property
     def store(self) -> Path:
         """The one file of all true-solver evaluations."""
-        return self.out / "evaluations.sqlite"
+        return self.out / STORES / "evaluations.sqlite"
+
+    def extended_store(self, fingerprint: str) -> Path:
+        """The file of the evaluations of the axle with effects that a discovery added."""
+        return self.out / STORES / f"evaluations_{fingerprint[:12]}.sqlite"
+
+    @property
+    def discovery_store(self) -> Path:
+        """The file of what a discovery has computed."""
+        return self.out / STORES / "discovery.sqlite"
 
     def measured(self) -> Path:
         """The measurement's folder or `test.toml`; InputError when the study names none."""
@@ -117,6 +131,7 @@ def read_study(
     axle = read_axle(folder / file.axle)
     _check_windows(file.windows, axle, str(source))
     check_names(file.characteristics, file.curves, str(source))
+    file.discovery.check_names(str(source))
     own = folder / file.measurement if file.measurement is not None else None
     return Study(
         name=file.name or folder.resolve().name,
@@ -136,6 +151,7 @@ def read_study(
         characteristics=tuple(file.characteristics),
         curves=tuple(file.curves),
         correlation=file.correlation,
+        discovery=file.discovery,
     )
 
 

@@ -26,5 +26,4 @@ def live_rating(budget: int) -> Iterator[Callable[[Sequence[Evaluated]], None]]:
 
 
 def _words(best: Evaluated) -> str:
-    feasible = best.rating is not None and best.rating.feasible
-    return f"rating {best.merit:.4g} ({'feasible' if feasible else 'not feasible'})"
+    return f"rating {best.merit:.4g} ({'feasible' if best.feasible else 'not feasible'})"

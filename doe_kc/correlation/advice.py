@@ -6,26 +6,25 @@ import numpy as np
 
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.problem import Evaluated, Problem
-from doe_kc.correlation.reach import conflict, reaches, unreachable
+from doe_kc.correlation.reach import Relaxation, conflict
 
 COARSE = 0.25
 """Share of the rating that half a level of one variable may cost unmentioned."""
 
 
-def reach_sentences(problem: Problem, baseline: Evaluated, expansion: Linearization) -> list[str]:
-    """One for every active target that the bounds do not reach from the baseline, to first order."""
-    targets, slopes = problem.targets, expansion.characteristics[problem.targets.rows]
-    if baseline.score is None:
-        return []
-    span = reaches(baseline.score.values, slopes, baseline.point)
-    missed = {t.entry.id for t in unreachable(targets.characteristics, span)}
-    return [
-        f"{t.entry.id}: the target {t.value:.4g} {t.entry.unit} is out of reach, within the bounds the model "
-        f"goes from about {low:.4g} to {high:.4g}; check sign and unit, widen bounds, or leave it out until "
-        "the effect is found that the model lacks."
-        for t, (low, high) in zip(targets.characteristics, span, strict=True)
-        if t.entry.id in missed
-    ]
+def reach_sentences(problem: Problem, relaxed: Relaxation) -> list[str]:
+    """One for every target that the bounds do not reach without harm to others, known beforehand."""
+    known = {t.entry.id: t for t in problem.targets.characteristics}
+    out = []
+    for ident, distance in relaxed.distances.items():
+        target = known[ident]
+        out.append(
+            f"{ident}: the target {target.value:.4g} {target.entry.unit} is out of reach within the bounds "
+            f"without harm to others, to first order; its interval is widened to {distance:.3g} "
+            f"{target.entry.unit} either way. Wider bounds of {', '.join(relaxed.limits[ident])} would help "
+            "most, or an effect that the model lacks: doe-kc discover looks for it."
+        )
+    return out
 
 
 def conflict_sentences(problem: Problem, best: Evaluated, expansion: Linearization) -> list[str]:

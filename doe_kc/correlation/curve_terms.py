@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.targets import Targets
+from doe_kc.targets import LIMIT_WEIGHT, Targets
 from doe_kc.typing import FloatArray
 
 CORNER = 1e-3
@@ -17,7 +17,8 @@ CORNER = 1e-3
 class CurveTerms:
     """(RMS / Norm)^2 of c curves at scores s: s'As + 2 b's + e.
 
-    a: (c, q, q). b: (c, q). e: (c,). linear, quadratic: (c,) LinWt and QuadWt.
+    a: (c, q, q). b: (c, q). e: (c,). linear, quadratic: (c,) LinWt and QuadWt. limit: (c,) RMS / Norm from
+    which a term costs LIMIT_WEIGHT times the square of what is beyond.
     """
 
     a: FloatArray
@@ -25,6 +26,7 @@ class CurveTerms:
     e: FloatArray
     linear: FloatArray
     quadratic: FloatArray
+    limit: FloatArray
 
     @classmethod
     def of(cls, targets: Targets, mean: FloatArray, basis: FloatArray) -> CurveTerms:
@@ -38,6 +40,7 @@ class CurveTerms:
             np.array([off[p] @ off[p] for p in parts]),
             np.array([c.objective.linear for c in targets.curves]),
             np.array([c.objective.quadratic for c in targets.curves]),
+            np.array([c.limit / c.objective.norm for c in targets.curves]),
         )
 
     def squares(self, s: FloatArray) -> FloatArray:
@@ -47,27 +50,37 @@ class CurveTerms:
 
     def value(self, s: FloatArray) -> FloatArray:
         """(p,) sum of the curves' terms of equation 2.2."""
-        square = self.squares(s)
-        return np.asarray(-np.sqrt(square) @ self.linear - square @ self.quadratic)
+        return self._value(self.squares(s))
 
     def slope(self, s: FloatArray) -> FloatArray:
         """(p, q) derivative of `value`."""
-        weight = self.linear / np.sqrt(self.squares(s) + CORNER**2) + 2.0 * self.quadratic
+        weight = self._weight(self.squares(s))
         push = np.einsum("cij,pj->pci", self.a, s, optimize=True) + self.b
         return np.asarray(-np.einsum("pc,pci->pi", weight, push))
 
     def expected(self, s: FloatArray, variance: FloatArray) -> FloatArray:
         """(p,) terms at the expected squares, scores (p, q) with independent variances (q,) or (p, q)."""
-        square = self._blurred(s, variance)
-        return np.asarray(-np.sqrt(square) @ self.linear - square @ self.quadratic)
+        return self._value(self._blurred(s, variance))
 
     def majorizer(self, s: FloatArray, variance: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Hessian (q, q) and gradient (q,) of -expected, and its derivative by the variances (q,)."""
         square = self._blurred(s[None], variance)[0]
-        weight = self.linear / np.sqrt(square + CORNER**2) + 2.0 * self.quadratic
+        weight = self._weight(square)
         push = self.a @ s + self.b
         by_variance = 0.5 * weight @ np.einsum("cii->ci", self.a)
         return np.einsum("c,cij->ij", weight, self.a), weight @ push, np.asarray(by_variance)
+
+    def _value(self, square: FloatArray) -> FloatArray:
+        """(p,) terms of squares (p, c)."""
+        size = np.sqrt(square)
+        beyond = np.maximum(size - self.limit, 0.0)
+        return np.asarray(-size @ self.linear - square @ self.quadratic - LIMIT_WEIGHT * (beyond**2).sum(-1))
+
+    def _weight(self, square: FloatArray) -> FloatArray:
+        """(..., c) minus twice the derivative of the terms by the squares."""
+        size = np.sqrt(square + CORNER**2)
+        beyond = np.maximum(size - self.limit, 0.0)
+        return np.asarray((self.linear + 2.0 * LIMIT_WEIGHT * beyond) / size + 2.0 * self.quadratic)
 
     def _blurred(self, s: FloatArray, variance: FloatArray) -> FloatArray:
         return np.asarray(self.squares(s) + variance @ np.einsum("cii->ic", self.a))

@@ -29,14 +29,16 @@ def run_method(
     evaluate: Evaluate,
     *,
     budget: int,
+    proposals: Sequence[Candidate] = (),
     known: Sequence[tuple[Candidate, Outcome]] = (),
     until_feasible: bool = False,
     watch: Watch = lambda _: None,
 ) -> Run:
     """Run a method until it stops or `budget` designs (the baseline among them) are evaluated.
 
-    known: designs evaluated before, told to the method but not counted. until_feasible: stop at the first
-    design that meets every constraint. watch: told of each round.
+    proposals: designs confirmed right after the baseline. known: designs evaluated before, told to the
+    method but not counted. until_feasible: stop at the first design that meets every constraint. watch: told
+    of each round.
     RunError when the baseline has no solution.
     """
     history: list[Evaluated] = []
@@ -55,9 +57,10 @@ def run_method(
     if baseline[0].rating is None:
         raise RunError(f"the baseline axle cannot be solved: {baseline[0].outcome.reason}")
     earlier = [problem.judged(-1 - i, c, o) for i, (c, o) in enumerate(known)]
-    method.tell([*baseline, *earlier])
+    proposed = confirm(list(proposals)[: budget - 1]) if proposals else []
+    method.tell([*baseline, *proposed, *earlier])
     while not method.stopped and len(history) < budget:
-        if until_feasible and any(e.rating is not None and e.rating.feasible for e in history):
+        if until_feasible and any(e.feasible for e in history):
             return Run(tuple(history), method.best(history), "the first design that meets every constraint")
         candidates = list(method.ask())[: budget - len(history)]
         if not candidates:

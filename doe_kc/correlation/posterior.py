@@ -7,11 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
+from scipy.special import ndtr, ndtri
 
 from doe_kc.typing import FloatArray
 
 VISIBLE = 0.5
 """A variable is visible when the measurement at least halves its prior standard deviation."""
+ONE_SD = 0.6827
+"""Probability within one standard deviation of a normal distribution."""
 AT_BOUND = 0.005
 """Share of the range within which a variable counts as being at its bound: half a step of 101 levels."""
 
@@ -20,13 +23,19 @@ AT_BOUND = 0.005
 class Posterior:
     """Linear Gaussian view at a design. All (d,), in places u.
 
-    sd: sqrt(diag((J'J + P^-2)^-1)), J in standard deviations of the data, P the prior sd.
-    prior: P. correlation: (d, d).
+    sd: sqrt(diag((J'J + P^-2)^-1)) times the misfit, J in standard deviations of the data, P the prior sd; no
+    more than the prior allows. prior: P. correlation: (d, d). misfit: whitened RMS of the residuals, 1 at
+    least: what the model does not explain makes its parameters as much less certain (Birge's ratio).
+    at_bound: (d,) -1 lower, +1 upper, 0 between. inward: (d,) distance from that bound within which the value
+    lies with a probability of 68 %, nan between the bounds: there a standard deviation means nothing.
     """
 
     sd: FloatArray
     prior: FloatArray
     correlation: FloatArray
+    misfit: float
+    at_bound: NDArray[np.int_]
+    inward: FloatArray
 
     @property
     def visible(self) -> NDArray[np.bool_]:
@@ -34,9 +43,29 @@ class Posterior:
         return np.asarray(self.sd <= VISIBLE * self.prior)
 
 
-def posterior(jacobian: FloatArray, prior: FloatArray) -> Posterior:
-    """Posterior of d variables from the whitened Jacobian (M, d) and the prior sd (d,)."""
-    hessian = jacobian.T @ jacobian + np.diag(prior**-2.0)
+def posterior(jacobian: FloatArray, prior: FloatArray, residual: FloatArray, point: FloatArray) -> Posterior:
+    """Posterior of d variables at point (d,) from the whitened residual (M,), its Jacobian (M, d) and the
+    prior sd (d,)."""
+    misfit = max(1.0, float(np.sqrt(np.mean(residual**2)))) if residual.size else 1.0
+    weighted = jacobian / misfit
+    hessian = weighted.T @ weighted + np.diag(prior**-2.0)
     covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(prior.size)))
     sd = np.sqrt(np.diag(covariance))
-    return Posterior(sd, prior, covariance / np.outer(sd, sd))
+    at_bound = np.where(point <= AT_BOUND, -1, np.where(point >= 1.0 - AT_BOUND, 1, 0))
+    slope = weighted.T @ (residual / misfit)
+    pushed = zip(at_bound, slope, sd, strict=True)
+    inward = np.array([_inward(-float(b * s), float(e)) if b else np.nan for b, s, e in pushed])
+    return Posterior(sd, prior, covariance / np.outer(sd, sd), misfit, at_bound, inward)
+
+
+def _inward(slope: float, sd: float) -> float:
+    """The 68 % point of exp(-slope t - t^2 / (2 sd^2)), t >= 0: a normal distribution cut at the bound.
+
+    slope: by which the data push against the bound; no less than none.
+    """
+    centre = -max(slope, 0.0) * sd**2
+    outside = ndtr(-centre / sd)
+    tail = (1.0 - outside) * (1.0 - ONE_SD)
+    if tail < 1e-12:  # far in the tail the distribution is exponential
+        return float(-np.log(1.0 - ONE_SD) / max(slope, 1e-300))
+    return float(centre - sd * ndtri(tail))

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
+from doe_kc.correlation.prior import Prior
 from doe_kc.errors import RunError
 from doe_kc.targets import Rating, Score, Targets, rate, score
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
+
+KEPT = 4
+"""Expansions that are kept, some 10 MB each."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +43,11 @@ class Candidate:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """A design with the true solver's answer. score, rating: None after a failure.
+    """A design with the true solver's answer. score, rating, searched: None after a failure.
 
-    scaled: (N,) curves as `Targets.scaled_curves`, empty without curve targets.
+    rating: of equation 2.2, by the problem's targets. searched: the same sum over the targets of the search.
+    merit: what the search maximizes, -inf after a failure. scaled: (N,) curves of the search's targets as
+    `Targets.scaled_curves`, empty without curve targets.
     """
 
     index: int
@@ -48,12 +55,14 @@ class Evaluated:
     outcome: Outcome
     score: Score | None
     rating: Rating | None
+    searched: Rating | None
+    merit: float
     scaled: FloatArray
 
     @property
-    def merit(self) -> float:
-        """The rating, -inf after a failure."""
-        return self.rating.total if self.rating is not None else -np.inf
+    def feasible(self) -> bool:
+        """Whether every constraint and limit of the search is met."""
+        return self.searched is not None and self.searched.feasible
 
     @property
     def point(self) -> FloatArray:
@@ -65,6 +74,7 @@ class Evaluated:
 class Problem:
     """axle: the model that points are applied to. exact: whether its sensitivities can be had.
 
+    targets: of the rating that is reported. sought: of the search; None where it works on the rating alone.
     likelihood: records and typed targets as data with errors.
     """
 
@@ -74,24 +84,51 @@ class Problem:
     likelihood: Likelihood
     windows: Mapping[str, float]
     exact: bool
+    sought: Targets | None = None
+
+    @property
+    def search(self) -> Targets:
+        """The targets that the search works on: same characteristics, the rating's curves first."""
+        return self.targets if self.sought is None else self.sought
+
+    @cached_property
+    def prior(self) -> Prior:
+        """What it costs to move variables away from where they start."""
+        return Prior.of(self.space.start, self.space.prior_sd)
 
     def linearize(self, point: FloatArray) -> Linearization:
         """Exact first-order expansion at a point (d,); RunError for a solver that gives none."""
         if not self.exact:
             raise RunError("the study's solver gives no sensitivities; choose a method that needs none.")
-        return linearize(self.axle, self.space, point, self.windows)
+        key = point.tobytes()
+        if key not in self._expansions:
+            self._expansions[key] = linearize(self.axle, self.space, point, self.windows)
+            while len(self._expansions) > KEPT:
+                self._expansions.pop(next(iter(self._expansions)))
+        return self._expansions[key]
+
+    @cached_property
+    def _expansions(self) -> dict[bytes, Linearization]:
+        """The last ones: start and best design are asked for again and again."""
+        return {}
 
     def output_slopes(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Exact slopes of the targets' characteristics (k, d) and of the scaled curves (N, d)."""
         expansion = self.linearize(point)
-        rows = [scaled_slopes(t, expansion.curves) for t in self.targets.curves]
+        rows = [scaled_slopes(t, expansion.curves) for t in self.search.curves]
         empty = np.zeros((0, self.space.dimension))
-        return expansion.characteristics[self.targets.rows], np.vstack([empty, *rows])
+        return expansion.characteristics[self.search.rows], np.vstack([empty, *rows])
 
     def judged(self, index: int, candidate: Candidate, outcome: Outcome) -> Evaluated:
         """The candidate with its answer scored and rated; a response that is not finite is a failure."""
         if outcome.failed:
-            return Evaluated(index, candidate, outcome, None, None, np.zeros(0))
-        found = score(self.targets, outcome.characteristics, outcome.curves)
-        scaled = np.zeros(0) if outcome.curves is None else self.targets.scaled_curves(outcome.curves)
-        return Evaluated(index, candidate, outcome, found, rate(self.targets, found), scaled)
+            return Evaluated(index, candidate, outcome, None, None, None, -np.inf, np.zeros(0))
+        wide = score(self.search, outcome.characteristics, outcome.curves)
+        own = replace(wide, rms=wide.rms[: len(self.targets.curves)])
+        scaled = np.zeros(0) if outcome.curves is None else self.search.scaled_curves(outcome.curves)
+        rating = rate(self.targets, own)
+        if self.sought is None:
+            return Evaluated(index, candidate, outcome, own, rating, rating, rating.total, scaled)
+        searched = rate(self.search, wide)
+        merit = searched.total - float(self.prior.cost(candidate.point))
+        return Evaluated(index, candidate, outcome, own, rating, searched, merit, scaled)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -13,11 +13,13 @@ from doe_kc.axle.schema import Strict
 from doe_kc.campaign.key import design_key
 from doe_kc.campaign.store import Store
 from doe_kc.correlation.loop import Run
+from doe_kc.correlation.methods._base import best_design
 from doe_kc.correlation.posterior import Posterior
 from doe_kc.correlation.problem import Candidate, Prediction, Problem
 from doe_kc.correlation.result import Correlation
 from doe_kc.errors import InputError
 from doe_kc.files import validate
+from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import Space, Tie, Variable
 from doe_kc.variables.build import plain_parameter
 from doe_kc.variables.options import Distribution
@@ -62,8 +64,28 @@ class EvaluationRecord(Strict):
     predicted: PredictionRecord | None
 
 
+class PosteriorRecord(Strict):
+    """The fields of `Posterior` but the prior."""
+
+    sd: list[float]
+    correlation: list[list[float]]
+    misfit: float
+    at_bound: list[int]
+    inward: list[float | None]
+
+
+class EffectRecord(Strict):
+    """An effect that the run began with. uncertain: others of its class could stand for it."""
+
+    id: str
+    location: str | None
+    options: dict[str, Any]
+    uncertain: bool
+
+
 class RunRecord(Strict):
-    """The whole file."""
+    """The whole file. discovered: whether it followed a discovery, whose effects it begins with. without:
+    (load case, response) left out of the objectives."""
 
     schema_: Literal["doe_kc.run/1"] = "doe_kc.run/1"
     method: str
@@ -75,13 +97,21 @@ class RunRecord(Strict):
     variables: list[VariableRecord]
     ties: list[TieRecord]
     fixed: dict[str, float]
-    posterior_sd: list[float] | None
-    posterior_correlation: list[list[float]] | None
+    posterior: PosteriorRecord | None
+    discovered: bool
+    effects: list[EffectRecord]
+    without: list[tuple[str, str]]
     evaluations: list[EvaluationRecord]
 
 
-def run_document(found: Correlation) -> dict[str, Any]:
-    """The record of a correlation, for `write_json`."""
+def run_document(
+    found: Correlation,
+    *,
+    discovered: bool = False,
+    effects: Sequence[EffectRecord] = (),
+    without: Collection[tuple[str, str]] = (),
+) -> dict[str, Any]:
+    """The record of a correlation, for `write_json`. The rest as in `RunRecord`."""
     space, after = found.problem.space, found.posterior
     record = RunRecord(
         method=found.method,
@@ -96,11 +126,23 @@ def run_document(found: Correlation) -> dict[str, Any]:
         ],
         ties=[TieRecord(**vars(t)) for t in space.ties],
         fixed=dict(space.fixed or {}),
-        posterior_sd=None if after is None else after.sd.tolist(),
-        posterior_correlation=None if after is None else after.correlation.tolist(),
+        posterior=None if after is None else _posterior(after),
+        discovered=discovered,
+        effects=list(effects),
+        without=sorted(without),
         evaluations=[_evaluation(e.candidate) for e in found.run.evaluated],
     )
     return record.model_dump()
+
+
+def _posterior(after: Posterior) -> PosteriorRecord:
+    return PosteriorRecord(
+        sd=after.sd.tolist(),
+        correlation=after.correlation.tolist(),
+        misfit=after.misfit,
+        at_bound=after.at_bound.tolist(),
+        inward=after.inward.tolist(),
+    )
 
 
 def _evaluation(candidate: Candidate) -> EvaluationRecord:
@@ -141,13 +183,11 @@ def _plain(axle: Axle, path: str) -> Parameter:
     return plain_parameter(axle, path)
 
 
-def recalled(record: RunRecord, problem: Problem, store: Store, source: str) -> Correlation:
-    """The correlation again, judged by the problem's present targets and weights.
-
-    InputError when the store lacks one of its designs. The design to hand over is the best rating, but for
-    `gauss_newton` the one it chose.
-    """
-    evaluated = []
+def recalled_answers(
+    record: RunRecord, problem: Problem, store: Store, source: str
+) -> list[tuple[Candidate, Outcome]]:
+    """Every evaluation of the run; InputError when the store lacks one of its designs."""
+    out = []
     for index, entry in enumerate(record.evaluations):
         point = np.array(entry.point)
         try:
@@ -156,14 +196,31 @@ def recalled(record: RunRecord, problem: Problem, store: Store, source: str) -> 
             raise InputError(
                 f"{source}: evaluation {index} is not in {store.path}; run doe-kc correlate again."
             ) from None
-        evaluated.append(problem.judged(index, Candidate(point, entry.origin, _expected(entry)), outcome))
+        out.append((Candidate(point, entry.origin, _expected(entry)), outcome))
+    return out
+
+
+def recalled(
+    record: RunRecord, problem: Problem, answers: Sequence[tuple[Candidate, Outcome]]
+) -> Correlation:
+    """The correlation again, judged by the problem's present targets and weights.
+
+    The design to hand over is the best merit, but for `gauss_newton` the one it chose.
+    """
+    evaluated = [problem.judged(i, candidate, outcome) for i, (candidate, outcome) in enumerate(answers)]
     chosen = record.best
     if record.method != "gauss_newton":
-        chosen = max(range(len(evaluated)), key=lambda i: (evaluated[i].merit, -i))
+        chosen = best_design(evaluated)
     after = None
-    if record.posterior_sd is not None and chosen == record.best:
+    if record.posterior is not None and chosen == record.best:
+        known = record.posterior
         after = Posterior(
-            np.array(record.posterior_sd), problem.space.prior_sd, np.array(record.posterior_correlation)
+            np.array(known.sd),
+            problem.space.prior_sd,
+            np.array(known.correlation),
+            known.misfit,
+            np.array(known.at_bound, dtype=int),
+            np.array([np.nan if v is None else v for v in known.inward]),
         )
     return Correlation(
         record.method,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from doe_kc.axle.model import Axle
@@ -9,6 +10,7 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.loop import Run
 from doe_kc.correlation.posterior import Posterior
 from doe_kc.correlation.problem import Evaluated, Problem
+from doe_kc.correlation.reach import Relaxation
 from doe_kc.targets import Improvement, improvements, mean_improvement
 
 
@@ -18,7 +20,8 @@ class Correlation:
 
     method: its id. steps: what was set before it (ride height, alignment), in sentences. posterior: of the
     variables at the best design from the exact sensitivities; None when the solver gives none or there are
-    no records. seconds: of the whole run.
+    no records. seconds: of the whole run. relaxation: targets that the bounds do not reach, None where that
+    was not known beforehand. given: the axle as it was handed in, where the run started from another.
     """
 
     method: str
@@ -28,11 +31,13 @@ class Correlation:
     posterior: Posterior | None
     seconds: float
     notes: tuple[str, ...] = ()
+    relaxation: Relaxation | None = None
+    given: Evaluated | None = None
 
     @property
     def baseline(self) -> Evaluated:
-        """The design that it started from."""
-        return self.run.evaluated[0]
+        """The axle that was handed in: the design that the run started from, unless effects were added."""
+        return self.given or self.run.evaluated[0]
 
     @property
     def best(self) -> Evaluated:
@@ -42,11 +47,16 @@ class Correlation:
     @property
     def rating(self) -> float:
         """Equation 2.2 of the best design."""
-        return self.best.merit
+        return self.best.rating.total if self.best.rating is not None else -math.inf
+
+    @property
+    def baseline_rating(self) -> float:
+        """Equation 2.2 of the baseline."""
+        return self.baseline.rating.total if self.baseline.rating is not None else -math.inf
 
     @property
     def feasible(self) -> bool:
-        """Whether the best design meets every constraint."""
+        """Whether the best design meets every constraint of the rating."""
         return self.best.rating is not None and self.best.rating.feasible
 
     @property

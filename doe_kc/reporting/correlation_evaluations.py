@@ -50,7 +50,7 @@ def history(found: Correlation) -> History:
         origin=tuple(e.candidate.origin for e in runs),
         rating=np.where(np.isfinite(merit), merit, np.nan),
         best=np.maximum.accumulate(merit),
-        feasible=np.array([e.rating is not None and e.rating.feasible for e in runs]),
+        feasible=np.array([e.feasible for e in runs]),
         failed=np.array([e.rating is None for e in runs]),
         predicted=np.array([p.rating if p else np.nan for p in expected], dtype=float),
         sd=np.array([p.rating_sd if p else np.nan for p in expected], dtype=float),

@@ -49,7 +49,7 @@ def rating_sheet(book: Workbook, found: Correlation, study: str) -> None:
 
 
 def _sums(ws: Worksheet, found: Correlation, last: int) -> None:
-    for column, name, value in (("O", "Baseline", found.baseline.merit), ("R", "Final", found.rating)):
+    for column, name, value in (("O", "Baseline", found.baseline_rating), ("R", "Final", found.rating)):
         at = ord(column) - ord("A") + 1
         put(ws, 4, at, name, bold=True, horizontal="right")
         cell = put(ws, 5, at, None, bold=True, number="0.000000")

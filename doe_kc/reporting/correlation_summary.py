@@ -17,7 +17,7 @@ def summary(found: Correlation) -> dict[str, str]:
         e.target.entry.id for e in found.improvements if e.target.constraint is not None and not e.inside
     ]
     lines = {
-        "Rating": f"{found.rating:.6g} (baseline {found.baseline.merit:.6g}; 0 = every target met exactly)",
+        "Rating": f"{found.rating:.6g} (baseline {found.baseline_rating:.6g}; 0 = every target met exactly)",
         "Constraints": "all met" if found.feasible else f"violated: {', '.join(violated)}",
         "Mean improvement": f"{mean:.1f} % over {counted} characteristics"
         if math.isfinite(mean)

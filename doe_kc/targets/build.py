@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -33,29 +34,69 @@ def build_targets(
     curves: Sequence[CurveOptions],
     *,
     source: str,
+    without: Collection[tuple[str, str]] = (),
 ) -> Targets:
     """Targets from the records, changed by the study's tables.
 
     Objective and constraint flags default to Appendix B, intervals to equations 5.1 and 5.2, weights to
     LinWt 1 and QuadWt 10000, Norm to sqrt(target^2 + 0.005) (the measure of the interval) and, for a
     curve, to its range; curves are objectives where a characteristic is read off them that is one.
-    InputError for unknown names, an interval without its target, or no objective at all.
+    without: (load case, response) that are taken out as if the study said so, because the model cannot
+    explain them. InputError for unknown names, an empty interval, a constraint without a target, or no
+    objective at all.
     """
     check_names(characteristics, curves, source)
-    found = list(_targets(measurement, characteristics, source))
-    wanted = {(t.entry.load_case, t.entry.response) for t in found if t.objective is not None}
-    lines = tuple(_curves(axle, measurement, curves, wanted)) if measurement is not None else ()
-    if not any(t.active for t in found) and not lines:
+    targets = [_taken_out(t, without) for t in _targets(measurement, characteristics, source)]
+    _check_constraints(targets, characteristics, source)
+    dropped = frozenset((*_dropped(targets, characteristics, curves), *without))
+    rated = {(t.entry.load_case, t.entry.response) for t in targets if t.objective is not None}
+    measured = list(_curves(axle, measurement, curves, dropped)) if measurement is not None else []
+    chosen = [c.id for c in measured if _rated(c, curves, rated, without)]
+    if not any(t.active for t in targets) and not chosen:
         raise InputError(
             f"{source}: no characteristic has a target and an objective or constraint; give measurement = "
             '"FOLDER" or a [[characteristics]] with match and target.'
         )
     return Targets(
-        tuple(found),
-        lines,
+        tuple(targets),
+        tuple(c for c in measured if c.id in chosen),
         measurement.manifest.name if measurement else source,
-        frozenset(_dropped(found, characteristics, curves)),
+        dropped,
+        tuple(c for c in measured if c.id not in chosen),
     )
+
+
+def _taken_out(target: Target, without: Collection[tuple[str, str]]) -> Target:
+    if (target.entry.load_case, target.entry.response) not in without:
+        return target
+    return replace(target, objective=None, constraint=None, excluded=True)
+
+
+def _rated(
+    curve: CurveTarget,
+    options: Sequence[CurveOptions],
+    rated: Collection[tuple[str, str]],
+    without: Collection[tuple[str, str]],
+) -> bool:
+    """Whether the rating counts the curve."""
+    place = (curve.load_case, curve.response)
+    own = [o for o in options if fnmatchcase(curve.id, o.match)]
+    return place not in without and bool(first(last(own, "objective"), place in rated))
+
+
+def _check_constraints(
+    targets: Sequence[Target], characteristics: Sequence[CharacteristicOptions], source: str
+) -> None:
+    """InputError for a constraint that the study states where nothing it matches has a target."""
+    known = [t.entry.id for t in targets]
+    for option in characteristics:
+        stated = option.constraint or option.low is not None or option.high is not None
+        if stated and not any(fnmatchcase(name, option.match) for name in known):
+            raise InputError(
+                f"{source}: characteristics: match = {option.match!r} states a constraint, but the records "
+                "hold no such characteristic and no target is given; add target = VALUE, or the load case to "
+                "the records, or drop the entry."
+            )
 
 
 def _dropped(
@@ -133,20 +174,25 @@ def _target(
         sd=sd,
         objective=objective if first(last(own, "objective"), entry.objective) else None,
         constraint=constraint if first(last(own, "constraint"), entry.constraint or typed) else None,
+        excluded=last(own, "objective") is False,
+        hold=first(last(own, "hold"), objective.goal == "target"),
+        relax=first(last(own, "relax"), True),
     )
 
 
 def _curves(
-    axle: Axle, measurement: Measurement, options: Sequence[CurveOptions], wanted: set[tuple[str, str]]
+    axle: Axle,
+    measurement: Measurement,
+    options: Sequence[CurveOptions],
+    dropped: Collection[tuple[str, str]],
 ) -> Iterator[CurveTarget]:
+    """Every measured curve within the model's sweep."""
     for case in measurement.curves.cases.values():
         inside = reached(axle, case)
         if not inside.any():
             continue
         for response in RIG_RESPONSES:
             own = [o for o in options if fnmatchcase(f"{case.load_case}.{response}", o.match)]
-            if not first(last(own, "objective"), (case.load_case, response) in wanted):
-                continue
             curve = np.asarray(case.mean[response])[:, inside]
             noise = measurement.noise[case.load_case][response]
             variance = [np.diag(noise.covariance(side=side))[inside].mean() for side in (0, 1)]
@@ -164,6 +210,8 @@ def _curves(
                     quadratic=first(last(own, "quadratic"), 0.0),
                     norm=first(last(own, "norm"), scale),
                 ),
+                excluded=(case.load_case, response) in dropped,
+                hold=first(last(own, "hold"), True),
             )
 
 

@@ -18,7 +18,8 @@ class CharacteristicOptions(Strict):
     car's figure). objective, constraint: in place of Appendix B's flags. low, high: constraint interval
     in place of equations 5.1 and 5.2. goal: what the objective is: the distance to the target, or the
     value itself made small or large. linear, quadratic, norm: LinWt, QuadWt, Norm of the objective, those
-    with `constraint_` of the constraint (equation 2.2).
+    with `constraint_` of the constraint (equation 2.2). hold: false lets it move away from its target.
+    relax: false insists on the interval though no design within the bounds reaches it.
     """
 
     match: str
@@ -35,16 +36,22 @@ class CharacteristicOptions(Strict):
     constraint_linear: NotNegative | None = None
     constraint_quadratic: NotNegative | None = None
     constraint_norm: Positive | None = None
+    hold: bool | None = None
+    relax: bool | None = None
 
 
 class CurveOptions(Strict):
-    """The same for whole curves, matched as `load_case.response` ("vertical.toe"); RMS by equation 2.1."""
+    """The same for whole curves, matched as `load_case.response` ("vertical.toe"); RMS by equation 2.1.
+
+    hold: false lets the curve move away from the measured one.
+    """
 
     match: str
     objective: bool | None = None
     linear: NotNegative | None = None
     quadratic: NotNegative | None = None
     norm: Positive | None = None
+    hold: bool | None = None
 
 
 Characteristics = Annotated[list[CharacteristicOptions], Field(default=[])]

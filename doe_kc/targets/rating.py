@@ -16,19 +16,24 @@ from doe_kc.targets.score import Score
 from doe_kc.targets.target import Constraint, Objective, Targets
 from doe_kc.typing import FloatArray
 
+LIMIT_WEIGHT = 1e4
+"""QuadWt of a curve's limit: that of a constraint."""
+
 
 @dataclass(frozen=True)
 class Rating:
     """A design's rating and its terms, all of them summed in `total`.
 
-    objectives, constraints: (k,) of the characteristics, 0 without one. curves: (c,).
-    violation: (k,) ConViol in the characteristic's unit, 0 where met.
+    objectives, constraints: (k,) of the characteristics, 0 without one. curves: (c,), the price of limits
+    among them. violation: (k,) ConViol in the characteristic's unit, 0 where met. excess: (c,) RMS beyond
+    its limit in the response's unit.
     """
 
     objectives: FloatArray
     constraints: FloatArray
     curves: FloatArray
     violation: FloatArray
+    excess: FloatArray
 
     @property
     def total(self) -> float:
@@ -37,14 +42,16 @@ class Rating:
 
     @property
     def feasible(self) -> bool:
-        """Whether every constraint is met."""
-        return not self.violation.any()
+        """Whether every constraint is met, and every curve within its limit."""
+        return not self.violation.any() and not self.excess.any()
 
 
 def rate(targets: Targets, found: Score) -> Rating:
     """Rating of one design from its values and RMS deviations; nan values give nan."""
     pairs = list(zip(targets.characteristics, found.values, strict=True))
     violation = np.array([0.0 if t.constraint is None else violated(t.constraint, v) for t, v in pairs])
+    lines = list(zip(targets.curves, found.rms, strict=True))
+    excess = np.array([max(0.0, rms - t.limit) for t, rms in lines])
     return Rating(
         objectives=np.array(
             [0.0 if t.objective is None else objective_term(t.objective, v, t.value) for t, v in pairs]
@@ -56,9 +63,13 @@ def rate(targets: Targets, found: Score) -> Rating:
             ]
         ),
         curves=np.array(
-            [objective_term(t.objective, r, 0.0) for t, r in zip(targets.curves, found.rms, strict=True)]
+            [
+                objective_term(t.objective, rms, 0.0) - LIMIT_WEIGHT * (x / t.objective.norm) ** 2
+                for (t, rms), x in zip(lines, excess, strict=True)
+            ]
         ),
         violation=violation,
+        excess=excess,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -45,13 +46,21 @@ class Constraint:
 
 @dataclass(frozen=True, kw_only=True)
 class Target:
-    """One characteristic's target, in its unit. sd: standard deviation of the target, 0 when exact."""
+    """One characteristic's target, in its unit. sd: standard deviation of the target, 0 when exact.
+
+    objective, constraint: its terms of the rating. excluded: the study takes it out of the objectives, so
+    that a search on everything that was measured leaves it out too. hold: whether a search must not move it
+    away from the target. relax: whether its interval may be widened to what the bounds allow.
+    """
 
     entry: Characteristic
     value: float
     sd: float
     objective: Objective | None = None
     constraint: Constraint | None = None
+    excluded: bool = False
+    hold: bool = True
+    relax: bool = True
 
     @property
     def active(self) -> bool:
@@ -64,7 +73,8 @@ class CurveTarget:
     """A measured mean curve of both wheels that the model's shall follow.
 
     input: (n,) load-case input in `input_unit`. curve: (2, n) left and right, response's unit. noise: its
-    RMS standard deviation, below which two curves do not differ.
+    RMS standard deviation, below which two curves do not differ. limit: RMS deviation beyond which a search
+    pays a constraint's price, in the response's unit. excluded, hold: as of `Target`.
     """
 
     load_case: str
@@ -74,6 +84,9 @@ class CurveTarget:
     curve: FloatArray
     noise: float
     objective: Objective
+    limit: float = math.inf
+    excluded: bool = False
+    hold: bool = True
 
     @property
     def id(self) -> str:
@@ -85,13 +98,15 @@ class CurveTarget:
 class Targets:
     """All targets. Characteristics that have a target but are not `active` are followed only.
 
-    dropped: (load case, response) of the curves that the study takes out of the correlation.
+    curves: those that the rating counts. others: the other measured ones. dropped: (load case, response) of
+    the curves that the study takes out of the correlation.
     """
 
     characteristics: tuple[Target, ...]
     curves: tuple[CurveTarget, ...]
     source: str
     dropped: frozenset[tuple[str, str]] = frozenset()
+    others: tuple[CurveTarget, ...] = ()
 
     @cached_property
     def rows(self) -> np.ndarray:

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
+from doe_kc.effects import observed
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import library_for, solve
 from doe_kc.solver.topology import Topology
@@ -70,7 +71,7 @@ class AxleSolver:
         seconds = time.perf_counter() - started
         if solution.failure is not None:
             return failure(str(solution.failure), seconds)
-        return from_curves(curve_set(solution), self.windows, seconds)
+        return from_curves(observed(changed, curve_set(solution)), self.windows, seconds)
 
 
 def describe_axle(axle: Axle) -> dict[str, str]:

@@ -4,26 +4,35 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
+
+import numpy as np
 
 from doe_kc.campaign.runner import Campaign
 from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.likelihood import build_likelihood
-from doe_kc.correlation.linearization import Linearization
+from doe_kc.correlation.linearization import Linearization, linearize
 from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import Method, Settings, method_class
 from doe_kc.correlation.posterior import Posterior, posterior
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.result import Correlation
-from doe_kc.errors import InputError
+from doe_kc.correlation.search_targets import all_measured, search_targets
+from doe_kc.errors import InputError, RunError
 from doe_kc.measurement import Measurement
 from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
-from doe_kc.targets import build_targets
+from doe_kc.targets import build_targets, score
+from doe_kc.threads import one_thread
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
+from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import Space, build_space
 from doe_kc.variables.build import Advice
+from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.discover import discovery_space
 from doe_kc.workflow.influence import study_influence
 from doe_kc.workflow.measure import Reduced
 from doe_kc.workflow.set_first import set_first
@@ -35,6 +44,7 @@ def correlate(
     study: Study,
     reduced: Reduced | None,
     *,
+    adoption: Adoption | None = None,
     method: str | None = None,
     budget: int | None = None,
     workers: int | None = None,
@@ -43,19 +53,28 @@ def correlate(
 ) -> Correlation:
     """Run the study's correlation method (or another) against the records and the typed targets.
 
-    method, budget: in place of the study's own. watch: told of each round of evaluations. InputError for
-    an unknown method, or sensitivities asked of a solver that gives none.
+    adoption: effects to begin with, and what the records hold that no model explains. method, budget: in
+    place of the study's own. watch: told of each round of evaluations. InputError for an unknown method, or
+    sensitivities asked of a solver that gives none.
     """
     started = time.perf_counter()
     options, chosen = study.correlation, _method(study, method)
-    solver = solver_for(study.axle, study.solver, study.windows, study.folder)
-    with Campaign(solver, study.store, workers=workers, scheduler=scheduler) as campaign:
+    axle = study.axle if adoption is None else adoption.axle
+    solver = solver_for(axle, study.solver, study.windows, study.folder)
+    store = study.store if axle is study.axle else study.extended_store(solver.fingerprint())
+    with one_thread(), Campaign(solver, store, workers=workers, scheduler=scheduler) as campaign:
 
         def ask(origin: str) -> Evaluate:
             return partial(campaign.evaluate, origin=origin)
 
         values, steps = set_first(study, reduced, ask("set_first"))
-        problem = study_problem(study, reduced, space=study_space(study, reduced, workers).started(values))
+        space = correlation_space(study, reduced, adoption, workers).started(values)
+        plain = study_problem(study, reduced, space=space, adoption=adoption)
+        (start,) = ask("baseline")([space.values(space.start)])
+        if start.failed:
+            raise RunError(f"the baseline axle cannot be solved: {start.reason}")
+        given = None if axle is study.axle else given_outcome(study)
+        problem, relaxed = sought_problem(study, plain, start, given)
         limit = budget or options.budget
         settings = Settings(
             seed=study.seed,
@@ -69,20 +88,87 @@ def correlate(
             chosen(problem, settings),
             ask(f"correlate:{chosen.id}"),
             budget=limit,
+            proposals=refit_proposal(problem, adoption),
             known=sampled(campaign, problem) if options.sampled else (),
             until_feasible=options.until == "feasible",
             watch=watch,
         )
-    at_best = expansion_at(problem, run.evaluated[run.best])
+        at_best = expansion_at(problem, run.evaluated[run.best])
     return Correlation(
         method=chosen.id,
         problem=problem,
         run=run,
-        steps=steps,
-        notes=notes_on(problem, run, at_best),
-        posterior=posterior_at(problem, at_best),
+        steps=(*steps, *(adoption.sentences if adoption is not None else ())),
+        notes=notes_on(problem, run, at_best, relaxed),
+        posterior=posterior_at(problem, at_best, run.evaluated[run.best]),
         seconds=time.perf_counter() - started,
+        relaxation=relaxed,
+        given=None if given is None else problem.judged(-1, Candidate(space.start, "given axle"), given),
     )
+
+
+def given_outcome(study: Study) -> Outcome:
+    """The study's axle as it is, by the package's own solver; RunError when it has no equilibrium."""
+    outcome = AxleSolver(study.axle, study.windows).evaluate({})
+    if outcome.failed:
+        raise RunError(f"{study.axle_path}: the axle cannot be solved: {outcome.reason}")
+    return outcome
+
+
+def sought_problem(
+    study: Study, problem: Problem, start: Outcome, given: Outcome | None = None
+) -> tuple[Problem, Relaxation | None]:
+    """The problem with the targets of its search, and the targets out of reach (None: not known).
+
+    start: answer to the design that the run starts from. given: of the axle whose distances hold, where that
+    is another one. Without sensitivities of the study's solver those of the package's own serve, where it
+    answers alike.
+    """
+    curves = start.curves is not None
+    wide = all_measured(problem.targets, curves=curves)
+    held = given or start
+    baseline = score(wide, held.characteristics, held.curves)
+    relaxed = reach_of(problem, start)
+    sought = search_targets(
+        problem.targets,
+        baseline,
+        objective=study.correlation.objective,
+        relaxation=relaxed,
+        curves=curves,
+    )
+    return replace(problem, sought=sought), relaxed
+
+
+def reach_of(problem: Problem, start: Outcome) -> Relaxation | None:
+    """Targets that the bounds do not reach from the start, to first order; None without sensitivities."""
+    space, rows = problem.space, problem.targets.rows
+    try:
+        if problem.exact:
+            expansion = problem.linearize(space.start)
+        else:
+            own = AxleSolver(problem.axle, problem.windows).evaluate(space.values(space.start))
+            if not answers_alike(problem.targets, own, start):
+                return None
+            expansion = linearize(problem.axle, space, space.start, problem.windows)
+    except NotConverged:
+        return None
+    return relaxation(
+        problem.targets.characteristics,
+        start.characteristics[rows],
+        expansion.characteristics[rows],
+        space.start,
+        space.prior_sd,
+        space.paths,
+    )
+
+
+def refit_proposal(problem: Problem, adoption: Adoption | None) -> list[Candidate]:
+    """The design that a discovery fitted, within the bounds; none without one."""
+    if adoption is None or not adoption.refit:
+        return []
+    space = problem.space
+    point = np.array([v.place(adoption.refit.get(v.path, v.start)) for v in space.variables])
+    return [Candidate(space.snapped(point), "discovery refit")]
 
 
 def _method(study: Study, name: str | None) -> type[Method]:
@@ -103,21 +189,46 @@ def _method(study: Study, name: str | None) -> type[Method]:
     return chosen
 
 
-def study_problem(study: Study, reduced: Reduced | None, *, space: Space | None = None) -> Problem:
-    """The correlation problem of a study, with its own variables or others."""
+def study_problem(
+    study: Study,
+    reduced: Reduced | None,
+    *,
+    space: Space | None = None,
+    adoption: Adoption | None = None,
+) -> Problem:
+    """The correlation problem of a study, with its own variables or others; its search not yet prepared."""
     measurement = reduced.measurement if reduced is not None else None
+    axle = study.axle if adoption is None else adoption.axle
     targets = build_targets(
-        study.axle, measurement, study.characteristics, study.curves, source=str(study.source)
+        study.axle,
+        measurement,
+        study.characteristics,
+        study.curves,
+        source=str(study.source),
+        without=() if adoption is None else adoption.without,
     )
     only_targets = study.correlation.data == "targets"
     return Problem(
-        axle=study.axle,
+        axle=axle,
         space=space or study.space,
         targets=targets,
-        likelihood=build_likelihood(study.axle, measurement, targets, only_targets=only_targets),
+        likelihood=build_likelihood(axle, measurement, targets, only_targets=only_targets),
         windows=study.windows,
         exact=not study.solver.command,
     )
+
+
+def correlation_space(
+    study: Study, reduced: Reduced | None, adoption: Adoption | None, workers: int | None = None
+) -> Space:
+    """The variables of a run: the study's, on the axle with the effects adopted.
+
+    After a discovery a parameter that is an effect in other words stays as it is, unless the study names it:
+    whether the car differs in it has been decided.
+    """
+    if adoption is None or study.variables.use == "selection":
+        return study_space(study, reduced, workers)
+    return discovery_space(adoption.axle, study.variables, str(study.source))
 
 
 def study_space(study: Study, reduced: Reduced | None, workers: int | None = None) -> Space:
@@ -170,21 +281,21 @@ def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
         return None
 
 
-def posterior_at(problem: Problem, expansion: Linearization | None) -> Posterior | None:
+def posterior_at(problem: Problem, expansion: Linearization | None, best: Evaluated) -> Posterior | None:
     """What the data say of each variable; None without exact sensitivities."""
-    if expansion is None:
+    if expansion is None or best.outcome.failed or not problem.likelihood.size:
         return None
     jacobian = problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
-    return posterior(jacobian, problem.space.prior_sd)
+    residual = problem.likelihood.residual(best.outcome.curves, best.outcome.characteristics)
+    return posterior(jacobian, problem.space.prior_sd, residual, best.point)
 
 
-def notes_on(problem: Problem, run: Run, at_best: Linearization | None) -> tuple[str, ...]:
+def notes_on(
+    problem: Problem, run: Run, at_best: Linearization | None, relaxed: Relaxation | None
+) -> tuple[str, ...]:
     """Targets out of reach, constraints in conflict and levels too coarse, in sentences."""
-    best, at_start = run.evaluated[run.best], expansion_at(problem, run.evaluated[0])
-    if at_best is None or at_start is None:
-        return ()
-    return (
-        *reach_sentences(problem, run.evaluated[0], at_start),
-        *conflict_sentences(problem, best, at_best),
-        *level_sentences(problem, best, at_best),
-    )
+    best = run.evaluated[run.best]
+    said = reach_sentences(problem, relaxed) if relaxed is not None else []
+    if at_best is None:
+        return tuple(said)
+    return (*said, *conflict_sentences(problem, best, at_best), *level_sentences(problem, best, at_best))

@@ -53,7 +53,7 @@ def discover_study(
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
     count = workers or available_cores()
-    with processes(count) as executor, Ledger(study.out / "discovery.sqlite") as ledger:
+    with processes(count) as executor, Ledger(study.discovery_store) as ledger:
         return discover(model, library, Bench(executor, ledger, watch, workers=count))
 
 

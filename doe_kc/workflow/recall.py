@@ -3,29 +3,42 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from doe_kc.campaign.store import open_store
-from doe_kc.correlation.record import read_record, recalled, recorded_space, run_document
+from doe_kc.correlation.problem import Candidate
+from doe_kc.correlation.record import (
+    read_record,
+    recalled,
+    recalled_answers,
+    recorded_space,
+    run_document,
+)
 from doe_kc.correlation.result import Correlation
 from doe_kc.errors import InputError
 from doe_kc.files import read_bytes
 from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
-from doe_kc.workflow.correlate import study_problem
+from doe_kc.workflow.adopt import Adoption, adopted
+from doe_kc.workflow.correlate import given_outcome, sought_problem, study_problem
 from doe_kc.workflow.measure import Reduced
 
 RUN_FILE = "run.json"
 
 
-def write_run(found: Correlation, folder: Path) -> Path:
+def write_run(found: Correlation, folder: Path, adoption: Adoption | None = None) -> Path:
     """run.json: what `recall` needs beside the store."""
-    return write_json(folder / RUN_FILE, run_document(found))
+    if adoption is None:
+        return write_json(folder / RUN_FILE, run_document(found))
+    document = run_document(found, discovered=True, effects=adoption.records, without=adoption.without)
+    return write_json(folder / RUN_FILE, document)
 
 
-def recall(study: Study, reduced: Reduced | None, folder: Path) -> Correlation:
-    """The last correlation in `folder`, rated by the study's present targets and weights; nothing is run.
+def recall(study: Study, reduced: Reduced | None, folder: Path) -> tuple[Correlation, Adoption | None]:
+    """The last correlation in `folder`, rated by the study's present targets and weights, and the effects that
+    it began with (None without a discovery); nothing is run.
 
     InputError when there is none, its file is damaged, or the store is not that of its evaluations.
     """
@@ -39,7 +52,17 @@ def recall(study: Study, reduced: Reduced | None, folder: Path) -> Correlation:
     if not isinstance(document, dict):
         raise InputError(f"{path}: is no record of a correlation; run doe-kc correlate again.")
     record = read_record(document, str(path))
-    problem = study_problem(study, reduced, space=recorded_space(record, study.axle))
-    solver = solver_for(study.axle, study.solver, study.windows, study.folder)
-    with open_store(study.store, solver) as store:
-        return recalled(record, problem, store, str(path))
+    adoption = adopted(study, record.effects, record.without) if record.discovered else None
+    axle = study.axle if adoption is None else adoption.axle
+    space = recorded_space(record, axle)
+    plain = study_problem(study, reduced, space=space, adoption=adoption)
+    solver = solver_for(axle, study.solver, study.windows, study.folder)
+    stored = study.store if axle is study.axle else study.extended_store(solver.fingerprint())
+    with open_store(stored, solver) as store:
+        answers = recalled_answers(record, plain, store, str(path))
+    given = None if axle is study.axle else given_outcome(study)
+    problem, relaxed = sought_problem(study, plain, answers[0][1], given)
+    found = replace(recalled(record, problem, answers), relaxation=relaxed)
+    if given is not None:
+        found = replace(found, given=problem.judged(-1, Candidate(space.start, "given axle"), given))
+    return found, adoption

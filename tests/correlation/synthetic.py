@@ -61,7 +61,7 @@ class Map:
         return np.asarray(self.slope + 2.0 * self.bend * (u - self.centre))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Synthetic(Problem):
     """The problem with its map and the answer (d,)."""
 
@@ -100,7 +100,7 @@ def synthetic(dimension: int = 12, *, seed: int = 3, jump: float = 0.0, curves: 
         (),
     )
     targets = replace(targets, curves=tuple(_target(r, lines[r]) for r in LINES) if curves else ())
-    return Synthetic(axle, space, targets, likelihood, {}, True, known, truth)
+    return Synthetic(axle, space, targets, likelihood, {}, True, map=known, truth=truth)
 
 
 def _map(centre: FloatArray, rng: np.random.Generator, jump: float) -> Map:

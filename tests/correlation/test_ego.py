@@ -9,7 +9,8 @@ import pytest
 
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
-from doe_kc.correlation.ego.proposal import Box, Pull, gauss_newton
+from doe_kc.correlation.ego.proposal import Box, gauss_newton
+from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE, RESTARTS, Strategy
 from doe_kc.correlation.ego.trust import Trust
 from doe_kc.correlation.linearization import Linearization
@@ -50,7 +51,7 @@ def test_gauss_newton_raises_the_expected_rating_and_stays_in_its_box() -> None:
     model = GaussianProcess().fit(archive.points, archive.outputs)
     start = archive.best.point
     box = Box.around(start, 0.05)
-    found = gauss_newton(model, archive.composite, box, start, Pull.towards(start, case.space.prior_sd))
+    found = gauss_newton(model, archive.composite, box, start, Prior.of(start, case.space.prior_sd))
 
     def expected(x: np.ndarray) -> float:
         return float(archive.composite.expected(model.predict(x[None]), model.variance(x[None])[0])[0])

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.correlation.composite import Composite
-from doe_kc.correlation.ego.proposal import Pull
+from doe_kc.correlation.prior import Prior
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.typing import FloatArray
 
@@ -28,14 +28,14 @@ def on_levels(
     point: FloatArray,
     steps: FloatArray,
     starts: FloatArray,
-    pull: Pull,
+    prior: Prior,
     *,
     doubt: float = 1.0,
 ) -> FloatArray:
     """(d,) the best design found on the levels near `point`, the continuous optimum.
 
     steps: (d,) distance of levels, 0 for a continuous variable, which stays. starts: (s, d) designs on
-    the levels to descend from beside the rounded point. pull, doubt: as in `gauss_newton`.
+    the levels to descend from beside the rounded point. prior, doubt: as in `gauss_newton`.
     """
     movable = np.flatnonzero(steps > 0)
     if not movable.size:
@@ -46,10 +46,10 @@ def on_levels(
     for start in (rounded, *starts):
         first = start.copy()
         first[steps == 0] = point[steps == 0]
-        designs.extend(_path(model, composite, first, steps, movable, pull, doubt))
+        designs.extend(_path(model, composite, first, steps, movable, prior, doubt))
     points = np.clip(np.array(designs), 0.0, 1.0)
     expected = composite.expected(model.predict(points), doubt * model.variance(points))
-    return np.asarray(points[int(np.argmax(expected - pull.cost(points)))])
+    return np.asarray(points[int(np.argmax(expected - prior.cost(points)))])
 
 
 def _path(
@@ -58,7 +58,7 @@ def _path(
     start: FloatArray,
     steps: FloatArray,
     movable: np.ndarray,
-    pull: Pull,
+    prior: Prior,
     doubt: float,
 ) -> list[FloatArray]:
     """Designs that a descent from `start` passes, majorized anew once it has stopped."""
@@ -69,9 +69,9 @@ def _path(
         near = composite.majorizer(known.mean[0], doubt * known.variance[0])
         slope = known.gradient[0][:, movable] * steps[movable]
         places = current[movable] / steps[movable]
-        weight = pull.weight[movable] * steps[movable] ** 2
+        weight = prior.weight[movable] * steps[movable] ** 2
         hessian = slope.T @ near.hessian @ slope + np.diag(weight + FLAT)
-        gradient = slope.T @ near.gradient + weight * (places - pull.home[movable] / steps[movable])
+        gradient = slope.T @ near.gradient + weight * (places - prior.centre[movable] / steps[movable])
         moves = descend(hessian, gradient, -places, 1.0 / steps[movable] - places)
         for move in moves:
             design = current.copy()

@@ -9,6 +9,7 @@ import numpy as np
 
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.prior import Prior
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.typing import FloatArray
 
@@ -17,8 +18,6 @@ SETTLED = 1e-4
 """Relative gain of a step below which the search has settled."""
 ROUGH = 10
 """Iterations of each step's bounds: the next step goes on where they end."""
-RIDGE = 1e-3
-"""Rating per squared prior sd."""
 
 
 @dataclass(frozen=True)
@@ -38,36 +37,19 @@ class Box:
         return np.clip(points, self.lower, self.upper)
 
 
-@dataclass(frozen=True)
-class Pull:
-    """A weak pull (d,) towards `home`, so that variables without influence stay where they are."""
-
-    home: FloatArray
-    weight: FloatArray
-
-    @classmethod
-    def towards(cls, home: FloatArray, prior: FloatArray) -> Pull:
-        """RIDGE per squared prior sd."""
-        return cls(home, RIDGE * prior**-2.0)
-
-    def cost(self, points: FloatArray) -> FloatArray:
-        """(...,) rating given away at points (..., d)."""
-        return np.asarray(0.5 * (points - self.home) ** 2 @ self.weight)
-
-
 def gauss_newton(
-    model: Fitted, composite: Composite, box: Box, first: FloatArray, pull: Pull, *, doubt: float = 1.0
+    model: Fitted, composite: Composite, box: Box, first: FloatArray, prior: Prior, *, doubt: float = 1.0
 ) -> FloatArray:
     """(d,) maximizer of the expected rating by majorized Gauss-Newton steps from `first`.
 
     doubt: factor of the predicted variances; 0 = the predictions are taken for true.
     """
-    point, weight = box.clip(first), pull.weight
+    point, weight = box.clip(first), prior.weight
 
     def merit(x: FloatArray) -> float:
         variance = doubt * model.variance(x[None])[0] if doubt else np.zeros(model.outputs)
         expected = composite.expected(model.predict(x[None]), variance)
-        return float(expected[0] - pull.cost(x))
+        return float(expected[0] - prior.cost(x))
 
     value = merit(point)
     for _ in range(STEPS):
@@ -76,7 +58,7 @@ def gauss_newton(
         jacobian = known.gradient[0]
         hessian = jacobian.T @ near.hessian @ jacobian + np.diag(weight)
         gradient = jacobian.T @ near.gradient + doubt * known.variance_gradient[0].T @ near.variance
-        gradient += weight * (point - pull.home)
+        gradient += weight * (point - prior.centre)
         step = bounded_step(hessian, gradient, box.lower - point, box.upper - point, iterations=ROUGH)
         point, gained = _line_search(merit, point, step, value)
         if gained <= SETTLED * max(1.0, abs(value)):

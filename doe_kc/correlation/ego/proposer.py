@@ -10,8 +10,9 @@ import numpy as np
 from doe_kc.correlation.ego.archive import Archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
 from doe_kc.correlation.ego.levels import on_levels
-from doe_kc.correlation.ego.proposal import Box, Pull, gauss_newton
+from doe_kc.correlation.ego.proposal import Box, gauss_newton
 from doe_kc.correlation.ego.strategy import AVERSION, Kind, Strategy
+from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.problem import Candidate, Prediction
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.models.gp import GaussianProcess, Trend
@@ -42,6 +43,7 @@ class Proposer:
     k: int
     trust: float
     steps: FloatArray
+    prior: Prior
 
     def candidate(
         self,
@@ -98,7 +100,7 @@ class Proposer:
         doubt = aversion * self.trust
         box = Box.around(centre, half_width)
         return self._levelled(
-            gauss_newton(self.model, self.archive.composite, box, centre, self._pull, doubt=doubt), doubt
+            gauss_newton(self.model, self.archive.composite, box, centre, self.prior, doubt=doubt), doubt
         )
 
     def _explored(self, rng: np.random.Generator) -> FloatArray:
@@ -107,12 +109,12 @@ class Proposer:
         search = ExpectedImprovement(
             self.model,
             composite,
-            best.merit,
+            best.merit if best.searched is None else best.searched.total,
             self.archive.failed,
             seed=int(rng.integers(2**31)),
             doubt=self.trust,
         )
-        near = gauss_newton(self.model, composite, box, best.point, self._pull, doubt=self.trust)
+        near = gauss_newton(self.model, composite, box, best.point, self.prior, doubt=self.trust)
         away = rng.uniform(box.lower, box.upper, (AWAY, self.space.dimension))
         return self._levelled(search.maximum(box, [near, *away]), self.trust)
 
@@ -125,12 +127,8 @@ class Proposer:
     def _levelled(self, point: FloatArray, doubt: float) -> FloatArray:
         best = self.space.snapped(self.archive.best.point)
         return on_levels(
-            self.model, self.archive.composite, point, self.steps, best[None], self._pull, doubt=doubt
+            self.model, self.archive.composite, point, self.steps, best[None], self.prior, doubt=doubt
         )
-
-    @property
-    def _pull(self) -> Pull:
-        return Pull.towards(self.space.start, self.space.prior_sd)
 
 
 def fitted(archive: Archive, seed: int = 0) -> Fitted:

@@ -7,7 +7,7 @@ import numpy as np
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.ego.archive import Archive
 from doe_kc.correlation.ego.levels import on_levels
-from doe_kc.correlation.ego.proposal import Box, Pull, gauss_newton
+from doe_kc.correlation.ego.proposal import Box, gauss_newton
 from doe_kc.correlation.problem import Prediction, Problem
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.learning import Learning
@@ -39,10 +39,10 @@ def best_predicted(
 ) -> FloatArray:
     """(d,) design on levels of the best expected rating in the box, searched from `first`."""
     space = problem.space
-    pull = Pull.towards(space.start, space.prior_sd)
-    point = gauss_newton(model, composite, box, first, pull, doubt=doubt)
+    point = gauss_newton(model, composite, box, first, problem.prior, doubt=doubt)
     starts = space.snapped(first)[None]
-    return space.snapped(on_levels(model, composite, point, level_steps(space), starts, pull, doubt=doubt))
+    levelled = on_levels(model, composite, point, level_steps(space), starts, problem.prior, doubt=doubt)
+    return space.snapped(levelled)
 
 
 def prediction(problem: Problem, archive: Archive, model: Fitted, point: FloatArray) -> Prediction:

@@ -40,7 +40,7 @@ class Record:
     @cached_property
     def archive(self) -> Archive:
         """Points and outputs of the sound designs nearest the best one."""
-        return build_archive(self.problem.targets, nearest(self.sound, self.best.point, ROWS))
+        return build_archive(self.problem.search, nearest(self.sound, self.best.point, ROWS))
 
     @cached_property
     def model(self) -> Fitted:

@@ -47,8 +47,14 @@ class Method(ABC):
         """Answers to the last candidates, in their order; failures among them."""
 
     def best(self, history: Sequence[Evaluated]) -> int:
-        """Place of the design to hand over: the best rating."""
-        return max(range(len(history)), key=lambda i: (history[i].merit, -i))
+        """Place of the design to hand over, see `best_design`."""
+        return best_design(history)
+
+
+def best_design(history: Sequence[Evaluated]) -> int:
+    """Place of the best merit, the earlier one of equals, among the designs that meet every constraint and
+    hold; among all of them where none does."""
+    return max(range(len(history)), key=lambda i: (history[i].feasible, history[i].merit, -i))
 
 
 METHODS: dict[str, type[Method]] = {}

@@ -115,11 +115,12 @@ class Ego(Sampled):
             k=len(self._problem.targets.characteristics),
             trust=self._trust.factor,
             steps=self._steps,
+            prior=self._problem.prior,
         )
 
     def _archive(self) -> Archive:
         if not self._exact:
-            return build_archive(self._problem.targets, self._evaluated)
+            return build_archive(self._problem.search, self._evaluated)
         best = max(self._evaluated, key=lambda e: e.merit)
         if self._expanded != best.index:
             try:
@@ -127,4 +128,4 @@ class Ego(Sampled):
             except NotConverged:
                 self._slopes = None
             self._expanded = best.index
-        return build_archive(self._problem.targets, self._evaluated, self._slopes)
+        return build_archive(self._problem.search, self._evaluated, self._slopes)

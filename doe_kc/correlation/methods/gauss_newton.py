@@ -50,7 +50,7 @@ class GaussNewton(Method):
     def __init__(self, problem: Problem, settings: Settings) -> None:
         del settings
         self._problem, self._data = problem, problem.likelihood
-        self._walls = Walls.of(problem.targets)
+        self._walls = Walls.of(problem.search)
         self._origin = problem.space.start
         self._weight = problem.space.prior_sd**-2.0
         self._radius = 1.0
@@ -77,7 +77,7 @@ class GaussNewton(Method):
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Accept or shrink; stop when the expected gain is nothing."""
         if self._incumbent is None:
-            self._accept(evaluated[0])
+            self._accept(min((e for e in evaluated if e.index >= 0), key=self._cost_of))
             return
         answer = evaluated[-1]
         cost = self._cost_of(answer)

@@ -53,7 +53,7 @@ class Pareto(Sampled):
         """InputError with fewer than two objectives, or without pymoo."""
         check_installed()
         super().__init__(problem, settings)
-        self._objectives = objectives(problem.targets)
+        self._objectives = objectives(problem.search)
         self._radius, self._idle = FIRST_RADIUS, 0
         self._infill = False
         self._stopped = ""
@@ -66,7 +66,7 @@ class Pareto(Sampled):
     @property
     def front(self) -> Front:
         """Of the designs confirmed so far."""
-        return front_of(self._problem.targets, self._evaluated, found=self._objectives)
+        return front_of(self._problem.search, self._evaluated, found=self._objectives)
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; the region follows the best rating, patience the front."""
@@ -93,11 +93,11 @@ class Pareto(Sampled):
 
     def _spread(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
         """Designs spread over the predicted front, best rating and knee first."""
-        modelled = ModelledObjectives(self._problem.targets, self._objectives, record.archive, record.model)
+        modelled = ModelledObjectives(self._problem.search, self._objectives, record.archive, record.model)
         points = predicted_front(record, modelled, self._region(record), len(self._objectives.names), rng)
         values, _ = modelled.values(points)
         chosen = [("best rating", self._best_rating(record)), ("knee", points[knee(values)])]
-        confirmed = np.array([self._objectives.values(e.rating) for e in record.ranked[:100] if e.rating])
+        confirmed = np.array([self._objectives.values(e.searched) for e in record.ranked[:100] if e.searched])
         number = max(ROUND, self._settings.batch)
         rest = spread_out(values, np.vstack([confirmed, values[[knee(values)]]]), number - len(chosen))
         chosen += [("front", points[i]) for i in rest]

@@ -51,8 +51,8 @@ def front_of(targets: Targets, history: Sequence[Evaluated], *, found: Objective
     every design is best at something. Without a feasible design all, the violation being one more objective.
     """
     chosen = found or objectives(targets)
-    sound = [e for e in history if e.rating is not None and np.isfinite(e.merit)]
-    feasible = [e for e in sound if e.rating is not None and e.rating.feasible]
+    sound = [e for e in history if np.isfinite(e.merit)]
+    feasible = [e for e in sound if e.feasible]
     pool = sorted(feasible or sound, key=lambda e: (-e.merit, e.index))
     names = chosen.names if feasible else (*chosen.names, VIOLATION)
     values = np.array([_values(targets, chosen, e, not feasible) for e in pool]).reshape(-1, len(names))
@@ -70,10 +70,10 @@ def front_of(targets: Targets, history: Sequence[Evaluated], *, found: Objective
 
 
 def _values(targets: Targets, found: Objectives, design: Evaluated, with_violation: bool) -> FloatArray:
-    if design.rating is None:
+    if design.searched is None:
         raise ValueError("a failed design has no objectives")
-    own = found.values(design.rating)
-    return np.append(own, relative_violation(targets, design.rating)) if with_violation else own
+    own = found.values(design.searched)
+    return np.append(own, relative_violation(targets, design.searched)) if with_violation else own
 
 
 def bearable(least: float) -> float:

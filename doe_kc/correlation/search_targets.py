@@ -1,0 +1,123 @@
+"""What a search works on: the targets of the rating, with everything else that was measured beside them.
+
+Every measured characteristic and curve counts, unless the study takes it out (objective "measured"), or the
+rating's own terms alone do (objective "thesis"). Either way nothing that was measured may move further from
+its target than the largest of its interval (thesis, equations 5.1 and 5.2), three standard deviations, and
+where it was: the hold. Intervals that no design reaches are widened to what can be reached.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.comparison.interval import SHARE, constraint_interval
+from doe_kc.correlation.options import ObjectiveKind
+from doe_kc.correlation.reach import Relaxation
+from doe_kc.targets import Constraint, CurveTarget, Objective, Score, Target, Targets
+
+SIGNIFICANT = 3.0
+"""Standard deviations of a target within which a value does not differ from it."""
+ROUNDING = 1e-6
+"""Share by which a limit lies beyond the baseline's own distance: the baseline meets its holds."""
+NOT_COUNTED = Objective(linear=0.0, quadratic=0.0)
+
+
+def hold_distance(target: Target, baseline: float) -> float:
+    """Largest distance from the target that harms nothing, in the characteristic's unit."""
+    low, high = constraint_interval(target.value)
+    distance = max((high - low) / 2.0, SIGNIFICANT * target.sd, abs(baseline - target.value))
+    return distance * (1.0 + ROUNDING)
+
+
+def hold_rms(curve: CurveTarget, baseline: float) -> float:
+    """The same of a curve's RMS deviation; its interval is the share of equation 5.1 of the curve itself,
+    measured from its middle: a line 15 % too steep deviates by as much."""
+    middle = curve.curve - curve.curve.mean(axis=1, keepdims=True)
+    own = SHARE * float(np.sqrt(np.mean(middle**2)))
+    return max(own, SIGNIFICANT * curve.noise, baseline) * (1.0 + ROUNDING)
+
+
+def search_targets(
+    targets: Targets,
+    baseline: Score,
+    *,
+    objective: ObjectiveKind,
+    relaxation: Relaxation | None = None,
+    curves: bool = True,
+) -> Targets:
+    """The targets of a search that starts from a design with the score `baseline` on `all_measured(targets)`.
+
+    curves: False for a solver that gives none; only the curves of the rating then stay.
+    """
+    relaxed = relaxation.distances if relaxation is not None else {}
+    out_of_reach = {
+        (t.entry.load_case, t.entry.response) for t in targets.characteristics if t.entry.id in relaxed
+    }
+    lines = targets.curves + (targets.others if curves else ())
+    rated = {c.id for c in targets.curves}
+
+    def line(curve: CurveTarget, rms: float) -> CurveTarget:
+        place = (curve.load_case, curve.response)
+        counted = curve.id in rated or (objective == "measured" and not curve.excluded)
+        own = curve.objective if counted and place not in out_of_reach else None
+        return replace(
+            curve,
+            objective=own or replace(NOT_COUNTED, norm=curve.objective.norm),
+            limit=hold_rms(curve, rms) if curve.hold else math.inf,
+        )
+
+    return replace(
+        targets,
+        characteristics=tuple(
+            _searched(t, float(v), objective, relaxed)
+            for t, v in zip(targets.characteristics, baseline.values, strict=True)
+        ),
+        curves=tuple(line(c, float(r)) for c, r in zip(lines, baseline.rms, strict=True)),
+        others=(),
+    )
+
+
+def all_measured(targets: Targets, *, curves: bool = True) -> Targets:
+    """The targets with every measured curve among their curves, to score a design by."""
+    return replace(targets, curves=targets.curves + (targets.others if curves else ()), others=())
+
+
+def _searched(
+    target: Target, baseline: float, objective: ObjectiveKind, relaxed: Mapping[str, float]
+) -> Target:
+    counted = target.objective
+    if counted is None and objective == "measured" and not target.excluded:
+        counted = Objective(norm=_norm(target))
+    constraint = target.constraint
+    if target.entry.id in relaxed:
+        counted = None
+        constraint = constraint and _widened(constraint, target.value, relaxed[target.entry.id])
+    if target.hold:
+        constraint = _held(target, constraint, hold_distance(target, baseline))
+    return replace(target, objective=counted, constraint=constraint)
+
+
+def _norm(target: Target) -> float:
+    """sqrt(target^2 + 0.005), the measure of the constraint interval."""
+    low, high = constraint_interval(target.value)
+    return (high - low) / (2.0 * SHARE)
+
+
+def _widened(constraint: Constraint, target: float, distance: float) -> Constraint:
+    return replace(
+        constraint, low=min(constraint.low, target - distance), high=max(constraint.high, target + distance)
+    )
+
+
+def _held(target: Target, constraint: Constraint | None, distance: float) -> Constraint:
+    """The constraint within the hold. An interval that the study moved off the target is not cut."""
+    low, high = target.value - distance, target.value + distance
+    if constraint is None:
+        return Constraint(low=low, high=high, norm=_norm(target))
+    if not constraint.low <= target.value <= constraint.high:
+        return constraint
+    return replace(constraint, low=max(low, constraint.low), high=min(high, constraint.high))
