@@ -30,22 +30,29 @@ class CurveTerms:
 
     @classmethod
     def of(cls, targets: Targets, mean: FloatArray, basis: FloatArray) -> CurveTerms:
-        """Of curves = mean + scores basis, all scaled by Norm."""
-        q, count = len(basis), len(targets.curves)
-        off = mean - targets.scaled_targets
-        parts = targets.blocks
+        """Of curves = mean + scores basis, all scaled by Norm; the misfit is one more, its Norm the noise."""
+        q, off, parts = len(basis), mean - targets.scaled_targets, targets.blocks
+        count, records = len(parts), targets.misfit
+        more = [] if records is None else [records.weight]
         return cls(
             np.array([basis[:, p] @ basis[:, p].T for p in parts]).reshape(count, q, q),
             np.array([basis[:, p] @ off[p] for p in parts]).reshape(count, q),
             np.array([off[p] @ off[p] for p in parts]),
-            np.array([c.objective.linear for c in targets.curves]),
-            np.array([c.objective.quadratic for c in targets.curves]),
-            np.array([c.limit / c.objective.norm for c in targets.curves]),
+            np.array([c.objective.linear for c in targets.curves] + [0.0 for _ in more]),
+            np.array([c.objective.quadratic for c in targets.curves] + more),
+            np.array([c.limit / c.objective.norm for c in targets.curves] + [np.inf for _ in more]),
         )
 
     def squares(self, s: FloatArray) -> FloatArray:
         """(p, c) (RMS / Norm)^2 at scores (p, q)."""
-        out = np.einsum("pi,cij,pj->pc", s, self.a, s, optimize=True) + 2.0 * s @ self.b.T + self.e
+        return self._squares(s, self._products(s))
+
+    def _products(self, s: FloatArray) -> FloatArray:
+        """(c, q, p) A s, by BLAS: einsum does not use it for three operands."""
+        return np.asarray(self.a @ s.T)
+
+    def _squares(self, s: FloatArray, products: FloatArray) -> FloatArray:
+        out = (products * s.T).sum(axis=1).T + 2.0 * s @ self.b.T + self.e
         return np.asarray(np.maximum(out, 0.0))
 
     def value(self, s: FloatArray) -> FloatArray:
@@ -54,9 +61,10 @@ class CurveTerms:
 
     def slope(self, s: FloatArray) -> FloatArray:
         """(p, q) derivative of `value`."""
-        weight = self._weight(self.squares(s))
-        push = np.einsum("cij,pj->pci", self.a, s, optimize=True) + self.b
-        return np.asarray(-np.einsum("pc,pci->pi", weight, push))
+        products = self._products(s)
+        weight = self._weight(self._squares(s, products))
+        push = products + self.b[:, :, None]
+        return np.asarray(-(weight.T[:, None, :] * push).sum(axis=0).T)
 
     def expected(self, s: FloatArray, variance: FloatArray) -> FloatArray:
         """(p,) terms at the expected squares, scores (p, q) with independent variances (q,) or (p, q)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -112,6 +112,12 @@ class Likelihood:
         scalars = [_scalar_row(f, gradients, characteristics) / f.sd for f in self.figures]
         tail = np.array(scalars).reshape(len(scalars), len(gradients.paths))
         return np.vstack([*parts, tail])
+
+    def without(self, places: Collection[tuple[str, str]]) -> Likelihood:
+        """The data but those of some (load case, response)."""
+        kept = tuple(c for c in self.curves if (c.load_case, c.response) not in places)
+        figures = tuple(f for f in self.figures if ("static", f.response) not in places or f.row >= 0)
+        return Likelihood(kept, figures)
 
     def slices(self) -> Iterator[tuple[CurveData, slice]]:
         """Each curve with its place in the residual."""

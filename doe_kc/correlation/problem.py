@@ -116,6 +116,9 @@ class Problem:
         """Exact slopes of the targets' characteristics (k, d) and of the scaled curves (N, d)."""
         expansion = self.linearize(point)
         rows = [scaled_slopes(t, expansion.curves) for t in self.search.curves]
+        if self.search.misfit is not None:
+            jacobian = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
+            rows.append(jacobian / np.sqrt(self.search.misfit.size))
         empty = np.zeros((0, self.space.dimension))
         return expansion.characteristics[self.search.rows], np.vstack([empty, *rows])
 
@@ -126,6 +129,10 @@ class Problem:
         wide = score(self.search, outcome.characteristics, outcome.curves)
         own = replace(wide, rms=wide.rms[: len(self.targets.curves)])
         scaled = np.zeros(0) if outcome.curves is None else self.search.scaled_curves(outcome.curves)
+        if self.search.misfit is not None:
+            residual = self.likelihood.residual(outcome.curves, outcome.characteristics)
+            scaled = np.concatenate([scaled, residual / np.sqrt(self.search.misfit.size)])
+            wide = replace(wide, misfit=float(np.mean(residual**2)))
         rating = rate(self.targets, own)
         if self.sought is None:
             return Evaluated(index, candidate, outcome, own, rating, rating, rating.total, scaled)

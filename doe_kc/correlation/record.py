@@ -12,6 +12,7 @@ from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
 from doe_kc.axle.schema import Strict
 from doe_kc.campaign.key import design_key
 from doe_kc.campaign.store import Store
+from doe_kc.correlation.assessment import Objection
 from doe_kc.correlation.loop import Run
 from doe_kc.correlation.methods._base import best_design
 from doe_kc.correlation.posterior import Posterior
@@ -83,9 +84,17 @@ class EffectRecord(Strict):
     uncertain: bool
 
 
+class ObjectionRecord(Strict):
+    """The fields of `Objection`."""
+
+    sentence: str
+    fatal: bool
+
+
 class RunRecord(Strict):
     """The whole file. discovered: whether it followed a discovery, whose effects it begins with. without:
-    (load case, response) left out of the objectives."""
+    (load case, response) left out of the objectives. objections, misfit: what the discovery says of the
+    axle handed over, see `assess`."""
 
     schema_: Literal["doe_kc.run/1"] = "doe_kc.run/1"
     method: str
@@ -101,6 +110,8 @@ class RunRecord(Strict):
     discovered: bool
     effects: list[EffectRecord]
     without: list[tuple[str, str]]
+    objections: list[ObjectionRecord]
+    misfit: float | None
     evaluations: list[EvaluationRecord]
 
 
@@ -110,6 +121,8 @@ def run_document(
     discovered: bool = False,
     effects: Sequence[EffectRecord] = (),
     without: Collection[tuple[str, str]] = (),
+    objections: Sequence[Objection] = (),
+    misfit: float | None = None,
 ) -> dict[str, Any]:
     """The record of a correlation, for `write_json`. The rest as in `RunRecord`."""
     space, after = found.problem.space, found.posterior
@@ -130,6 +143,8 @@ def run_document(
         discovered=discovered,
         effects=list(effects),
         without=sorted(without),
+        objections=[ObjectionRecord(sentence=o.sentence, fatal=o.fatal) for o in objections],
+        misfit=misfit,
         evaluations=[_evaluation(e.candidate) for e in found.run.evaluated],
     )
     return record.model_dump()

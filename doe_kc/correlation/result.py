@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.loop import Run
 from doe_kc.correlation.posterior import Posterior
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation
-from doe_kc.targets import Improvement, improvements, mean_improvement
+from doe_kc.correlation.search_targets import all_measured
+from doe_kc.targets import CurveTarget, Improvement, improvements, mean_improvement, score
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,27 @@ class Correlation:
         before, after = self.baseline.score, self.best.score
         if before is None or after is None:
             raise ValueError("a correlation without a solved baseline has no improvement")
-        return improvements(self.problem.targets, before, after)
+        return improvements(self.problem.targets, before, after, sought=self.problem.search)
+
+    @property
+    def misfit(self) -> float | None:
+        """Whitened RMS of the mean curves' deviations at the best design, 1 is noise; None without curves."""
+        data, best = self.problem.likelihood, self.best.outcome
+        if not data.curves or best.curves is None:
+            return None
+        residual = data.residual(best.curves, best.characteristics)
+        return float(np.sqrt(np.mean(residual**2)))
+
+    @property
+    def curve_deviations(self) -> list[tuple[CurveTarget, float, float]]:
+        """Every measured curve with the RMS deviation of the baseline and of the best design; none without
+        curves from the solver."""
+        wide = all_measured(self.problem.targets)
+        ours = [e.outcome for e in (self.baseline, self.best)]
+        if any(o.curves is None for o in ours):
+            return []
+        before, after = (score(wide, o.characteristics, o.curves).rms for o in ours)
+        return [(c, float(b), float(a)) for c, b, a in zip(wide.curves, before, after, strict=True)]
 
     @property
     def mean_improvement(self) -> float:

@@ -15,14 +15,24 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.comparison.interval import SHARE, constraint_interval
+from doe_kc.correlation.first_order import most_probable_step
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.options import ObjectiveKind
 from doe_kc.correlation.reach import Relaxation
-from doe_kc.targets import Constraint, CurveTarget, Objective, Score, Target, Targets
+from doe_kc.targets import Constraint, CurveTarget, MisfitTerm, Objective, Score, Target, Targets
+from doe_kc.true_solver.outcome import Outcome
+from doe_kc.variables import Space
 
 SIGNIFICANT = 3.0
 """Standard deviations of a target within which a value does not differ from it."""
 ROUNDING = 1e-6
 """Share by which a limit lies beyond the baseline's own distance: the baseline meets its holds."""
+MISFIT_WEIGHT = 1.0
+"""Of the mean squared residual, 1 for noise alone: a fit that doubles it gives away as much as one objective
+that is missed by its own size, and hitting all characteristics exactly costs a few hundredths."""
+SMALL = 0.01
+"""Share of the interval's measure below which no deviation is worth removing: exact targets have no noise."""
 NOT_COUNTED = Objective(linear=0.0, quadratic=0.0)
 
 
@@ -47,16 +57,16 @@ def search_targets(
     *,
     objective: ObjectiveKind,
     relaxation: Relaxation | None = None,
+    misfit: MisfitTerm | None = None,
     curves: bool = True,
 ) -> Targets:
     """The targets of a search that starts from a design with the score `baseline` on `all_measured(targets)`.
 
-    curves: False for a solver that gives none; only the curves of the rating then stay.
+    misfit: the records as data beside the targets, for the objective "measured". curves: False for a solver
+    that gives none; only the curves of the rating then stay.
     """
     relaxed = relaxation.distances if relaxation is not None else {}
-    out_of_reach = {
-        (t.entry.load_case, t.entry.response) for t in targets.characteristics if t.entry.id in relaxed
-    }
+    out_of_reach = relaxed_places(targets, relaxation)
     lines = targets.curves + (targets.others if curves else ())
     rated = {c.id for c in targets.curves}
 
@@ -78,6 +88,29 @@ def search_targets(
         ),
         curves=tuple(line(c, float(r)) for c, r in zip(lines, baseline.rms, strict=True)),
         others=(),
+        misfit=misfit if objective == "measured" else None,
+    )
+
+
+def misfit_term(
+    likelihood: Likelihood, space: Space, start: Outcome, expansion: Linearization
+) -> MisfitTerm | None:
+    """The records as data, tempered by what the best design leaves of them to first order: deviations that no
+    design explains shall not weigh more than noise. None without records or curves."""
+    if not likelihood.curves or start.curves is None:
+        return None
+    residual = likelihood.residual(start.curves, start.characteristics)
+    jacobian = likelihood.jacobian(expansion.curves, expansion.characteristics)
+    step = most_probable_step(jacobian, residual, space.start, space)
+    left = float(np.mean((residual + jacobian @ step) ** 2))
+    return MisfitTerm(residual.size, MISFIT_WEIGHT / max(1.0, left))
+
+
+def relaxed_places(targets: Targets, relaxation: Relaxation | None) -> frozenset[tuple[str, str]]:
+    """(load case, response) of the targets out of reach."""
+    relaxed = relaxation.distances if relaxation is not None else {}
+    return frozenset(
+        (t.entry.load_case, t.entry.response) for t in targets.characteristics if t.entry.id in relaxed
     )
 
 
@@ -92,6 +125,8 @@ def _searched(
     counted = target.objective
     if counted is None and objective == "measured" and not target.excluded:
         counted = Objective(norm=_norm(target))
+    if counted is not None and objective == "measured" and counted.goal == "target":
+        counted = replace(counted, norm=min(counted.norm, _deviation(target, baseline)))
     constraint = target.constraint
     if target.entry.id in relaxed:
         counted = None
@@ -99,6 +134,12 @@ def _searched(
     if target.hold:
         constraint = _held(target, constraint, hold_distance(target, baseline))
     return replace(target, objective=counted, constraint=constraint)
+
+
+def _deviation(target: Target, baseline: float) -> float:
+    """What there is to remove: the baseline's distance, or what is significant where that is less."""
+    floor = max(SIGNIFICANT * target.sd, SMALL * _norm(target))
+    return max(abs(baseline - target.value), floor)
 
 
 def _norm(target: Target) -> float:

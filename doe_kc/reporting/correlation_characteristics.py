@@ -16,9 +16,11 @@ from doe_kc.targets import Improvement
 
 @dataclass(frozen=True)
 class CharacteristicRow:
-    """One characteristic with a target; values in `unit`."""
+    """One characteristic with a target; values in `unit`. reachable: whether the bounds allow its target
+    without harm to others, to first order; None where that is not known."""
 
     entry: Improvement
+    reachable: bool | None = None
 
     @property
     def id(self) -> str:
@@ -63,10 +65,16 @@ class CharacteristicRow:
         return self.entry.target.constraint is not None
 
     @property
+    def held(self) -> bool:
+        """Whether the search does not work on it, but must not move it away from its target either."""
+        return self.entry.target.hold and not self.entry.sought
+
+    @property
     def role(self) -> str:
-        """objective, constraint, both or followed, in words."""
-        words = [w for w, has in (("objective", self.objective), ("constraint", self.constraint)) if has]
-        return " + ".join(words) or "followed only"
+        """objective (of the rating), search objective (not in the rating), constraint, held, or let go."""
+        kind = "objective" if self.objective else "search objective" if self.entry.sought else ""
+        words = [w for w in (kind, "constraint" if self.constraint else "") if w]
+        return " + ".join(words) or ("held" if self.held else "let go")
 
     @property
     def distance(self) -> float:
@@ -96,7 +104,11 @@ def characteristic_rows(found: Correlation) -> list[CharacteristicRow]:
     """Static first, then by load case; within one in the order of the registry."""
     order = {name: i for i, name in enumerate(("static", *CASE_ORDER))}
     entries = sorted(found.improvements, key=lambda e: order.get(e.target.entry.load_case, len(order)))
-    return [CharacteristicRow(e) for e in entries]
+    known = found.relaxation
+    relaxed = known.distances if known is not None else {}
+    return [
+        CharacteristicRow(e, None if known is None else e.target.entry.id not in relaxed) for e in entries
+    ]
 
 
 def characteristic_frame(found: Correlation) -> pd.DataFrame:
@@ -120,6 +132,8 @@ def _record(r: CharacteristicRow) -> dict[str, object]:
         "inside": r.inside,
         "objective": r.objective,
         "constraint": r.constraint,
+        "held": r.held,
+        "reachable": "" if r.reachable is None else r.reachable,
         "improvement_percent": e.percent,
         "counts": e.counts,
         "baseline_distance_sd": r.baseline_distance,

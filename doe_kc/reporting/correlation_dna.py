@@ -106,7 +106,7 @@ def _marker(ax: Axes, place: float, y: float, colour: str, shape: str) -> None:
 
 def _texts(ax: Axes, y: float, row: CharacteristicRow) -> None:
     entry = row.entry
-    muted = "#000000" if entry.target.active else "#777777"
+    muted = "#000000" if entry.target.active or entry.sought else "#777777"
     ax.text(_across(0.035), y, row.label, fontsize=7, va="center", color=muted, clip_on=False)
     ax.text(_across(COLUMNS["unit"]), y, row.unit, fontsize=6.5, va="center", color="#555555")
     for name, value in (
@@ -126,8 +126,8 @@ def _texts(ax: Axes, y: float, row: CharacteristicRow) -> None:
 
 def note(row: CharacteristicRow) -> str:
     """Why a row is special, in two words."""
-    if not row.entry.target.active:
-        return "followed only"
+    if not row.entry.target.active and not row.entry.sought:
+        return row.role
     if row.constraint and not row.inside:
         return "outside"
     return "" if row.entry.counts else "baseline within 3 sd"

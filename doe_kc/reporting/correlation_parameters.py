@@ -12,6 +12,7 @@ import pandas as pd
 from doe_kc.axle.parameters import KINDS, SIDE_PREFIXES
 from doe_kc.correlation.posterior import AT_BOUND
 from doe_kc.correlation.result import Correlation
+from doe_kc.rounding import number
 from doe_kc.variables import Tie
 
 Role = Literal["variable", "tied", "fixed"]
@@ -22,8 +23,10 @@ class ParameterRow:
     """One parameter; baseline, final, lower, upper, sd absolute in `unit`, nan where there is none.
 
     role: free between bounds, tied to `leader`, or fixed. at_bound: "lower", "upper" or "". sd: from the
-    posterior. visible: whether the measurement at least halves what was known before; None without posterior.
-    start, place, spread: baseline, final and sd as places between the bounds (0 = lower, 1 = upper).
+    posterior, nan at a bound. inward: there the distance from the bound within which the value lies with a
+    probability of 68 %, nan elsewhere. visible: whether the measurement at least halves what was known
+    before; None without posterior. start, place, spread: baseline, final and sd as places between the
+    bounds (0 = lower, 1 = upper).
     """
 
     path: str
@@ -38,6 +41,7 @@ class ParameterRow:
     upper: float = np.nan
     at_bound: str = ""
     sd: float = np.nan
+    inward: float = np.nan
     visible: bool | None = None
     start: float = np.nan
     place: float = np.nan
@@ -54,10 +58,18 @@ class ParameterRow:
         words = {
             "tied": f"follows {self.leader}",
             "fixed": "fixed",
-            "variable": f"at its {self.at_bound} bound" if self.at_bound else "",
+            "variable": self._bound_words(),
         }[self.role]
         unseen = "not visible in these measurements" if self.visible is False else ""
         return "; ".join(w for w in (words, unseen) if w)
+
+    def _bound_words(self) -> str:
+        if not self.at_bound:
+            return ""
+        if not np.isfinite(self.inward):
+            return f"at its {self.at_bound} bound"
+        sense = "above" if self.at_bound == "lower" else "below"
+        return f"at its {self.at_bound} bound, at most {number(self.inward)} {sense} it (68 %)"
 
 
 def parameter_rows(found: Correlation) -> list[ParameterRow]:
@@ -77,7 +89,8 @@ def _variables(
     space, seen = found.problem.space, found.posterior
     for i, variable in enumerate(space.variables):
         place = float(found.best.point[i])
-        spread = float(seen.sd[i]) if seen is not None else np.nan
+        ended = seen is not None and seen.at_bound[i] != 0
+        spread = float(seen.sd[i]) if seen is not None and not ended else np.nan
         yield ParameterRow(
             path=variable.path,
             label=variable.parameter.label,
@@ -89,6 +102,7 @@ def _variables(
             upper=variable.upper,
             at_bound="lower" if place <= AT_BOUND else "upper" if place >= 1.0 - AT_BOUND else "",
             sd=spread * variable.slope(place),
+            inward=float(seen.inward[i]) * variable.slope(place) if seen is not None else np.nan,
             visible=bool(seen.visible[i]) if seen is not None else None,
             start=float(found.baseline.point[i]),
             place=place,
@@ -98,7 +112,13 @@ def _variables(
 
 def _tied(tie: Tie, leader: ParameterRow, before: dict[str, float], after: dict[str, float]) -> ParameterRow:
     row = _plain(tie.follower, "tied", before, after)
-    extra = {"leader": tie.leader, "sd": leader.sd * abs(tie.slope), "visible": leader.visible}
+    slope = abs(tie.slope)
+    extra = {
+        "leader": tie.leader,
+        "sd": leader.sd * slope,
+        "inward": leader.inward * slope,
+        "visible": leader.visible,
+    }
     return ParameterRow(**{**asdict(row), **extra})
 
 
@@ -134,6 +154,7 @@ def parameter_frame(found: Correlation) -> pd.DataFrame:
                 "upper": r.upper,
                 "at_bound": r.at_bound,
                 "sd": r.sd,
+                "inward": r.inward,
                 "not_visible": "" if r.visible is None else not r.visible,
             }
             for r in parameter_rows(found)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 
+from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.correlation_evaluations import history
 
 
-def summary(found: Correlation) -> dict[str, str]:
-    """Title -> text, the most important first."""
+def summary(found: Correlation, assessment: Assessment | None = None) -> dict[str, str]:
+    """Title -> text, the most important first. assessment: by default the correlation's own."""
+    verdict = assessment or assess(found)
     past = history(found)
     counted = sum(e.counts for e in found.improvements)
     mean = found.mean_improvement
@@ -17,6 +19,7 @@ def summary(found: Correlation) -> dict[str, str]:
         e.target.entry.id for e in found.improvements if e.target.constraint is not None and not e.inside
     ]
     lines = {
+        "Status": verdict.line,
         "Rating": f"{found.rating:.6g} (baseline {found.baseline_rating:.6g}; 0 = every target met exactly)",
         "Constraints": "all met" if found.feasible else f"violated: {', '.join(violated)}",
         "Mean improvement": f"{mean:.1f} % over {counted} characteristics"

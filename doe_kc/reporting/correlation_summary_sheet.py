@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from openpyxl.workbook import Workbook
 
 from doe_kc import __version__
+from doe_kc.correlation.assessment import Assessment
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.correlation_parameters import remark_sentences
 from doe_kc.reporting.correlation_rating_sheet import FINAL_RATING
@@ -18,18 +19,24 @@ LINE = 110
 
 
 def summary_sheet(
-    book: Workbook, found: Correlation, study: str, date: str, notes: Mapping[str, str]
+    book: Workbook,
+    found: Correlation,
+    study: str,
+    date: str,
+    notes: Mapping[str, str],
+    assessment: Assessment,
 ) -> None:
     """Outcome, what to think of bounds and unseen variables, and where it came from."""
     ws = book.create_sheet("Summary")
     title(ws, f"Correlation: {study}", "What the correlation reached, and what to know before using it.")
     remarks = {f"Note {i}": text for i, text in enumerate(remark_sentences(found), start=1)}
     made = {"Study": study, "Date": date, "Program": f"doe_kc {__version__}", **notes}
-    lines = {**summary(found), **remarks, **made}
+    lines = {**summary(found, assessment), **remarks, **made}
     for row, (key, text) in enumerate(lines.items(), start=4):
         put(ws, row, 1, key, bold=True, vertical="top", wrap=True)
-        cell = put(ws, row, 2, text, wrap=True, vertical="top", bold=row <= 6)
-        if key in remarks or (key == "Constraints" and not found.feasible):
+        cell = put(ws, row, 2, text, wrap=True, vertical="top", bold=row <= 7)
+        doubted = key == "Status" and assessment.status != "sound"
+        if key in remarks or doubted or (key == "Constraints" and not found.feasible):
             cell.fill = FLAGGED
         ws.row_dimensions[row].height = 14.5 * (1 + len(text) // LINE)
     row = 4 + len(lines)

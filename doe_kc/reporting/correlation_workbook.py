@@ -7,6 +7,7 @@ from pathlib import Path
 
 from openpyxl.workbook import Workbook
 
+from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.correlation_legend import LEGEND
 from doe_kc.reporting.correlation_rating_sheet import rating_sheet
@@ -22,15 +23,20 @@ from doe_kc.reporting.workbook_terms import terms_sheet
 
 
 def correlation_workbook(
-    found: Correlation, *, study: str, date: str, notes: Mapping[str, str] | None = None
+    found: Correlation,
+    *,
+    study: str,
+    date: str,
+    notes: Mapping[str, str] | None = None,
+    assessment: Assessment | None = None,
 ) -> Workbook:
     """Sheets Summary, Characteristics, Parameters, Curves, Evaluations, Rating terms and Legend.
 
     study: name in titles and page headers. date: as it shall stand in the summary. notes: further lines of
-    the summary, title -> text (axle file, measurement, ...).
+    the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
     """
     book = new_book(f"Correlation: {study}")
-    summary_sheet(book, found, study, date, notes or {})
+    summary_sheet(book, found, study, date, notes or {}, assessment or assess(found))
     characteristics_sheet(book, found, study)
     parameters_sheet(book, found, study)
     curves_sheet(book, found, study)
@@ -47,6 +53,8 @@ def write_correlation_workbook(
     study: str,
     date: str,
     notes: Mapping[str, str] | None = None,
+    assessment: Assessment | None = None,
 ) -> Path:
     """Write `correlation_workbook`; RunError naming path and remedy when the place is locked or full."""
-    return write_book(path, correlation_workbook(found, study=study, date=date, notes=notes))
+    book = correlation_workbook(found, study=study, date=date, notes=notes, assessment=assessment)
+    return write_book(path, book)

@@ -7,7 +7,7 @@ from doe_kc.targets.improvement import Improvement, improvements, mean_improveme
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.targets.rating import LIMIT_WEIGHT, Rating, rate
 from doe_kc.targets.score import Score, score
-from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
+from doe_kc.targets.target import Constraint, CurveTarget, MisfitTerm, Objective, Target, Targets
 
 __all__ = [
     "LIMIT_WEIGHT",
@@ -16,6 +16,7 @@ __all__ = [
     "CurveOptions",
     "CurveTarget",
     "Improvement",
+    "MisfitTerm",
     "Objective",
     "Rating",
     "Score",

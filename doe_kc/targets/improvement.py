@@ -16,13 +16,14 @@ SIGNIFICANT = 3.0
 class Improvement:
     """One characteristic before and after. percent: 100 = target met, 0 = as far as the baseline.
 
-    counts: active, and the baseline more than three standard deviations of the target away from it.
-    inside: within the constraint interval; True without one.
+    counts: active or sought, and the baseline more than three standard deviations of the target away from
+    it. sought: whether the search worked on it. inside: within the constraint interval; True without one.
     """
 
     target: Target
     baseline: float
     final: float
+    sought: bool = False
 
     @property
     def percent(self) -> float:
@@ -36,7 +37,8 @@ class Improvement:
     def counts(self) -> bool:
         """Whether it enters the mean."""
         distance = abs(self.baseline - self.target.value)
-        return self.target.active and distance > SIGNIFICANT * self.target.sd and distance > 0.0
+        counted = self.target.active or self.sought
+        return counted and distance > SIGNIFICANT * self.target.sd and distance > 0.0
 
     @property
     def inside(self) -> bool:
@@ -45,11 +47,14 @@ class Improvement:
         return c is None or c.low <= self.final <= c.high
 
 
-def improvements(targets: Targets, baseline: Score, final: Score) -> list[Improvement]:
-    """One entry a target, in its order."""
+def improvements(
+    targets: Targets, baseline: Score, final: Score, *, sought: Targets | None = None
+) -> list[Improvement]:
+    """One entry a target, in its order. sought: the same targets as a search works on them."""
+    searched = (targets if sought is None else sought).characteristics
     return [
-        Improvement(t, float(b), float(f))
-        for t, b, f in zip(targets.characteristics, baseline.values, final.values, strict=True)
+        Improvement(t, float(b), float(f), s.objective is not None)
+        for t, s, b, f in zip(targets.characteristics, searched, baseline.values, final.values, strict=True)
     ]
 
 

@@ -26,7 +26,7 @@ class Rating:
 
     objectives, constraints: (k,) of the characteristics, 0 without one. curves: (c,), the price of limits
     among them. violation: (k,) ConViol in the characteristic's unit, 0 where met. excess: (c,) RMS beyond
-    its limit in the response's unit.
+    its limit in the response's unit. misfit: term of the records as data.
     """
 
     objectives: FloatArray
@@ -34,11 +34,12 @@ class Rating:
     curves: FloatArray
     violation: FloatArray
     excess: FloatArray
+    misfit: float = 0.0
 
     @property
     def total(self) -> float:
         """Equation 2.2."""
-        return float(self.objectives.sum() + self.constraints.sum() + self.curves.sum())
+        return float(self.objectives.sum() + self.constraints.sum() + self.curves.sum() + self.misfit)
 
     @property
     def feasible(self) -> bool:
@@ -70,6 +71,7 @@ def rate(targets: Targets, found: Score) -> Rating:
         ),
         violation=violation,
         excess=excess,
+        misfit=-targets.misfit.weight * found.misfit if targets.misfit is not None else 0.0,
     )
 
 

@@ -14,10 +14,14 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class Score:
-    """values: (k,) characteristics in the order of the targets. rms: (c,) in each response's unit."""
+    """values: (k,) characteristics in the order of the targets. rms: (c,) in each response's unit.
+
+    misfit: mean square of the residuals against the records, 1 is noise; 0 where it does not count.
+    """
 
     values: FloatArray
     rms: FloatArray
+    misfit: float = 0.0
 
 
 def score(targets: Targets, characteristics: FloatArray, curves: CurveSet | None) -> Score:

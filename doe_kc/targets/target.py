@@ -95,11 +95,23 @@ class CurveTarget:
 
 
 @dataclass(frozen=True)
+class MisfitTerm:
+    """The records as data, one more term of a search: minus `weight` times the mean of the squared residuals.
+
+    size: number of residuals, each in standard deviations of its datum.
+    """
+
+    size: int
+    weight: float
+
+
+@dataclass(frozen=True)
 class Targets:
     """All targets. Characteristics that have a target but are not `active` are followed only.
 
     curves: those that the rating counts. others: the other measured ones. dropped: (load case, response) of
-    the curves that the study takes out of the correlation.
+    the curves that the study takes out of the correlation. misfit: None where the records as data do not
+    count beside the targets.
     """
 
     characteristics: tuple[Target, ...]
@@ -107,6 +119,7 @@ class Targets:
     source: str
     dropped: frozenset[tuple[str, str]] = frozenset()
     others: tuple[CurveTarget, ...] = ()
+    misfit: MisfitTerm | None = None
 
     @cached_property
     def rows(self) -> np.ndarray:
@@ -135,14 +148,15 @@ class Targets:
 
     @cached_property
     def scaled_targets(self) -> FloatArray:
-        """(N,) the measured curves, scaled alike."""
+        """(N,) the measured curves, scaled alike, then zeros for the residuals of the misfit."""
         blocks = [_scaled(t, t.curve) for t in self.curves]
-        return np.concatenate(blocks) if blocks else np.zeros(0)
+        return np.concatenate([*blocks, np.zeros(self.misfit.size if self.misfit is not None else 0)])
 
     @cached_property
     def blocks(self) -> tuple[slice, ...]:
-        """Where each curve lies in the scaled vector."""
-        ends = np.cumsum([0] + [t.curve.size for t in self.curves])
+        """Where each curve lies in the scaled vector, and last the misfit."""
+        more = [] if self.misfit is None else [self.misfit.size]
+        ends = np.cumsum([0] + [t.curve.size for t in self.curves] + more)
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
 

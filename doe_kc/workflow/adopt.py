@@ -20,7 +20,7 @@ LISTED = 8
 
 @dataclass(frozen=True)
 class AdoptedEffect:
-    """id, location: of the hypothesis. options: of the effect's table. uncertain: others could stand for it."""
+    """id, location: of the hypothesis. options: of the effect's table. uncertain: others could be it."""
 
     id: str
     location: str | None

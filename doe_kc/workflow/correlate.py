@@ -19,7 +19,7 @@ from doe_kc.correlation.posterior import Posterior, posterior
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.result import Correlation
-from doe_kc.correlation.search_targets import all_measured, search_targets
+from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets
 from doe_kc.errors import InputError, RunError
 from doe_kc.measurement import Measurement
 from doe_kc.solver.result import NotConverged
@@ -128,30 +128,38 @@ def sought_problem(
     wide = all_measured(problem.targets, curves=curves)
     held = given or start
     baseline = score(wide, held.characteristics, held.curves)
-    relaxed = reach_of(problem, start)
+    expansion = start_expansion(problem, start)
+    relaxed = None if expansion is None else reach_of(problem, start, expansion)
+    likelihood = problem.likelihood.without(relaxed_places(problem.targets, relaxed))
     sought = search_targets(
         problem.targets,
         baseline,
         objective=study.correlation.objective,
         relaxation=relaxed,
+        misfit=None if expansion is None else misfit_term(likelihood, problem.space, start, expansion),
         curves=curves,
     )
-    return replace(problem, sought=sought), relaxed
+    return replace(problem, sought=sought, likelihood=likelihood), relaxed
 
 
-def reach_of(problem: Problem, start: Outcome) -> Relaxation | None:
-    """Targets that the bounds do not reach from the start, to first order; None without sensitivities."""
-    space, rows = problem.space, problem.targets.rows
+def start_expansion(problem: Problem, start: Outcome) -> Linearization | None:
+    """First-order expansion at the start; None where there is none. For an outside solver that of the
+    package's own, if both say the same of the start."""
+    space = problem.space
     try:
         if problem.exact:
-            expansion = problem.linearize(space.start)
-        else:
-            own = AxleSolver(problem.axle, problem.windows).evaluate(space.values(space.start))
-            if not answers_alike(problem.targets, own, start):
-                return None
-            expansion = linearize(problem.axle, space, space.start, problem.windows)
+            return problem.linearize(space.start)
+        own = AxleSolver(problem.axle, problem.windows).evaluate(space.values(space.start))
+        if not answers_alike(problem.targets, own, start):
+            return None
+        return linearize(problem.axle, space, space.start, problem.windows)
     except NotConverged:
         return None
+
+
+def reach_of(problem: Problem, start: Outcome, expansion: Linearization) -> Relaxation:
+    """Targets that the bounds do not reach from the start, to first order."""
+    space, rows = problem.space, problem.targets.rows
     return relaxation(
         problem.targets.characteristics,
         start.characteristics[rows],

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.axle.write import write_axle
+from doe_kc.correlation.assessment import Assessment, assess, inside
 from doe_kc.correlation.pareto.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
@@ -39,21 +40,27 @@ def write_correlation(
     measurement: Measurement | None,
     folder: Path,
     *,
+    assessment: Assessment | None = None,
     workers: int | None = None,
 ) -> list[Path]:
     """axle.toml, five tables, correlation.xlsx, report.html and the figures; returns the paths.
 
-    measurement: for the measured curves; None with typed targets. workers: processes that draw. RunError
-    when the folder cannot be written.
+    measurement: for the measured curves; None with typed targets. assessment: by default the correlation's
+    own. workers: processes that draw. RunError when the folder cannot be written.
     """
-    note = f"correlated by {found.method}, rating {found.rating:.6g}"
-    axle = write_axle(found.axle, study.axle_path, folder / AXLE, note=note)
+    verdict = assessment or assess(found)
+    axle = write_axle(found.axle, study.axle_path, folder / AXLE, note=axle_note(found, verdict))
     notes = {
         "Axle": f"{found.axle.name}: {AXLE}, from {study.axle_path.name}",
         "Measurement": measurement.manifest.name if measurement is not None else "none, targets are typed",
         "Effects": ", ".join(found.axle.effects) or "none",
     }
-    words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat(), "notes": notes}
+    words: dict[str, Any] = {
+        "study": study.name,
+        "date": date.today().isoformat(),
+        "notes": notes,
+        "assessment": verdict,
+    }
     return [
         axle,
         *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
@@ -64,38 +71,61 @@ def write_correlation(
     ]
 
 
+def axle_note(found: Correlation, assessment: Assessment) -> str:
+    """First line of the axle file: status, effects, rating."""
+    effects = ", ".join(found.axle.effects) or "none"
+    return f"{assessment.line} Effects: {effects}. Rating {found.rating:.6g}, correlated by {found.method}."
+
+
 def _write_front(found: Correlation, folder: Path, study: str) -> list[Path]:
     """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
-    front = front_of(found.problem.targets, found.run.evaluated)
+    front = front_of(found.problem.search, found.run.evaluated)
     table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
     return [table, *write_pareto_figure(front, folder, study=study)]
 
 
-def correlation_document(found: Correlation, axle_path: Path) -> dict[str, Any]:
+def characteristic_entries(found: Correlation) -> list[dict[str, Any]]:
+    """Every characteristic with a target. low, high: the constraint interval; where the study sets none, that
+    of equations 5.1 and 5.2. held, reachable: as in `CharacteristicRow`."""
+    return [
+        {
+            "name": r.id,
+            "unit": r.unit,
+            "target": r.entry.target.value,
+            "sd": r.entry.target.sd,
+            "baseline": r.entry.baseline,
+            "final": r.entry.final,
+            "improvement_percent": r.entry.percent,
+            "low": r.interval[0],
+            "high": r.interval[1],
+            "role": r.role,
+            "held": r.held,
+            "reachable": r.reachable,
+        }
+        for r in characteristic_rows(found)
+    ]
+
+
+def correlation_document(
+    found: Correlation, axle_path: Path, assessment: Assessment | None = None
+) -> dict[str, Any]:
     """What `correlate --json` writes. Numbers that are not finite become null in the file.
 
-    low, high: the constraint interval; where the study sets none, that of equations 5.1 and 5.2.
+    parameters: sd is null at a bound, where `inward` tells how far inside the value may lie (68 %).
     """
+    verdict = assessment or assess(found)
     return {
+        "status": verdict.status,
+        "reasons": list(verdict.reasons),
         "method": found.method,
         "evaluations": len(found.run.evaluated),
         "rating": found.rating,
         "feasible": found.feasible,
         "mean_improvement_percent": found.mean_improvement,
-        "characteristics": [
-            {
-                "name": r.id,
-                "target": r.entry.target.value,
-                "baseline": r.entry.baseline,
-                "final": r.entry.final,
-                "improvement_percent": r.entry.percent,
-                "low": r.interval[0],
-                "high": r.interval[1],
-            }
-            for r in characteristic_rows(found)
-        ],
+        "characteristics": characteristic_entries(found),
         "parameters": {
-            r.path: {"baseline": r.baseline, "final": r.final, "sd": r.sd} for r in parameter_rows(found)
+            r.path: {"baseline": r.baseline, "final": r.final, "sd": r.sd, "inward": r.inward}
+            for r in parameter_rows(found)
         },
         "axle": str(axle_path),
         "seconds": found.seconds,
@@ -105,16 +135,17 @@ def correlation_document(found: Correlation, axle_path: Path) -> dict[str, Any]:
     }
 
 
-def correlation_lines(found: Correlation) -> list[str]:
-    """The outcome for a terminal; * marks what lies outside its constraint interval."""
+def correlation_lines(found: Correlation, assessment: Assessment | None = None) -> list[str]:
+    """The outcome for a terminal, its status first; * marks what lies outside interval and noise."""
+    words = summary(found, assessment)
     head = f"{'characteristic':34}{'target':>11}{'baseline':>11}{'final':>11}{'improved':>10}  unit"
-    lines = [head]
+    lines = [words.pop("Status"), head]
     for r in characteristic_rows(found):
         e = r.entry
         percent = f"{e.percent:.1f} %" if math.isfinite(e.percent) else "-"
-        mark = "*" if r.constraint and not r.inside else " "
+        mark = " " if inside(e) else "*"
         lines.append(
             f"{r.id:34}{e.target.value:>11.4g}{e.baseline:>11.4g}{e.final:>11.4g}{percent:>10} {mark}{r.unit}"
         )
-    lines += [f"{key}: {text}" for key, text in summary(found).items()]
+    lines += [f"{key}: {text}" for key, text in words.items()]
     return lines + remark_sentences(found)

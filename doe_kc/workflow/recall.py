@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from doe_kc.campaign.store import open_store
+from doe_kc.correlation.assessment import Assessment, Objection, assess
 from doe_kc.correlation.problem import Candidate
 from doe_kc.correlation.record import (
     read_record,
@@ -21,24 +22,39 @@ from doe_kc.files import read_bytes
 from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
-from doe_kc.workflow.adopt import Adoption, adopted
+from doe_kc.workflow.adopt import adopted
+from doe_kc.workflow.answer import Answer
 from doe_kc.workflow.correlate import given_outcome, sought_problem, study_problem
 from doe_kc.workflow.measure import Reduced
 
 RUN_FILE = "run.json"
 
 
-def write_run(found: Correlation, folder: Path, adoption: Adoption | None = None) -> Path:
-    """run.json: what `recall` needs beside the store."""
-    if adoption is None:
+@dataclass(frozen=True)
+class Recalled:
+    """A correlation that was read back, and its assessment."""
+
+    correlation: Correlation
+    assessment: Assessment
+
+
+def write_run(found: Correlation, folder: Path, answer: Answer | None = None) -> Path:
+    """run.json: what `recall` needs beside the store. answer: where the correlation is part of a chain."""
+    if answer is None or answer.adoption is None:
         return write_json(folder / RUN_FILE, run_document(found))
-    document = run_document(found, discovered=True, effects=adoption.records, without=adoption.without)
+    document = run_document(
+        found,
+        discovered=True,
+        effects=answer.adoption.records,
+        without=answer.adoption.without,
+        objections=answer.further,
+        misfit=None if answer.gap is None else answer.gap.final,
+    )
     return write_json(folder / RUN_FILE, document)
 
 
-def recall(study: Study, reduced: Reduced | None, folder: Path) -> tuple[Correlation, Adoption | None]:
-    """The last correlation in `folder`, rated by the study's present targets and weights, and the effects that
-    it began with (None without a discovery); nothing is run.
+def recall(study: Study, reduced: Reduced | None, folder: Path) -> Recalled:
+    """The last correlation in `folder`, rated by the study's present targets and weights; nothing is run.
 
     InputError when there is none, its file is damaged, or the store is not that of its evaluations.
     """
@@ -65,4 +81,6 @@ def recall(study: Study, reduced: Reduced | None, folder: Path) -> tuple[Correla
     found = replace(recalled(record, problem, answers), relaxation=relaxed)
     if given is not None:
         found = replace(found, given=problem.judged(-1, Candidate(space.start, "given axle"), given))
-    return found, adoption
+    same = found.run.best == record.best
+    further = [Objection(o.sentence, o.fatal) for o in record.objections]
+    return Recalled(found, assess(found, misfit=record.misfit if same else None, further=further))

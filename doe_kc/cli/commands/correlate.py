@@ -13,10 +13,16 @@ from doe_kc.cli.options import SchedulerOption
 from doe_kc.correlation.result import Correlation
 from doe_kc.output import write_json
 from doe_kc.study import Study
+from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.correlate import correlate as run_correlation
-from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
+from doe_kc.workflow.handover import AXLE, correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.measure import Reduced, study_records
 from doe_kc.workflow.recall import write_run
+
+ALONE = (
+    "{axle}: the study's axle tuned as it is; what it may lack is not looked for. doe-kc run does that first "
+    "and hands over one axle with both."
+)
 
 
 @app.command()
@@ -43,6 +49,7 @@ def correlate(
         write_json(given.json, correlation_document(correlation, folder / "axle.toml"))
     for line in correlation_lines(correlation):
         typer.echo(line)
+    typer.echo(ALONE.format(axle=folder / AXLE))
     typer.echo(f"{len(written)} files in {folder}; store {found.store}", err=True)
 
 
@@ -50,6 +57,7 @@ def correlated(
     study: Study,
     reduced: Reduced | None,
     *,
+    adoption: Adoption | None = None,
     method: str | None = None,
     budget: int | None = None,
     workers: int | None = None,
@@ -58,5 +66,12 @@ def correlated(
     """The correlation, its progress shown."""
     with live_rating(budget or study.correlation.budget) as watch:
         return run_correlation(
-            study, reduced, method=method, budget=budget, workers=workers, scheduler=scheduler, watch=watch
+            study,
+            reduced,
+            adoption=adoption,
+            method=method,
+            budget=budget,
+            workers=workers,
+            scheduler=scheduler,
+            watch=watch,
         )

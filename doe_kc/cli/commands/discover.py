@@ -19,6 +19,11 @@ from doe_kc.workflow.discovery_document import discovery_document, discovery_lin
 from doe_kc.workflow.discovery_handover import AXLE, write_discovery
 from doe_kc.workflow.measure import study_measurement
 
+ALONE = (
+    "{axle}: refitted to the records with what was found, not yet correlated to the targets; doe-kc run does "
+    "both and hands over one axle."
+)
+
 
 @app.command()
 @takes_study
@@ -38,6 +43,7 @@ def discover(
         write_json(given.json, discovery_document(discovery, folder / AXLE))
     for line in discovery_lines(discovery):
         typer.echo(line)
+    typer.echo(ALONE.format(axle=folder / AXLE))
     typer.echo(f"{len(written)} files in {folder}", err=True)
 
 

@@ -25,11 +25,12 @@ def report(
     found = read_study(study, measurement=measurement, out=out)
     reduced = study_records(found)
     folder = found.out / "correlate"
-    correlation = recall(found, reduced, folder)
+    recalled = recall(found, reduced, folder)
+    correlation, assessment = recalled.correlation, recalled.assessment
     records = reduced.measurement if reduced is not None else None
-    written = write_correlation(found, correlation, records, folder, workers=workers)
+    written = write_correlation(found, correlation, records, folder, assessment=assessment, workers=workers)
     if json is not None:
-        write_json(json, correlation_document(correlation, folder / "axle.toml"))
-    for line in correlation_lines(correlation):
+        write_json(json, correlation_document(correlation, folder / "axle.toml", assessment))
+    for line in correlation_lines(correlation, assessment):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {folder}", err=True)

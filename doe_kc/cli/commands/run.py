@@ -1,8 +1,9 @@
-"""`doe-kc run`: the whole chain."""
+"""`doe-kc run`: the whole chain, and the one axle that it hands over."""
 
 from __future__ import annotations
 
 import time
+from functools import partial
 
 import typer
 
@@ -14,84 +15,99 @@ from doe_kc.cli.commands.reduce import ride_height_line
 from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
+from doe_kc.correlation.result import Correlation
 from doe_kc.output import write_json
 from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.workflow.compare import (
-    compare_model,
-    comparison_document,
-    comparison_lines,
-    write_comparison,
-)
+from doe_kc.study import Study
+from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.answer import answer_lines, summary_document
+from doe_kc.workflow.answer_handover import AXLE, write_answer
+from doe_kc.workflow.chain import Steps, follow_chain
+from doe_kc.workflow.compare import compare_model, comparison_document, write_comparison
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
-from doe_kc.workflow.discovery_handover import AXLE, write_discovery
+from doe_kc.workflow.discovery_handover import write_discovery
 from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
-from doe_kc.workflow.influence import (
-    influence_document,
-    influence_runs,
-    study_influence,
-    write_influence,
-)
-from doe_kc.workflow.measure import reduce_records, reduced_document, write_reduced
+from doe_kc.workflow.influence import influence_document, influence_runs, study_influence, write_influence
+from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document, write_reduced
 from doe_kc.workflow.recall import write_run
 
 
 @app.command()
 @takes_study
 def run(given: Given, scheduler: SchedulerOption = None) -> None:
-    """The whole chain: simulate, reduce, compare, influence matrix, correlate, discover; all under out."""
+    """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle under out."""
     started = time.perf_counter()
-    found = given.read()
-    found.measured()
-    solution = solve(found.axle)
+    study, workers = given.read(), given.workers
+    study.measured()
+    solution = solve(study.axle)
     seconds = time.perf_counter() - started
-    model = curve_set(solution)
-    written = write_simulation(solution, found.out / "simulate")
-    typer.echo(f"{found.axle.name}: {solution.equilibria} equilibria in {seconds:.2f} s", err=True)
+    written = write_simulation(solution, study.out / "simulate")
+    typer.echo(f"{study.axle.name}: {solution.equilibria} equilibria in {seconds:.2f} s", err=True)
 
-    reduced = reduce_records(found, solution)
-    typer.echo("drawing the rig records and the comparison", err=True)
-    written += write_reduced(reduced, found.out / "reduce", workers=given.workers)
-    comparison = compare_model(found, model, reduced.measurement)
-    written += write_comparison(comparison, found.out / "compare", workers=given.workers)
+    reduced = reduce_records(study, solution)
+    measurement = reduced.measurement
+    typer.echo("drawing the rig records", err=True)
+    written += write_reduced(reduced, study.out / "reduce", workers=workers)
 
-    with progress_bar("one at a time", influence_runs(found)) as advance:
-        influence = study_influence(found, reduced.measurement, workers=given.workers, progress=advance)
-    written += write_influence(found, influence, found.out / "influence", workers=given.workers)
+    with progress_bar("one at a time", influence_runs(study)) as advance:
+        influence = study_influence(study, measurement, workers=workers, progress=advance)
+    written += write_influence(study, influence, study.out / "influence", workers=workers)
 
-    correlation = correlated(found, reduced, workers=given.workers, scheduler=scheduler)
-    folder = found.out / "correlate"
-    write_run(correlation, folder)
-    written += write_correlation(found, correlation, reduced.measurement, folder, workers=given.workers)
+    steps = Steps(
+        discover=partial(discovered, workers=workers),
+        correlate=partial(_correlated, workers=workers, scheduler=scheduler),
+    )
+    answer = follow_chain(study, reduced, steps)
+    correlation, discovery = answer.correlation, answer.discovery
+    folder = study.out / "correlate"
+    if discovery is not None:
+        written += write_discovery(study, discovery, measurement, study.out / "discover", workers=workers)
+    write_run(correlation, folder, answer)
+    written += write_correlation(
+        study, correlation, measurement, folder, assessment=answer.assessment, workers=workers
+    )
+    model = correlation.best.outcome.curves or curve_set(solution)
+    comparison = compare_model(study, model, measurement)
+    written += write_comparison(comparison, study.out / "compare", workers=workers)
+    written += write_answer(study, answer, measurement, time.perf_counter() - started)
 
-    discovery = None
-    if not found.solver.command:
-        discovery = discovered(found, reduced.measurement, workers=given.workers)
-        written += write_discovery(
-            found, discovery, reduced.measurement, found.out / "discover", workers=given.workers
-        )
-
+    total = time.perf_counter() - started
     if given.json is not None:
         write_json(
             given.json,
             {
+                **summary_document(answer, str(study.out / AXLE), total),
                 "simulate": characteristics_document(solution, seconds),
                 "reduce": reduced_document(reduced),
                 "compare": comparison_document(comparison),
                 "influence": influence_document(influence.matrix),
-                "correlate": correlation_document(correlation, folder / "axle.toml"),
+                "correlate": correlation_document(correlation, folder / "axle.toml", answer.assessment),
                 "discover": None
                 if discovery is None
-                else discovery_document(discovery, found.out / "discover" / AXLE),
-                "seconds": time.perf_counter() - started,
+                else discovery_document(discovery, study.out / "discover" / "axle.toml"),
             },
         )
-    blocks = [comparison_lines(comparison), influence_lines(influence.matrix), correlation_lines(correlation)]
+    blocks = [answer_lines(answer), influence_lines(influence.matrix)]
     if discovery is not None:
         blocks.append(discovery_lines(discovery))
+    blocks.append(correlation_lines(correlation, answer.assessment)[1:])
     for line in [line for block in blocks for line in (*block, "")][:-1]:
         typer.echo(line)
     if reduced.ride_height is not None:
         typer.echo(ride_height_line(reduced.ride_height))
-    typer.echo(f"{len(written)} files under {found.out} in {time.perf_counter() - started:.0f} s")
+    typer.echo(f"The answer: {study.out / AXLE}, {study.out / 'index.html'}")
+    typer.echo(f"{len(written)} files under {study.out} in {total:.0f} s")
+
+
+def _correlated(
+    study: Study,
+    reduced: Reduced,
+    adoption: Adoption | None,
+    *,
+    workers: int | None,
+    scheduler: str | None,
+) -> Correlation:
+    """The correlation of the extended axle, its progress shown."""
+    return correlated(study, reduced, adoption=adoption, workers=workers, scheduler=scheduler)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import svd
 
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.problem import Evaluated
@@ -83,9 +85,11 @@ def principal_axes(scaled: FloatArray, targets: Targets) -> tuple[FloatArray, Fl
     if scaled.shape[1] == 0:
         return mean, np.zeros((0, 0))
     left = scaled - mean
-    u, s, basis = np.linalg.svd(left, full_matrices=False)
-    for q in range(len(s)):
-        if all(np.linalg.norm(left[:, part], axis=1).max() <= UNRESOLVED for part in targets.blocks):
-            return mean, basis[:q]
-        left = left - np.outer(u[:, q] * s[q], basis[q])
-    return mean, basis[s > 1e-9 * max(s[0], 1e-300)]
+    u, s, basis = svd(left, full_matrices=False, lapack_driver="gesdd", check_finite=False)
+    kept = int((s > 1e-9 * max(s[0], 1e-300)).sum())
+
+    def resolved(q: int) -> bool:
+        rest = left - (u[:, :q] * s[:q]) @ basis[:q]
+        return all(np.linalg.norm(rest[:, part], axis=1).max() <= UNRESOLVED for part in targets.blocks)
+
+    return mean, basis[: bisect_left(range(kept), True, key=resolved)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.first_order import most_probable_step
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
 
@@ -25,9 +25,6 @@ def first_order(problem: Problem, answer: Evaluated) -> Candidate | None:
         return None
     jacobian = data.jacobian(expansion.curves, expansion.characteristics)
     residual = data.residual(answer.outcome.curves, answer.outcome.characteristics)
-    weight = problem.space.prior_sd**-2.0
-    gradient = jacobian.T @ residual + weight * (answer.point - problem.space.start)
-    hessian = jacobian.T @ jacobian + np.diag(weight)
-    step = bounded_step(hessian, gradient, -answer.point, 1.0 - answer.point)
+    step = most_probable_step(jacobian, residual, answer.point, problem.space)
     point = problem.space.snapped(answer.point + step)
     return None if np.array_equal(point, answer.point) else Candidate(point, ORIGIN)

@@ -12,7 +12,9 @@ CYCLE: tuple[Kind, ...] = ("Gauss-Newton", "expected improvement", "trust region
 GAIN = 0.002
 """Gain, share of the rating, below which a proposal was not worth its run."""
 PATIENCE = 15
-"""Proposals in a row without a worthwhile gain that end the search, or start it anew elsewhere."""
+"""Where surrogates learn from values alone; three in a row of every kind of proposal, five times."""
+PATIENCE_WITH_SLOPES = 5
+"""Where slopes at the best design are exact: what they miss is found by the next proposals or not at all."""
 RESTARTS = 3
 """Starts elsewhere of a search that has settled."""
 DARE, FEAR = 0.3, 3.0
@@ -29,6 +31,7 @@ class Strategy:
 
     reach: half-width of the trust region in which predictions are taken at their word. idle: proposals in a
     row without a worthwhile gain. restarts: starts elsewhere that are left. kind: of the next proposal.
+    patience: proposals in a row without a worthwhile gain that end the search, or start it anew elsewhere.
     """
 
     kind: Kind = CYCLE[0]
@@ -36,6 +39,7 @@ class Strategy:
     reach: float = 0.1
     idle: int = 0
     restarts: int = RESTARTS
+    patience: int = PATIENCE
 
     def after(self, gain: float, best: float) -> Strategy:
         """After a round that raised the best rating from `best` by `gain`."""
@@ -46,8 +50,8 @@ class Strategy:
         if self.kind == "trust region":
             reach = float(np.clip(reach * (GROW if won else SHRINK), *REACH))
         new = replace(self, aversion=aversion, reach=reach, idle=0 if won else self.idle + 1)
-        if new.idle >= PATIENCE and self.restarts:
-            return Strategy(kind="restart", restarts=self.restarts - 1)
+        if new.idle >= self.patience and self.restarts:
+            return Strategy(kind="restart", restarts=self.restarts - 1, patience=self.patience)
         return replace(new, kind=self.kind if won and self.kind != "restart" else self._next())
 
     def _next(self) -> Kind:
@@ -58,9 +62,9 @@ class Strategy:
     @property
     def stopped(self) -> str:
         """Why the search is over; empty while it goes on."""
-        if self.idle < PATIENCE:
+        if self.idle < self.patience:
             return ""
-        return f"{PATIENCE} proposals in a row gained less than {100.0 * GAIN:g} % of the rating"
+        return f"{self.patience} proposals in a row gained less than {100.0 * GAIN:g} % of the rating"
 
     def others(self) -> tuple[Kind, ...]:
         """Kinds to turn to, in order, when this one proposes a design that is known already."""

@@ -19,7 +19,7 @@ import numpy as np
 from doe_kc.correlation.ego.archive import Archive, Slopes, build_archive
 from doe_kc.correlation.ego.first_order import first_order
 from doe_kc.correlation.ego.proposer import Proposer, fitted
-from doe_kc.correlation.ego.strategy import CYCLE, Strategy
+from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE_WITH_SLOPES, Strategy
 from doe_kc.correlation.ego.trust import Trust
 from doe_kc.correlation.methods._base import Settings, register
 from doe_kc.correlation.methods._sampled import Sampled
@@ -52,7 +52,7 @@ class Ego(Sampled):
     def __init__(self, problem: Problem, settings: Settings) -> None:
         self._exact = problem.exact and settings.gradients is not False
         super().__init__(problem, settings, WITH_SLOPES if self._exact else OPENING)
-        self._strategy = Strategy(restarts=0) if self._exact else Strategy()
+        self._strategy = Strategy(restarts=0, patience=PATIENCE_WITH_SLOPES) if self._exact else Strategy()
         self._settled = False
         self._trust = Trust()
         self._expanded: int | None = None

@@ -43,6 +43,7 @@ class ModelledObjectives:
             self._targets,
             characteristics=tuple(replace(self._targets.characteristics[i], constraint=None) for i in chosen),
             curves=tuple(self._targets.curves[i] for i in lines),
+            misfit=None,
         )
         keep = [np.arange(self._mean.size)[self._targets.blocks[i]] for i in lines]
         columns = np.concatenate([*keep, np.zeros(0, dtype=int)]).astype(int)

@@ -86,7 +86,9 @@ def weighted(targets: Targets, found: Objectives, weight: FloatArray) -> Targets
 
 def only_constraints(targets: Targets) -> Targets:
     """Constraints alone, their violation counted as in `relative_violation`."""
-    return replace(targets, characteristics=tuple(map(_bare, targets.characteristics)), curves=())
+    return replace(
+        targets, characteristics=tuple(map(_bare, targets.characteristics)), curves=(), misfit=None
+    )
 
 
 def _bare(target: Target) -> Target:

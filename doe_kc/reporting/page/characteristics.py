@@ -36,7 +36,7 @@ def _rows(found: Correlation) -> list[CharacteristicRow]:
 
 def _tags(row: CharacteristicRow) -> str:
     tags = {
-        "active": row.entry.target.active,
+        "active": row.entry.target.active or row.entry.sought,
         "outside": not row.inside,
         "violated": row.constraint and not row.inside,
         "counts": row.entry.counts,

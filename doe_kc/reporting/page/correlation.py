@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from doe_kc.correlation.assessment import STATUS_LABELS, Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
 from doe_kc.reporting.correlation_parameters import remark_sentences
@@ -17,10 +18,14 @@ from doe_kc.reporting.page.section import Section, render, write_page
 
 
 def correlation_sections(
-    found: Correlation, measurement: Measurement | None, *, notes: Mapping[str, str] | None = None
+    found: Correlation,
+    measurement: Measurement | None,
+    *,
+    notes: Mapping[str, str] | None = None,
+    assessment: Assessment | None = None,
 ) -> list[Section]:
     """Summary, Characteristics, Curves, Convergence, Parameters. notes: further lines of the summary."""
-    sections = [_summary(found, notes or {}), characteristics_section(found)]
+    sections = [_summary(found, notes or {}, assessment or assess(found)), characteristics_section(found)]
     sections += curves_section(found, measurement)
     return [*sections, convergence_section(found), parameters_section(found)]
 
@@ -33,16 +38,19 @@ def write_correlation_page(
     study: str,
     date: str,
     notes: Mapping[str, str] | None = None,
+    assessment: Assessment | None = None,
 ) -> Path:
     """Write the page; RunError when it cannot be written."""
-    sections = correlation_sections(found, measurement, notes=notes)
+    sections = correlation_sections(found, measurement, notes=notes, assessment=assessment)
     return write_page(path, f"Correlation: {study}", sections, subtitle=date)
 
 
-def _summary(found: Correlation, notes: Mapping[str, str]) -> Section:
+def _summary(found: Correlation, notes: Mapping[str, str], assessment: Assessment) -> Section:
     html = render(
         "summary.html",
-        lines=summary(found),
+        lines=summary(found, assessment),
+        status=assessment.status,
+        status_label=STATUS_LABELS[assessment.status],
         feasible=found.feasible,
         mean=found.mean_improvement,
         rating=found.rating,

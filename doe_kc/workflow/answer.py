@@ -1,0 +1,170 @@
+"""The answer of a study: one axle, whether it can be used, and what stands behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
+from doe_kc.correlation.likelihood import record_likelihood
+from doe_kc.correlation.result import Correlation
+from doe_kc.curves import CurveSet
+from doe_kc.discovery.model import NO_CHARACTERISTICS
+from doe_kc.discovery.result import Discovery
+from doe_kc.measurement import Measurement
+from doe_kc.reporting.discovery_words import effect_label
+from doe_kc.study import Study
+from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.discovery_document import effect_entry
+from doe_kc.workflow.handover import characteristic_entries
+
+NONE_NEEDED = ("named", "none")
+
+
+@dataclass(frozen=True)
+class AnswerGap:
+    """Whitened RMS of all records' deviations, both branches of every loop; 1 is noise.
+
+    nominal: of the axle handed in. tuned: re-tuned without an effect; None without a discovery. final: of the
+    axle handed over. noise_floor: what noise alone leaves.
+    """
+
+    nominal: float
+    tuned: float | None
+    final: float
+    noise_floor: float
+
+
+@dataclass(frozen=True)
+class Answer:
+    """discovery, adoption: None where none was made; with an outside solver a discovery is advice and not
+    adopted. gap: None without curves from the solver. further: what speaks against the axle beyond what the
+    correlation itself shows."""
+
+    correlation: Correlation
+    assessment: Assessment
+    discovery: Discovery | None
+    adoption: Adoption | None
+    gap: AnswerGap | None
+    further: tuple[Objection, ...] = ()
+
+
+def answered(
+    study: Study,
+    measurement: Measurement,
+    correlation: Correlation,
+    discovery: Discovery | None,
+    adoption: Adoption | None,
+    remarks: tuple[str, ...] = (),
+) -> Answer:
+    """Judge the axle that was correlated. remarks: what else speaks against calling it sound."""
+    gap = answer_gap(study, measurement, correlation, discovery)
+    further = [*_objections(study, discovery, adoption), *(Objection(r) for r in remarks)]
+    if gap is not None and gap.final > gap.nominal * 1.001 and gap.final > MISFIT:
+        further.append(
+            Objection(
+                f"the deviations from the records grew from {gap.nominal:.2f} to {gap.final:.2f} times "
+                "their noise.",
+                fatal=True,
+            )
+        )
+    assessment = assess(correlation, misfit=None if gap is None else gap.final, further=further)
+    return Answer(correlation, assessment, discovery, adoption, gap, tuple(further))
+
+
+def answer_gap(
+    study: Study, measurement: Measurement, correlation: Correlation, discovery: Discovery | None
+) -> AnswerGap | None:
+    """The gap of the records before and after. A discovery's calibrations of the rig and differences between
+    the wheels are taken as it found them."""
+    before, after = correlation.baseline.outcome.curves, correlation.best.outcome.curves
+    if before is None or after is None:
+        return None
+    if discovery is not None:
+        fitted = discovery.fitted
+        model = fitted.model
+        nuisances = model.nuisances @ fitted.z[model.parameters : model.dimension]
+        final = model.likelihood.residual(after, NO_CHARACTERISTICS) + nuisances
+        known = discovery.gap
+        return AnswerGap(known.nominal, known.tuned, _rms(final), known.noise_floor)
+    data = record_likelihood(study.axle, measurement)
+
+    def left(curves: CurveSet) -> float:
+        return _rms(data.residual(curves, NO_CHARACTERISTICS))
+
+    return AnswerGap(left(before), None, left(after), 1.0) if data.curves else None
+
+
+def _rms(residual: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(residual**2)))
+
+
+def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | None) -> Iterator[Objection]:
+    """What the discovery leaves open."""
+    if discovery is None:
+        return
+    taken = {e.id for e in adoption.effects} if adoption is not None else set()
+    for effect in adoption.effects if adoption is not None else ():
+        if effect.uncertain:
+            others = next(
+                ([e for e in group if e != effect.id] for group in discovery.classes if effect.id in group),
+                [],
+            )
+            yield Objection(
+                f"{effect.label} is the leading one of a class; it could be "
+                f"{' or '.join(effect_label(e).lower() for e in others)}."
+            )
+    left = [f for f in discovery.findings if f.hypothesis.effect not in taken]
+    if discovery.verdict == "unexplained":
+        places = sorted({f"{c.load_case} {c.response}" for c, _ in discovery.unexplained})
+        where = f": {', '.join(places)}" if places else ""
+        leads = ", ".join(effect_label(f.hypothesis.effect).lower() for f in left)
+        hint = f"; the best lead, not adopted, is {leads}" if leads else ""
+        yield Objection(f"the records show something that nothing explains{where}{hint}.")
+    elif left:
+        names = ", ".join(effect_label(f.hypothesis.effect).lower() for f in left)
+        how = "as the study says" if study.discovery.adopt != "auto" else "the outside model does not have it"
+        yield Objection(f"the records ask for {names}, which was not adopted, {how}.")
+
+
+def summary_document(answer: Answer, axle_path: str, seconds: float) -> dict[str, Any]:
+    """summary.json, and the head of what `run --json` writes."""
+    discovery, gap = answer.discovery, answer.gap
+    adopted = {(e.id, e.location) for e in answer.adoption.effects} if answer.adoption is not None else set()
+    return {
+        "status": answer.assessment.status,
+        "reasons": list(answer.assessment.reasons),
+        "axle": axle_path,
+        "verdict": discovery.verdict if discovery is not None else None,
+        "effects": []
+        if discovery is None
+        else [
+            effect_entry(f) | {"adopted": (f.hypothesis.effect, f.hypothesis.location) in adopted}
+            for f in (*discovery.findings, *discovery.traces)
+            if (discovery.verdict in ("named", "class") and f in discovery.findings)
+            or (f.hypothesis.effect, f.hypothesis.location) in adopted
+        ],
+        "characteristics": characteristic_entries(answer.correlation),
+        "gap": None if gap is None else dict(vars(gap)),
+        "rating": answer.correlation.rating,
+        "mean_improvement_percent": answer.correlation.mean_improvement,
+        "seconds": seconds,
+    }
+
+
+def answer_lines(answer: Answer) -> list[str]:
+    """The first lines of a terminal: status, effects, gap."""
+    lines = [answer.assessment.line]
+    if answer.adoption is not None and answer.adoption.effects:
+        lines.append(f"Effects added: {', '.join(e.label for e in answer.adoption.effects)}")
+    gap = answer.gap
+    if gap is not None:
+        steps = [f"{gap.nominal:.2f} as handed in"]
+        if gap.tuned is not None:
+            steps.append(f"{gap.tuned:.2f} re-tuned without an effect")
+        steps.append(f"{gap.final:.2f} now")
+        lines.append(f"Deviation from the records: {' -> '.join(steps)} ({gap.noise_floor:.2f} is noise)")
+    return lines
