@@ -38,29 +38,34 @@ class Composite:
         self._k = len(targets.characteristics)
         self._objectives = ObjectiveTerms.of(targets.characteristics)
         self._constraints = ConstraintTerms.of(targets.characteristics)
+        self._limits = ConstraintTerms.limits(targets.characteristics)
         self._curves = CurveTerms.of(targets, mean, basis)
 
     def rating(self, h: FloatArray) -> FloatArray:
         """(p,) equation 2.2."""
         y, s = h[:, : self._k], h[:, self._k :]
-        return np.asarray(self._objectives.value(y) + self._constraints.value(y) + self._curves.value(s))
+        scalar = self._objectives.value(y) + self._constraints.value(y) + self._limits.value(y)
+        return np.asarray(scalar + self._curves.value(s))
 
     def gradient(self, h: FloatArray) -> FloatArray:
         """(p, m) derivative of the rating, corners rounded within a thousandth of Norm."""
         y, s = h[:, : self._k], h[:, self._k :]
-        return np.hstack([self._objectives.slope(y) + self._constraints.slope(y), self._curves.slope(s)])
+        scalar = self._objectives.slope(y) + self._constraints.slope(y) + self._limits.slope(y)
+        return np.hstack([scalar, self._curves.slope(s)])
 
     def expected(self, mean: FloatArray, variance: FloatArray) -> FloatArray:
         """(p,) expected rating of Gaussian outputs, mean (p, m), variance (m,) or (p, m)."""
         y, s = mean[:, : self._k], mean[:, self._k :]
         vy, vs = variance[..., : self._k], variance[..., self._k :]
         scalar = self._objectives.expected(y, vy) + self._constraints.expected(y, vy)
+        scalar = scalar + self._limits.expected(y, vy)
         return np.asarray(scalar + self._curves.expected(s, vs))
 
     def majorizer(self, mean: FloatArray, variance: FloatArray) -> Majorizer:
         """Of -expected(mean, variance)."""
         (y, s), (vy, vs) = self._parts(mean), self._parts(variance)
-        parts = [self._objectives.majorizer(y, vy), self._constraints.majorizer(y, vy)]
+        terms = (self._objectives, self._constraints, self._limits)
+        parts = [part.majorizer(y, vy) for part in terms]
         curvature, gradient, by_variance = (sum(p[i] for p in parts) for i in range(3))
         block, push, blur = self._curves.majorizer(s, vs)
         hessian = np.zeros((mean.size, mean.size))

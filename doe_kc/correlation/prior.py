@@ -10,6 +10,9 @@ from doe_kc.typing import FloatArray
 
 RIDGE = 1e-3
 """Rating per squared prior standard deviation: far below what any target is worth."""
+RIDGE_MEASURED = 0.02
+"""The same for a search on everything measured, where a deviation that is removed is worth 1: seventy
+variables at one standard deviation cost as much as 70 % of one characteristic's deviation."""
 
 
 @dataclass(frozen=True)
@@ -20,9 +23,9 @@ class Prior:
     weight: FloatArray
 
     @classmethod
-    def of(cls, start: FloatArray, prior_sd: FloatArray) -> Prior:
-        """RIDGE per squared prior sd (d,) about the start (d,)."""
-        return cls(start, RIDGE * prior_sd**-2.0)
+    def of(cls, start: FloatArray, prior_sd: FloatArray, ridge: float = RIDGE) -> Prior:
+        """`ridge` per squared prior sd (d,) about the start (d,)."""
+        return cls(start, ridge * prior_sd**-2.0)
 
     def cost(self, points: FloatArray) -> FloatArray:
         """(...,) rating given away at points (..., d)."""

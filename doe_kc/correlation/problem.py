@@ -11,7 +11,7 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
-from doe_kc.correlation.prior import Prior
+from doe_kc.correlation.prior import RIDGE, Prior
 from doe_kc.errors import RunError
 from doe_kc.targets import Rating, Score, Targets, rate, score
 from doe_kc.true_solver.outcome import Outcome
@@ -65,6 +65,11 @@ class Evaluated:
         return self.searched is not None and self.searched.feasible
 
     @property
+    def harmless(self) -> bool:
+        """Whether every limit of the search is met: nothing that was measured is harmed."""
+        return self.searched is not None and self.searched.harmless
+
+    @property
     def point(self) -> FloatArray:
         """(d,) where it lies."""
         return self.candidate.point
@@ -75,6 +80,7 @@ class Problem:
     """axle: the model that points are applied to. exact: whether its sensitivities can be had.
 
     targets: of the rating that is reported. sought: of the search; None where it works on the rating alone.
+    ridge: of its prior.
     likelihood: records and typed targets as data with errors.
     """
 
@@ -85,6 +91,7 @@ class Problem:
     windows: Mapping[str, float]
     exact: bool
     sought: Targets | None = None
+    ridge: float = RIDGE
 
     @property
     def search(self) -> Targets:
@@ -94,7 +101,7 @@ class Problem:
     @cached_property
     def prior(self) -> Prior:
         """What it costs to move variables away from where they start."""
-        return Prior.of(self.space.start, self.space.prior_sd)
+        return Prior.of(self.space.start, self.space.prior_sd, self.ridge)
 
     def linearize(self, point: FloatArray) -> Linearization:
         """Exact first-order expansion at a point (d,); RunError for a solver that gives none."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf, ndtr
 
-from doe_kc.targets import Constraint, Objective, Target
+from doe_kc.targets import LIMIT_WEIGHT, Constraint, Objective, Target
 from doe_kc.typing import FloatArray
 
 CORNER = 1e-3
@@ -108,6 +108,19 @@ class ConstraintTerms:
             np.array([c.high for c in filled]),
             np.array([c.linear for c in filled]) / norm,
             np.array([c.quadratic for c in filled]) / norm**2,
+            norm,
+        )
+
+    @classmethod
+    def limits(cls, targets: Sequence[Target]) -> ConstraintTerms:
+        """The limits as constraints."""
+        norm = np.array([t.scale for t in targets])
+        weight = np.array([LIMIT_WEIGHT if np.isfinite(t.limit) else 0.0 for t in targets])
+        return cls(
+            np.array([t.value - t.limit for t in targets]),
+            np.array([t.value + t.limit for t in targets]),
+            np.zeros(norm.size),
+            weight / norm**2,
             norm,
         )
 

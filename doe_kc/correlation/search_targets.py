@@ -28,11 +28,13 @@ SIGNIFICANT = 3.0
 """Standard deviations of a target within which a value does not differ from it."""
 ROUNDING = 1e-6
 """Share by which a limit lies beyond the baseline's own distance: the baseline meets its holds."""
-MISFIT_WEIGHT = 1.0
+MISFIT_WEIGHT = 2.0
 """Of the mean squared residual, 1 for noise alone: a fit that doubles it gives away as much as one objective
 that is missed by its own size, and hitting all characteristics exactly costs a few hundredths."""
 SMALL = 0.01
 """Share of the interval's measure below which no deviation is worth removing: exact targets have no noise."""
+STILL = 0.02
+"""Share of the interval's measure, a seventh of the interval, that what is not worked on may move."""
 NOT_COUNTED = Objective(linear=0.0, quadratic=0.0)
 
 
@@ -49,6 +51,11 @@ def hold_rms(curve: CurveTarget, baseline: float) -> float:
     middle = curve.curve - curve.curve.mean(axis=1, keepdims=True)
     own = SHARE * float(np.sqrt(np.mean(middle**2)))
     return max(own, SIGNIFICANT * curve.noise, baseline) * (1.0 + ROUNDING)
+
+
+def still_rms(curve: CurveTarget, baseline: float) -> float:
+    """The same of a curve that is not worked on: it stays where it is."""
+    return max(SIGNIFICANT * curve.noise, STILL * curve.objective.norm, baseline) * (1.0 + ROUNDING)
 
 
 def search_targets(
@@ -77,7 +84,7 @@ def search_targets(
         return replace(
             curve,
             objective=own or replace(NOT_COUNTED, norm=curve.objective.norm),
-            limit=hold_rms(curve, rms) if curve.hold else math.inf,
+            limit=math.inf if not curve.hold else hold_rms(curve, rms) if own else still_rms(curve, rms),
         )
 
     return replace(
@@ -124,41 +131,36 @@ def _searched(
 ) -> Target:
     counted = target.objective
     if counted is None and objective == "measured" and not target.excluded:
-        counted = Objective(norm=_norm(target))
+        counted = Objective(norm=target.scale)
     if counted is not None and objective == "measured" and counted.goal == "target":
         counted = replace(counted, norm=min(counted.norm, _deviation(target, baseline)))
     constraint = target.constraint
     if target.entry.id in relaxed:
         counted = None
         constraint = constraint and _widened(constraint, target.value, relaxed[target.entry.id])
-    if target.hold:
-        constraint = _held(target, constraint, hold_distance(target, baseline))
-    return replace(target, objective=counted, constraint=constraint)
+    worked_on = counted is not None or constraint is not None
+    distance = hold_distance(target, baseline) if worked_on else _still(target, baseline)
+    return replace(
+        target,
+        objective=counted,
+        constraint=constraint,
+        limit=distance if target.hold else math.inf,
+    )
+
+
+def _still(target: Target, baseline: float) -> float:
+    """Limit of what is not worked on at all: it stays where it is, rather than anywhere in its interval."""
+    floor = max(SIGNIFICANT * target.sd, STILL * target.scale)
+    return max(floor, abs(baseline - target.value)) * (1.0 + ROUNDING)
 
 
 def _deviation(target: Target, baseline: float) -> float:
     """What there is to remove: the baseline's distance, or what is significant where that is less."""
-    floor = max(SIGNIFICANT * target.sd, SMALL * _norm(target))
+    floor = max(SIGNIFICANT * target.sd, SMALL * target.scale)
     return max(abs(baseline - target.value), floor)
-
-
-def _norm(target: Target) -> float:
-    """sqrt(target^2 + 0.005), the measure of the constraint interval."""
-    low, high = constraint_interval(target.value)
-    return (high - low) / (2.0 * SHARE)
 
 
 def _widened(constraint: Constraint, target: float, distance: float) -> Constraint:
     return replace(
         constraint, low=min(constraint.low, target - distance), high=max(constraint.high, target + distance)
     )
-
-
-def _held(target: Target, constraint: Constraint | None, distance: float) -> Constraint:
-    """The constraint within the hold. An interval that the study moved off the target is not cut."""
-    low, high = target.value - distance, target.value + distance
-    if constraint is None:
-        return Constraint(low=low, high=high, norm=_norm(target))
-    if not constraint.low <= target.value <= constraint.high:
-        return constraint
-    return replace(constraint, low=max(low, constraint.low), high=min(high, constraint.high))

@@ -27,12 +27,10 @@ class Walls:
 
     @classmethod
     def of(cls, targets: Targets) -> Walls:
-        """One for every constraint."""
-        limits = [
-            (row, t.constraint.low, t.constraint.high)
-            for row, t in zip(targets.rows, targets.characteristics, strict=True)
-            if t.constraint is not None
-        ]
+        """One for every constraint, and one for every limit."""
+        pairs = list(zip(targets.rows, targets.characteristics, strict=True))
+        limits = [(r, t.constraint.low, t.constraint.high) for r, t in pairs if t.constraint is not None]
+        limits += [(r, t.value - t.limit, t.value + t.limit) for r, t in pairs if np.isfinite(t.limit)]
         rows, low, high = (np.array(column) for column in zip(*limits, strict=True)) if limits else [()] * 3
         lower, upper = np.array(low, dtype=float), np.array(high, dtype=float)
         half = (upper - lower) / 2.0

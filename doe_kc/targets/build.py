@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
-from doe_kc.comparison.interval import FLOOR, constraint_interval
+from doe_kc.comparison.interval import constraint_interval
 from doe_kc.curves import RIG_RESPONSES, CaseCurves
 from doe_kc.errors import InputError
 from doe_kc.measurement import Measurement
@@ -146,7 +146,7 @@ def _value(
 def _target(
     entry: Characteristic, value: float, sd: float, own: Sequence[CharacteristicOptions], source: str
 ) -> Target:
-    scale = math.sqrt(value**2 + FLOOR)
+    scale = Target(entry=entry, value=value, sd=sd).scale
     objective = Objective(
         goal=first(last(own, "goal"), "target"),
         linear=first(last(own, "linear"), 1.0),

@@ -16,8 +16,8 @@ from doe_kc.targets.score import Score
 from doe_kc.targets.target import Constraint, Objective, Targets
 from doe_kc.typing import FloatArray
 
-LIMIT_WEIGHT = 1e4
-"""QuadWt of a curve's limit: that of a constraint."""
+LIMIT_WEIGHT = 1e5
+"""QuadWt of a limit: ten times that of a constraint, which is not to be met at the cost of what was right."""
 
 
 @dataclass(frozen=True)
@@ -25,14 +25,16 @@ class Rating:
     """A design's rating and its terms, all of them summed in `total`.
 
     objectives, constraints: (k,) of the characteristics, 0 without one. curves: (c,), the price of limits
-    among them. violation: (k,) ConViol in the characteristic's unit, 0 where met. excess: (c,) RMS beyond
-    its limit in the response's unit. misfit: term of the records as data.
+    among them. violation: (k,) ConViol in the characteristic's unit, 0 where met. beyond: (k,) distance from
+    the target beyond its limit. excess: (c,) RMS beyond its limit in the response's unit. misfit: term of
+    the records as data.
     """
 
     objectives: FloatArray
     constraints: FloatArray
     curves: FloatArray
     violation: FloatArray
+    beyond: FloatArray
     excess: FloatArray
     misfit: float = 0.0
 
@@ -43,14 +45,20 @@ class Rating:
 
     @property
     def feasible(self) -> bool:
-        """Whether every constraint is met, and every curve within its limit."""
-        return not self.violation.any() and not self.excess.any()
+        """Whether every constraint and limit is met."""
+        return not self.violation.any() and self.harmless
+
+    @property
+    def harmless(self) -> bool:
+        """Whether every limit is met."""
+        return not self.beyond.any() and not self.excess.any()
 
 
 def rate(targets: Targets, found: Score) -> Rating:
     """Rating of one design from its values and RMS deviations; nan values give nan."""
     pairs = list(zip(targets.characteristics, found.values, strict=True))
     violation = np.array([0.0 if t.constraint is None else violated(t.constraint, v) for t, v in pairs])
+    beyond = np.array([max(0.0, abs(v - t.value) - t.limit) for t, v in pairs])
     lines = list(zip(targets.curves, found.rms, strict=True))
     excess = np.array([max(0.0, rms - t.limit) for t, rms in lines])
     return Rating(
@@ -59,8 +67,9 @@ def rate(targets: Targets, found: Score) -> Rating:
         ),
         constraints=np.array(
             [
-                0.0 if t.constraint is None else constraint_term(t.constraint, x)
-                for (t, _), x in zip(pairs, violation, strict=True)
+                (0.0 if t.constraint is None else constraint_term(t.constraint, x))
+                - LIMIT_WEIGHT * (b / t.scale) ** 2
+                for (t, _), x, b in zip(pairs, violation, beyond, strict=True)
             ]
         ),
         curves=np.array(
@@ -70,6 +79,7 @@ def rate(targets: Targets, found: Score) -> Rating:
             ]
         ),
         violation=violation,
+        beyond=beyond,
         excess=excess,
         misfit=-targets.misfit.weight * found.misfit if targets.misfit is not None else 0.0,
     )

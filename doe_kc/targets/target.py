@@ -10,6 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
+from doe_kc.comparison.interval import FLOOR
 from doe_kc.curves import CurveSet
 from doe_kc.targets.options import Goal
 from doe_kc.typing import FloatArray
@@ -50,7 +51,8 @@ class Target:
 
     objective, constraint: its terms of the rating. excluded: the study takes it out of the objectives, so
     that a search on everything that was measured leaves it out too. hold: whether a search must not move it
-    away from the target. relax: whether its interval may be widened to what the bounds allow.
+    away from the target. limit: distance from the target beyond which a search pays LIMIT_WEIGHT. relax:
+    whether its interval may be widened to what the bounds allow.
     """
 
     entry: Characteristic
@@ -60,7 +62,13 @@ class Target:
     constraint: Constraint | None = None
     excluded: bool = False
     hold: bool = True
+    limit: float = math.inf
     relax: bool = True
+
+    @property
+    def scale(self) -> float:
+        """sqrt(target^2 + 0.005), the measure of the constraint interval (equation 5.1), in its unit."""
+        return math.sqrt(self.value**2 + FLOOR)
 
     @property
     def active(self) -> bool:
@@ -74,7 +82,7 @@ class CurveTarget:
 
     input: (n,) load-case input in `input_unit`. curve: (2, n) left and right, response's unit. noise: its
     RMS standard deviation, below which two curves do not differ. limit: RMS deviation beyond which a search
-    pays a constraint's price, in the response's unit. excluded, hold: as of `Target`.
+    pays LIMIT_WEIGHT, in the response's unit. excluded, hold: as of `Target`.
     """
 
     load_case: str

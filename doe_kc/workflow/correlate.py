@@ -16,6 +16,7 @@ from doe_kc.correlation.linearization import Linearization, linearize
 from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import Method, Settings, method_class
 from doe_kc.correlation.posterior import Posterior, posterior
+from doe_kc.correlation.prior import RIDGE, RIDGE_MEASURED
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.result import Correlation
@@ -139,7 +140,8 @@ def sought_problem(
         misfit=None if expansion is None else misfit_term(likelihood, problem.space, start, expansion),
         curves=curves,
     )
-    return replace(problem, sought=sought, likelihood=likelihood), relaxed
+    ridge = RIDGE_MEASURED if study.correlation.objective == "measured" else RIDGE
+    return replace(problem, sought=sought, likelihood=likelihood, ridge=ridge), relaxed
 
 
 def start_expansion(problem: Problem, start: Outcome) -> Linearization | None:

@@ -53,8 +53,11 @@ class Method(ABC):
 
 def best_design(history: Sequence[Evaluated]) -> int:
     """Place of the best merit, the earlier one of equals, among the designs that meet every constraint and
-    hold; among all of them where none does."""
-    return max(range(len(history)), key=lambda i: (history[i].feasible, history[i].merit, -i))
+    limit; where none does, among those that harm nothing, else among all."""
+    return max(
+        range(len(history)),
+        key=lambda i: (history[i].feasible, history[i].harmless, history[i].merit, -i),
+    )
 
 
 METHODS: dict[str, type[Method]] = {}
