@@ -43,16 +43,26 @@ class Posterior:
         return np.asarray(self.sd <= VISIBLE * self.prior)
 
 
-def posterior(jacobian: FloatArray, prior: FloatArray, residual: FloatArray, point: FloatArray) -> Posterior:
-    """Posterior of d variables at point (d,) from the whitened residual (M,), its Jacobian (M, d) and the
-    prior sd (d,)."""
-    misfit = max(1.0, float(np.sqrt(np.mean(residual**2)))) if residual.size else 1.0
+def posterior(
+    jacobian: FloatArray,
+    prior: FloatArray,
+    *,
+    residual: FloatArray | None = None,
+    point: FloatArray | None = None,
+) -> Posterior:
+    """Posterior of d variables from the whitened Jacobian (M, d) and the prior sd (d,).
+
+    residual: (M,) whitened, by default noise. point: (d,) the design, by default between all bounds.
+    """
+    left = np.zeros(len(jacobian)) if residual is None else residual
+    at = np.full(prior.size, 0.5) if point is None else point
+    misfit = max(1.0, float(np.sqrt(np.mean(left**2)))) if left.size else 1.0
     weighted = jacobian / misfit
     hessian = weighted.T @ weighted + np.diag(prior**-2.0)
     covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(prior.size)))
     sd = np.sqrt(np.diag(covariance))
-    at_bound = np.where(point <= AT_BOUND, -1, np.where(point >= 1.0 - AT_BOUND, 1, 0))
-    slope = weighted.T @ (residual / misfit)
+    at_bound = np.where(at <= AT_BOUND, -1, np.where(at >= 1.0 - AT_BOUND, 1, 0))
+    slope = weighted.T @ (left / misfit)
     pushed = zip(at_bound, slope, sd, strict=True)
     inward = np.array([_inward(-float(b * s), float(e)) if b else np.nan for b, s, e in pushed])
     return Posterior(sd, prior, covariance / np.outer(sd, sd), misfit, at_bound, inward)

@@ -10,7 +10,6 @@ from doe_kc.axle.schema import Finite, Pair, Strict
 
 Levels = Annotated[int, Field(ge=2, le=1_000_001)] | Literal["continuous"]
 Distribution = Literal["uniform", "gaussian"]
-DEFAULT_LEVELS = 101
 
 
 class Change(Strict):
@@ -48,6 +47,6 @@ class VariableOptions(Strict):
 
     use: list[str] | Literal["selection"] = Field(default=["*"])
     leave_out: list[str] = Field(default=[])
-    levels: Levels = DEFAULT_LEVELS
+    levels: Levels = "continuous"
     distribution: Distribution = "uniform"
     change: list[Change] = Field(default=[])

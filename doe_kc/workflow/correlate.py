@@ -297,7 +297,7 @@ def posterior_at(problem: Problem, expansion: Linearization | None, best: Evalua
         return None
     jacobian = problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
     residual = problem.likelihood.residual(best.outcome.curves, best.outcome.characteristics)
-    return posterior(jacobian, problem.space.prior_sd, residual, best.point)
+    return posterior(jacobian, problem.space.prior_sd, residual=residual, point=best.point)
 
 
 def notes_on(

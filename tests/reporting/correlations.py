@@ -8,7 +8,7 @@ from functools import lru_cache
 import numpy as np
 
 from doe_kc.axle import read_axle
-from doe_kc.correlation.likelihood import build_likelihood
+from doe_kc.correlation.likelihood import Likelihood, build_likelihood
 from doe_kc.correlation.loop import Run, run_method
 from doe_kc.correlation.methods import METHODS, Settings
 from doe_kc.correlation.posterior import Posterior, posterior
@@ -110,7 +110,7 @@ def typed() -> Correlation:
     ]
     targets = build_targets(axle, None, wanted, [], source="test")
     space = build_space(axle, VariableOptions.model_validate({"use": ["RIB.z", "ROB.z"]}), "test")
-    case = Problem(axle=axle, space=space, targets=targets, likelihood=None, windows={}, exact=False)
+    case = Problem(axle=axle, space=space, targets=targets, likelihood=Likelihood((), ()), windows={}, exact=False)
     bare = replace(first, curves=None)
     moved = outcome(axle, space.values(np.array([0.75, 0.5])))
     runs = (
