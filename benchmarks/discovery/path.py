@@ -71,7 +71,7 @@ class Bench:
         x, z = self._static.x, self._static.z
         kept = []
         for branch in branches:
-            values = {"preload": self._static.pads.preload, **case.controls(branch, self._static.pads)}
+            values = {"preload": self._static.datum.preload, **case.controls(branch, self._static.datum)}
             u = control_matrix(self._kernel, {**values, "friction": 1.0}, branch.size)
             start = Start(branch[:1], x[None, :], u[0], z)
             full = "hold_wheel_centre" in values

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.errors import RunError
-from doe_kc.solver.load_cases import LoadCase, StaticPads
+from doe_kc.solver.load_cases import Datum, LoadCase
 from doe_kc.solver.march import Path
 from doe_kc.typing import FloatArray
 
@@ -57,7 +57,7 @@ class StaticState:
     u: FloatArray
     z: FloatArray
     y: FloatArray
-    pads: StaticPads
+    datum: Datum
 
 
 @dataclass(frozen=True)

@@ -107,12 +107,12 @@ class _Differentiator:
         return dx[0], dy[0], dz
 
     def _static_state(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Derivatives of the static state and of its datum (pads, wheel-centre heights, preload)."""
+        """Derivatives of the static state and of its datum as in `DATUM`."""
         k, s, count = self._kernel, self._static, len(self._paths)
         no_z, no_du = np.zeros((k.nz, count)), np.zeros((k.nu, count))
         z0 = np.zeros(k.nz)
         dx0, _, _ = self._point(s.x0, s.u0, z0, no_du, no_z)
-        raised = np.array([internal_gradient(self._axle, p).get("ride_height", 0.0) for p in self._paths])
+        raised = self._change_of("ride_height")
         du = no_du.copy()
         for control, unknown, shift in (
             ("pad_L", "pad L", raised),
@@ -124,7 +124,12 @@ class _Differentiator:
         heights = [dy[self._outputs.index(f"wc_z@{side}")] for side in ("L", "R")]
         pads = [du[k.equations.control_names.index(f"pad_{side}")] for side in ("L", "R")]
         preload = du[k.equations.control_names.index("preload")]
-        return dx, dy, dz, np.array([*pads, *heights, preload])
+        dimensions = [-self._change_of("WLC.y@L"), self._change_of("steering.rack_mm_per_rev")]
+        return dx, dy, dz, np.array([*pads, *heights, preload, *dimensions])
+
+    def _change_of(self, internal: str) -> FloatArray:
+        """(np,) d(internal value) / d(path)."""
+        return np.array([internal_gradient(self._axle, p).get(internal, 0.0) for p in self._paths])
 
     def _case(
         self,
@@ -141,7 +146,7 @@ class _Differentiator:
         for branch in branches:
             if not (loop and out):
                 dz, dy_start = dz0, dy0
-            du = control_gradient(self._kernel, case, branch.input, self._static.pads) @ datum
+            du = control_gradient(self._kernel, case, branch.input, self._static.datum) @ datum
             _, dy, dz = self._points(branch.x[1:], branch.u[1:], branch.z[:-1], du[1:], dz)
             out.append(np.array([dy_start, *dy]))
             dy_start = dy[-1]

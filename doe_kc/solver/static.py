@@ -7,7 +7,7 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.kernel import Kernel
-from doe_kc.solver.load_cases import StaticPads
+from doe_kc.solver.load_cases import Datum
 from doe_kc.solver.march import Path, Settings, Start, march
 from doe_kc.solver.result import StaticState
 from doe_kc.typing import FloatArray
@@ -50,9 +50,11 @@ def static_state(
         return raised
     names = kernel.equations.output_names
     read = {n: raised.y[0][names.index(n)] for n in names}
-    datum = StaticPads(
+    datum = Datum(
         pad=pads,
         wheel_centre_z=(read["wc_z@L"], read["wc_z@R"]),
         preload=preload,
+        half_track=axle.half_track,
+        rack_mm_per_rev=axle.rack_mm_per_rev,
     )
     return StaticState(x0, u0[0], raised.x[0], u[0], raised.z[0], raised.y[0], datum)

@@ -139,7 +139,7 @@ def _solve_case(
     done: list[BranchSolution] = []
     full = False
     for name, inputs in branch_inputs(case, loop=loop).items():
-        values = {"preload": static.pads.preload, **case.driven(inputs, static.pads)}
+        values = {"preload": static.datum.preload, **case.driven(inputs, static.datum)}
         if loop:
             values["friction"] = 1.0
         full = "hold_wheel_centre" in values

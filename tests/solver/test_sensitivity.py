@@ -104,6 +104,21 @@ def test_friction_free(free: tuple[Axle, Sensitivities], path: str) -> None:
     assert ratio < 1e-5, where
 
 
+@pytest.mark.parametrize("path", ["steering.rack_mm_per_rev", "WLC.y", "right.WLC.y"])
+@pytest.mark.parametrize("friction", [False, True])
+def test_dimensions_that_load_cases_use(path: str, *, friction: bool) -> None:
+    """The rack's travel per turn, and the lever of pads that roll by an angle."""
+    axle = apply_effect(short(nominal()), "roll_technique", {}, source="test")
+    axle = replace(axle, load_cases={i: axle.load_cases[i] for i in ("roll", "steer")})
+    if friction:
+        axle = apply_effect(axle, "steering_friction", {}, source="test")
+    exact = sensitivities(axle, tight(axle), [path])
+    ratio, where = worst(axle, exact, path)
+    assert ratio < 1e-5, where
+    case = "roll" if path == "WLC.y" else "steer"
+    assert path == "right.WLC.y" or np.abs(exact.branches[case][0][:, :, 0]).max() > 0.01
+
+
 LOOPS = {
     "dahl": [("steering_friction", {}), ("strut_friction", {})],
     "iwan": [("steering_friction", {"law": "iwan"}), ("strut_friction", {"law": "iwan"})],
