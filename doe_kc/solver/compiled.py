@@ -77,11 +77,13 @@ class CompiledKernel:
         settings: _march.Settings,
     ) -> _march.Path:
         """See `march.march`."""
+        from doe_kc.solver.march import Halt
         from doe_kc.solver.march import Path as Marched
 
         n = len(s)
         x, z = np.zeros((n, kernel.nx)), np.zeros((n, kernel.nz))
-        y, level, r = np.zeros((n, kernel.ny)), np.zeros(n), np.zeros(kernel.nx)
+        y, level = np.zeros((n, kernel.ny)), np.zeros(n)
+        end = np.zeros(2 + kernel.nu + kernel.nz + kernel.nx)
         iterations, counts = np.zeros(n, dtype=np.int32), np.zeros(4, dtype=np.int64)
         tail = kernel.tail_controls
         inputs = [np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)]
@@ -96,14 +98,20 @@ class CompiledKernel:
             ctypes.c_int(settings.max_halvings),
             ctypes.c_longlong(self.size_iw),
             ctypes.c_longlong(self.size_w),
+            ctypes.c_int(start.guess),
             ctypes.c_int(len(s_known)),
             *(_pointer(a) for a in (s_known, x_known, u_start, z_start)),
             ctypes.c_int(n),
-            *(_pointer(a) for a in (s_in, u_in, x, z, y, iterations, level, r, counts)),
+            *(_pointer(a) for a in (s_in, u_in, x, z, y, iterations, level, end, counts)),
         )
         if code < 0:
             raise MemoryError("the solver could not allocate its working memory")
-        return Marched(x, z, y, iterations, level, r, code - 1 if code else None, counts)
+        if not code:
+            return Marched(x, z, y, iterations, level, None, counts)
+        (s_end, snap), rest = end[:2], end[2:]
+        u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
+        halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
+        return Marched(x, z, y, iterations, level, code - 1, counts, halt)
 
 
 def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:
