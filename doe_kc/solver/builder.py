@@ -97,6 +97,7 @@ class Builder:
     constants: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
     controls: dict[str, ca.SX] = field(default_factory=dict)
     states: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
+    slips: list[str] = field(default_factory=list)
     outputs: dict[str, ca.SX] = field(default_factory=dict)
     probes: list[tuple[Probe, ca.SX, Response]] = field(default_factory=list)
 
@@ -157,8 +158,9 @@ class Builder:
         self.multipliers.append((Unknown(name, joint, LENGTH_SCALE), force, violation - compliance * force))
         return force
 
-    def state(self, previous: ca.SX, following: ca.SX) -> None:
-        """Path-dependent state: symbols of its previous value, expression of the next."""
+    def state(self, freedom: str, previous: ca.SX, following: ca.SX) -> None:
+        """Path-dependent state of a motion (mm): symbols of its previous value, expression of the next."""
+        self.slips.append(freedom)
         self.states.append((ca.vec(previous), ca.vec(following)))
 
     def tail_unknown(self, name: str, joint: str, scale: float) -> ca.SX:

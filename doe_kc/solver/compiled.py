@@ -85,7 +85,7 @@ class CompiledKernel:
         y, level = np.zeros((n, kernel.ny)), np.zeros(n)
         end = np.zeros(2 + kernel.nu + kernel.nz + kernel.nx)
         iterations, counts = np.zeros(n, dtype=np.int32), np.zeros(4, dtype=np.int64)
-        tail = kernel.tail_controls
+        tail, slips = kernel.tail_controls, kernel.slips
         inputs = [np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)]
         s_known, x_known, u_start, z_start, s_in, u_in, c_in = inputs
         code = self.library.march(
@@ -99,6 +99,8 @@ class CompiledKernel:
             ctypes.c_longlong(self.size_iw),
             ctypes.c_longlong(self.size_w),
             ctypes.c_int(start.guess),
+            ctypes.c_int(len(slips)),
+            _pointer(slips),
             ctypes.c_int(len(s_known)),
             *(_pointer(a) for a in (s_known, x_known, u_start, z_start)),
             ctypes.c_int(n),

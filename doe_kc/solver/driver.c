@@ -13,12 +13,14 @@ int outputs(const double **, double **, integer *, double *, int);
 int state_update(const double **, double **, integer *, double *, int);
 
 #define HISTORY 4
-#define NEAR 0.1                /* of the predicted step: see march.py for these six */
+#define NEAR 0.1                /* of the predicted step: see march.py for these eight */
 #define SMOOTH 0.03
 #define GROWTH 2.0
 #define CORNER 0.5              /* mm */
 #define UNSEEN 0.02             /* mm */
 #define RETURN 0.01
+#define SLIP 2e-3               /* mm */
+#define ONWARD 1e-3
 #define STALL_LEVEL 1e-4        /* N: rounding of very stiff parts keeps the residual from falling below */
 #define STALL_STEP 1e-10        /* mm, Gibbs units: a step that no longer moves anything */
 
@@ -197,20 +199,47 @@ static int returns(problem *p, const double *x, double far, const double *last, 
     return !bad && distance(back, last, p->scale, coordinates) <= RETURN * far;
 }
 
+/* Whether a motion under friction reverses inside a step from `last` to x. previous: the equilibrium before
+   `last`, or NULL; ratio: this step's length over that one's. */
+static int slips_back(problem *p, int slips, const int *slip, const double *x, const double *guessed,
+                      const double *last, const double *previous, double ratio, const double *u_from,
+                      const double *u, const double *z, double *on, double *following) {
+    int doubtful = 0;
+    for (int j = 0; j < slips; j++) {
+        int i = slip[j];
+        double slid = x[i] - last[i], before = previous ? (last[i] - previous[i]) * ratio : 0.0;
+        if (fabs(slid) <= SLIP) continue;
+        if (slid * before < 0.0) return 1;
+        if (fabs(slid) < 0.5 * fabs(before) || fabs(x[i] - guessed[i]) > SLIP) doubtful = 1;
+    }
+    if (!doubtful) return 0;
+    for (int i = 0; i < p->nu; i++) on[i] = u[i] + ONWARD * (u[i] - u_from[i]);
+    memcpy(following, x, sizeof(double) * p->n);
+    with_tail(p, following, on);
+    p->have_lu = 0;
+    step_from(p, following, on, z);
+    for (int j = 0; j < slips; j++) {
+        int i = slip[j];
+        double slid = x[i] - last[i], ahead = (following[i] - x[i]) / ONWARD;
+        if (fabs(slid) > SLIP && slid * ahead < 0.0 && fabs(ahead) > SLIP) return 1;
+    }
+    return 0;
+}
+
 /* Returns 0, or 1 + index of the step that failed. history: `known` points, newest last; with `guess` its
    only point is no equilibrium. end: the last equilibrium's s, u, z and x, and how far off a solution was. */
 int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
           const int *tail_control, const double *scale, const double *c, double tol, double refresh,
-          int max_iterations, int max_halvings, integer size_iw, integer size_w, int guess,
+          int max_iterations, int max_halvings, integer size_iw, integer size_w, int guess, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
           int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
           int *iterations_out, double *level_out, double *end, long long *counts) {
     problem p = {n, active, nu, nz, ny, row, col, nnz, tail_control, scale, c, tol, refresh,
                  max_iterations, max_halvings};
-    double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, snap = 0.0, wish = 1.0;
+    double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, *u_on, snap = 0.0, wish = 1.0;
     int points = known < HISTORY ? known : HISTORY, failed = 0, coordinates = 0;
     double finest = ldexp(1.0, -max_halvings) * (1.0 + 1e-9);
-    size_t doubles = size_w + 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 2 * nu;
+    size_t doubles = size_w + 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
     memory = malloc(sizeof(double) * doubles);
     p.iw = malloc(sizeof(integer) * (size_iw + 1));
     p.pivot = malloc(sizeof(int) * n);
@@ -229,7 +258,8 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     u_now = m; m += nu;
     u_next = m; m += nu;
     guessed = m; m += n;
-    back = m;
+    back = m; m += n;
+    u_on = m;
     while (coordinates < n && scale[coordinates] >= 1.0) coordinates++;
     for (int i = 0; i < points; i++) {
         hs[i] = s_known[known - points + i];
@@ -282,6 +312,11 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
                     snap = gap;
                     bad = 1;
                 }
+            }
+            if (!bad && slips && part > finest) {
+                const double *previous = points > 1 ? last - n : NULL;
+                double ratio = points > 1 ? (at - hs[points - 1]) / (hs[points - 1] - hs[points - 2]) : 0.0;
+                bad = slips_back(&p, slips, slip, x, guessed, last, previous, ratio, u_now, u_next, z, u_on, back);
             }
             if (bad) {
                 p.have_lu = 0;

@@ -32,6 +32,10 @@ CORNER = 0.5
 (contact, lift-off, reversal of friction); the way back must then end where the step began."""
 UNSEEN = 0.02
 """mm, and 1/100 Gibbs unit: a distance that needs no explanation."""
+SLIP = 2e-3
+"""mm; a motion under friction that is shorter may reverse unseen."""
+ONWARD = 1e-3
+"""Part of a step, on which the tangent at its end is measured."""
 RETURN = 0.01
 """Over the step, or over its distance from the prediction: how near the way back must come."""
 
@@ -116,6 +120,7 @@ class _Marcher:
         self._out, self._state = (Buffered(kernel.functions[n]) for n in ("outputs", "state_update"))
         self._hs, self._hx = list(start.s[-HISTORY:]), [np.array(x) for x in start.x[-HISTORY:]]
         self._u, self._z = np.array(start.u), np.array(start.z)
+        self._slips = kernel.slips
         self._snap, self._smooth, self._part = 0.0, True, 1.0
 
     def run(self, s: FloatArray, u: FloatArray) -> Path:
@@ -151,7 +156,10 @@ class _Marcher:
                 reached = self._newton.equilibrium(last, u, self._z)
                 total += reached.iterations
             level = reached.level
-            if not (reached.converged and self._continues(predicted, reached, at)):
+            sound = reached.converged and self._continues(predicted, reached, at)
+            if sound and len(self._slips) and part > self._finest:
+                sound = not self._slips_back(predicted, reached.x, at, u)
+            if not sound:
                 self._newton.forget()
                 if part <= self._finest:
                     return False, total, level
@@ -194,6 +202,26 @@ class _Marcher:
             return True
         self._snap = gap
         return False
+
+    def _slips_back(self, predicted: FloatArray, x: FloatArray, at: float, u: FloatArray) -> bool:
+        """Whether a motion under friction reverses inside a step: its laws hold over monotone motion."""
+        slid = (x - self._hx[-1])[self._slips]
+        steady = np.abs(slid) <= SLIP
+        before = np.zeros_like(slid)
+        if len(self._hs) > 1:
+            ratio = (at - self._hs[-1]) / (self._hs[-1] - self._hs[-2])
+            before = (self._hx[-1] - self._hx[-2])[self._slips] * ratio
+        if np.any(~steady & (slid * before < 0.0)):
+            return True
+        slows = np.abs(slid) < 0.5 * np.abs(before)
+        corner = np.abs(x - predicted)[self._slips] > SLIP
+        if not np.any(~steady & (slows | corner)):
+            return False
+        on = u + ONWARD * (u - self._u)
+        self._newton.forget()
+        following = self._newton.step_from(self._newton.with_tail(x.copy(), on), on, self._z)
+        ahead = (following - x)[self._slips] / ONWARD
+        return bool(np.any(~steady & (slid * ahead < 0.0) & (np.abs(ahead) > SLIP)))
 
     def _longest(self, at: float) -> float:
         """mm that the path may go on to `at`, from what it went before."""
