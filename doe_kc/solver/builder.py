@@ -49,12 +49,17 @@ def body(name: str, design: ca.SX, origin: ca.SX, gibbs: ca.SX) -> Body:
 
 @dataclass(frozen=True)
 class Freedom:
-    """One motion that a joint leaves free; its row is axis . (force or moment) - resistance = 0."""
+    """One motion that a joint leaves free; its row is axis . (force or moment) - resistance = 0.
+
+    compliance: factor on the first term, so that resistance is what the joint would offer at compliance 1
+    and a joint without any does not move. It is a number of the axle's, not of the equilibrium.
+    """
 
     name: str
     symbol: ca.SX
     axis: ca.SX
     rotates: bool
+    compliance: ca.SX | float = 1.0
 
 
 @dataclass(frozen=True)

@@ -227,13 +227,15 @@ static int slips_back(problem *p, int slips, const int *slip, const double *x, c
 }
 
 /* Returns 0, or 1 + index of the step that failed. history: `known` points, newest last; with `guess` its
-   only point is no equilibrium. end: the last equilibrium's s, u, z and x, and how far off a solution was. */
+   only point is no equilibrium. end: the last equilibrium's s, u, z and x, and how far off a solution was.
+   between: with friction, `passed` rows of step, share, u, x, z of every equilibrium, at most `capacity`. */
 int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
           const int *tail_control, const double *scale, const double *c, double tol, double refresh,
           int max_iterations, int max_halvings, integer size_iw, integer size_w, int guess, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
           int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
-          int *iterations_out, double *level_out, double *end, long long *counts) {
+          int *iterations_out, double *level_out, double *end, long long *counts,
+          int capacity, double *between, int *passed) {
     problem p = {n, active, nu, nz, ny, row, col, nnz, tail_control, scale, c, tol, refresh,
                  max_iterations, max_halvings};
     double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, *u_on, snap = 0.0, wish = 1.0;
@@ -325,6 +327,15 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
                 continue;
             }
             if (nz) {
+                if (*passed < capacity) {
+                    double *row = between + (size_t)*passed * (2 + nu + n + nz);
+                    row[0] = step;
+                    row[1] = to;
+                    memcpy(row + 2, u_next, sizeof(double) * nu);
+                    memcpy(row + 2 + nu, x, sizeof(double) * n);
+                    memcpy(row + 2 + nu + n, z, sizeof(double) * nz);
+                }
+                ++*passed;
                 const double *arg[4] = {x, c, u_next, z};
                 double *result[1] = {z_out + (size_t)step * nz};
                 state_update(arg, result, p.iw, p.w, 0);

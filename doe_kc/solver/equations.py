@@ -49,7 +49,8 @@ def _balance(b: Builder) -> tuple[list[Unknown], list[ca.SX], list[ca.SX]]:
         child, parent = joint.child, joint.parent
         force, moment = b.wrenches.get(child.name, (ca.SX.zeros(3), ca.SX.zeros(3)))
         rows[joint.label] = [
-            ca.dot(f.axis, moment if f.rotates else force) - b.resistances.get(f.name, ca.SX(0))
+            f.compliance * ca.dot(f.axis, moment if f.rotates else force)
+            - b.resistances.get(f.name, ca.SX(0))
             for f in joint.freedoms
         ]
         if parent is not None:

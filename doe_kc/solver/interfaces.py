@@ -125,6 +125,8 @@ def _branch(
     """Of all rows; the first is where the branch starts, under its own controls."""
     du = control_gradient(found.kernel, case, branch.input, static.datum)[..., :AT_REST]
     before = np.vstack([branch.z[:1], branch.z[:-1]])
+    if (inside := branch.path.between) is not None:
+        before[1:] = inside.z[inside.share == 1.0]
     steps = [found.at(x, u, z, d) for x, u, z, d in zip(branch.x, branch.u, before, du, strict=True)]
     return _stacked(steps, len(found.probes))
 

@@ -56,11 +56,33 @@ class Halt:
 
 
 @dataclass(frozen=True)
+class Substeps:
+    """Every equilibrium that a march of an axle with friction went through, those inside steps included.
+
+    step: (m,) index of the step; share: (m,) of it, 1 at its end; u: (m, nu), x: (m, nx); z: (m, nz) friction
+    states before.
+    """
+
+    step: np.ndarray
+    share: FloatArray
+    u: FloatArray
+    x: FloatArray
+    z: FloatArray
+
+
+def substeps(kernel: Kernel, rows: FloatArray) -> Substeps:
+    """From rows (m, 2 + nu + nx + nz) of step, share, u, x, z."""
+    step, share, u, x, z = np.split(rows, np.cumsum([1, 1, kernel.nu, kernel.nx]), axis=1)
+    return Substeps(step[:, 0].astype(int), share[:, 0], u, x, z)
+
+
+@dataclass(frozen=True)
 class Path:
     """Equilibria along a branch. x: (n, nx); z: (n, nz) states after each step; y: (n, ny) outputs.
 
     failed: index of the step that did not converge, or None; rows after it are not filled.
     counts: residuals, Jacobians, factorizations, Newton steps. halt: of a march that failed.
+    between: of an axle with friction.
     """
 
     x: FloatArray
@@ -71,6 +93,7 @@ class Path:
     failed: int | None
     counts: np.ndarray
     halt: Halt | None = None
+    between: Substeps | None = None
 
 
 @dataclass(frozen=True)
@@ -121,6 +144,7 @@ class _Marcher:
         self._hs, self._hx = list(start.s[-HISTORY:]), [np.array(x) for x in start.x[-HISTORY:]]
         self._u, self._z = np.array(start.u), np.array(start.z)
         self._slips = kernel.slips
+        self._rows: list[FloatArray] = []
         self._snap, self._smooth, self._part = 0.0, True, 1.0
 
     def run(self, s: FloatArray, u: FloatArray) -> Path:
@@ -129,16 +153,17 @@ class _Marcher:
         iterations, level = np.zeros(n, dtype=np.int32), np.zeros(n)
         failed = halt = None
         for step in range(n):
-            reached, iterations[step], level[step] = self._one_step(s[step], u[step])
+            reached, iterations[step], level[step] = self._one_step(step, s[step], u[step])
             if not reached:
                 failed = step
                 halt = Halt(self._hs[-1], self._hx[-1].copy(), self._u, self._z, self._snap)
                 break
             x[step], z[step] = self._hx[-1], self._z
             y[step] = self._out(x[step], self._c, u[step], self._z)
-        return Path(x, z, y, iterations, level, failed, self._newton.counts, halt)
+        between = substeps(k, np.array(self._rows)) if self._rows else None
+        return Path(x, z, y, iterations, level, failed, self._newton.counts, halt, between)
 
-    def _one_step(self, s_to: float, u_to: FloatArray) -> tuple[bool, int, float]:
+    def _one_step(self, step: int, s_to: float, u_to: FloatArray) -> tuple[bool, int, float]:
         """(reached, Newton iterations, norm of the residual) of the step to s_to."""
         s_from, done, total, level = self._hs[-1], 0.0, 0, 0.0
         while done < 1.0:
@@ -165,6 +190,8 @@ class _Marcher:
                     return False, total, level
                 self._part = 0.5 * part
                 continue
+            if self._kernel.nz:
+                self._rows.append(np.concatenate([[step, to], u, reached.x, self._z]))
             self._accept(at, reached.x, u)
             done = to
             if self._smooth and self._part < 1.0:
