@@ -6,6 +6,7 @@ import numpy as np
 
 from doe_kc.solver.kernel import Kernel
 from doe_kc.solver.load_cases import Datum, LoadCase
+from doe_kc.solver.march import Substeps
 from doe_kc.solver.static import control_matrix
 from doe_kc.typing import FloatArray
 
@@ -29,6 +30,12 @@ def control_gradient(k: Kernel, case: LoadCase, inputs: FloatArray, datum: Datum
         shifted = Datum((moved[0], moved[1]), (moved[2], moved[3]), *moved[4:])
         columns.append(_controls(k, case, inputs, shifted) - base)
     return np.stack(columns, axis=-1)
+
+
+def gradient_between(du: FloatArray, inside: Substeps) -> FloatArray:
+    """(m, nu, .) derivative of the controls inside steps, linear between those at the ends, du (n, nu, .)."""
+    share = inside.share[:, None, None]
+    return np.asarray(du[inside.step] + share * (du[inside.step + 1] - du[inside.step]))
 
 
 def _controls(k: Kernel, case: LoadCase, inputs: FloatArray, datum: Datum) -> FloatArray:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.solver.datum import AT_REST, control_gradient
+from doe_kc.solver.datum import AT_REST, control_gradient, gradient_between
 from doe_kc.solver.interface_blocks import InterfaceBlocks, Local
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.probe import Probe
@@ -31,7 +31,8 @@ class BranchInfluences:
 
     seen: (n, m) what the probes show, in their response units. influence: (n, ny, m) of the outputs, per
     unit of a probe. datum: (n, ny, 5) of the outputs to the static state's datum. state: (n, ny, nz) to
-    the friction states before the step; next_*: the same of the states after it, (n, nz, .).
+    the friction states before the step; next_*: the same of the states after it, (n, nz, .). ends: (n,) which
+    are the branch's own points; with friction there are others, inside its steps.
     """
 
     seen: FloatArray
@@ -41,6 +42,7 @@ class BranchInfluences:
     next_influence: FloatArray
     next_datum: FloatArray
     next_state: FloatArray
+    ends: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -124,14 +126,17 @@ def _branch(
 ) -> BranchInfluences:
     """Of all rows; the first is where the branch starts, under its own controls."""
     du = control_gradient(found.kernel, case, branch.input, static.datum)[..., :AT_REST]
-    before = np.vstack([branch.z[:1], branch.z[:-1]])
+    x, u, before = branch.x, branch.u, np.vstack([branch.z[:1], branch.z[:-1]])
+    ends = np.ones(len(x), dtype=bool)
     if (inside := branch.path.between) is not None:
-        before[1:] = inside.z[inside.share == 1.0]
-    steps = [found.at(x, u, z, d) for x, u, z, d in zip(branch.x, branch.u, before, du, strict=True)]
-    return _stacked(steps, len(found.probes))
+        x, u, before = (np.vstack([a[:1], b]) for a, b in ((x, inside.x), (u, inside.u), (before, inside.z)))
+        du = np.concatenate([du[:1], gradient_between(du, inside)])
+        ends = np.concatenate([[True], inside.share == 1.0])
+    steps = [found.at(*each) for each in zip(x, u, before, du, strict=True)]
+    return _stacked(steps, len(found.probes), ends)
 
 
-def _stacked(steps: list[Local], m: int) -> BranchInfluences:
+def _stacked(steps: list[Local], m: int, ends: np.ndarray) -> BranchInfluences:
     dy, dz = np.array([s.dy for s in steps]), np.array([s.dz for s in steps])
     probes, datum, state = slice(m), slice(m, m + AT_REST), slice(m + AT_REST, None)
     return BranchInfluences(
@@ -142,4 +147,5 @@ def _stacked(steps: list[Local], m: int) -> BranchInfluences:
         dz[:, :, probes],
         dz[:, :, datum],
         dz[:, :, state],
+        ends,
     )

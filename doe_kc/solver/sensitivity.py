@@ -17,7 +17,7 @@ from scipy import sparse
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import internal_gradient
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change
-from doe_kc.solver.datum import control_gradient
+from doe_kc.solver.datum import control_gradient, gradient_between
 from doe_kc.solver.kernel import kernel
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.result import BranchSolution, Solution, StaticState
@@ -201,8 +201,7 @@ class _Differentiator:
             if inside is None:
                 _, dy, dz = self._points(branch.x[1:], branch.u[1:], branch.z[:-1], du[1:], dz)
             else:  # friction remembers where a motion reversed inside a step
-                share = inside.share[:, None, None]
-                between = du[inside.step] + share * (du[inside.step + 1] - du[inside.step])
+                between = gradient_between(du, inside)
                 _, dy, dz = self._points(inside.x, inside.u, inside.z, between, dz)
                 dy = [d for d, at in zip(dy, inside.share, strict=True) if at == 1.0]
             out.append(np.array([dy_start, *dy]))
