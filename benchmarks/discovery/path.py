@@ -12,9 +12,10 @@ import numpy as np
 
 from doe_kc.axle import Axle
 from doe_kc.curves import RIG_RESPONSES, SIDES
+from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.march import Path, Settings, Start, march
+from doe_kc.solver.march import Settings, Start, march
 from doe_kc.solver.result import Failure, NotConverged, StaticState
 from doe_kc.solver.static import control_matrix, static_state
 from doe_kc.solver.suite import library_for
@@ -46,8 +47,8 @@ class Bench:
         self._library = library_for(self.axle.topology, None)
         self._constants = self._kernel.constant_values(dict(self.axle.values))
         found = static_state(self._kernel, self._library, self._constants, self.axle, Settings())
-        if isinstance(found, Path):
-            raise _stuck(found, "static")
+        if isinstance(found, Failure):
+            raise NotConverged(found)
         self._static: StaticState = found
         names = self._kernel.equations.output_names
         self._columns = {r: [names.index(f"{r}@{side}") for side in SIDES] for r in RIG_RESPONSES}
@@ -71,19 +72,19 @@ class Bench:
         x, z = self._static.x, self._static.z
         kept = []
         for branch in branches:
-            values = {"preload": self._static.pads.preload, **case.controls(branch, self._static.pads)}
+            values = {"preload": self._static.datum.preload, **case.controls(branch, self._static.datum)}
             u = control_matrix(self._kernel, {**values, "friction": 1.0}, branch.size)
             start = Start(branch[:1], x[None, :], u[0], z)
             full = "hold_wheel_centre" in values
             path = march(self._kernel, self._library, self._constants, start, branch[1:], u[1:], full=full)
             if path.failed is not None:
-                raise _stuck(path, case.id)
+                names = (case.id, "loop", case.unit)
+                raise NotConverged(
+                    sweep_failure(
+                        self._kernel, self._constants, start, path, branch[1:], u[1:], names, full=full
+                    )
+                )
             x, z = path.x[-1], path.z[-1]
             kept.append(path.y)
         y = np.vstack([kept[2][-1:], kept[3], kept[4][:-1]])
         return {r: y[:, columns].T for r, columns in self._columns.items()}
-
-
-def _stuck(path: Path, case: str) -> NotConverged:
-    worst = float(np.nanmax(np.abs(path.residual)))
-    return NotConverged(Failure(case, "", int(path.failed or 0), float("nan"), "", "axle", worst, "N"))

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value, with_values
+from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.axle.read import read_axle
 
 __all__ = [
     "Axle",
     "Parameter",
+    "axle_warnings",
     "design_parameters",
     "parameter_value",
     "read_axle",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from doe_kc.solver.load_cases import LoadCase
@@ -81,6 +81,24 @@ class Axle:
     def rack_mm_per_rev(self) -> float:
         """Rack travel per steering-wheel turn, mm."""
         return self.values["steering.rack_mm_per_rev"]
+
+
+CLAMP_HEIGHT = 0.25
+"""Share of the way from the wheel centre's height up to LWD's."""
+
+
+def strut_clamp(points: Mapping[str, Sequence[float]]) -> list[float]:
+    """(3,) CLAMP in mm of an axle file that does not give it, from its hardpoints LWD, UPB and WLC.
+
+    On the strut axis UPB-LWD, produced downwards, a quarter of the way from the wheel centre's height up to
+    LWD's: the two bolts of the knuckle sit just above the wheel centre. LWD when the strut does not rise.
+    """
+    lower, upper = points["LWD"], points["UPB"]
+    rise = upper[2] - lower[2]
+    if rise <= 0.0:
+        return [float(v) for v in lower]
+    down = (1.0 - CLAMP_HEIGHT) * (points["WLC"][2] - lower[2]) / rise
+    return [float(low + down * (high - low)) for low, high in zip(lower, upper, strict=True)]
 
 
 def both(name: str, value: float) -> dict[str, float]:

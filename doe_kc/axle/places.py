@@ -7,8 +7,8 @@ from typing import Any
 
 import tomlkit
 
-from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS
-from doe_kc.axle.schema import AxleFile, Hardpoints
+from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS, strut_clamp
+from doe_kc.axle.schema import AxleFile
 from doe_kc.effects import EFFECTS
 
 Place = tuple[str | int, ...]
@@ -78,17 +78,17 @@ def put_entry(document: MutableMapping[str, Any], place: Place, value: Any) -> N
     table: Any = document
     for depth, key in enumerate(way):
         if not isinstance(key, int) and key not in table:
-            table[key] = _new(place, depth)
+            table[key] = _new(document, place, depth)
         table = table[key]
     table[last] = value
 
 
-def _new(place: Place, depth: int) -> Any:
+def _new(document: Mapping[str, Any], place: Place, depth: int) -> Any:
     """An empty table as its place is written by hand: inline for what a bushing has per axis."""
     if place[0] == "bushings" and depth == 2:
         return tomlkit.inline_table()
     if place[0] == "hardpoints":
-        return [float(v) for v in Hardpoints.model_fields[str(place[1])].default]
+        return strut_clamp(document["hardpoints"])  # the only one that a file may lack
     return tomlkit.table(is_super_table=place[0] == "effects" and depth == 0)
 
 

@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 
 from doe_kc.axle.geometry import check_geometry
-from doe_kc.axle.model import BUSHING_AXES, STRUT_BENDING, STRUT_TORSION, Axle, both
+from doe_kc.axle.model import BUSHING_AXES, STRUT_BENDING, STRUT_TORSION, Axle, both, strut_clamp
 from doe_kc.axle.schema import AxleFile, Stop, Sweep
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
 from doe_kc.solver.curve import curve_values
 from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, LoadCase
 from doe_kc.solver.load_cases.roll import TECHNIQUES
-from doe_kc.solver.load_cases.steer import Steer
 from doe_kc.solver.topology import Topology
 
 NM_PER_DEG = 1000.0 * 180.0 / np.pi
@@ -68,7 +67,8 @@ def _topology(file: AxleFile) -> Topology:
 
 def _values(file: AxleFile) -> dict[str, float]:
     out: dict[str, float] = {}
-    for name, point in file.hardpoints:
+    points = {name: point for name, point in file.hardpoints if point is not None}
+    for name, point in ({"CLAMP": strut_clamp(points)} | points).items():
         for axis, value in zip("xyz", point, strict=True):
             out |= both(f"{name}.{axis}", value)
     for name, bushing in file.bushings:
@@ -129,11 +129,7 @@ def _stop_values(name: str, stop: Stop) -> dict[str, float]:
 
 
 def _load_cases(file: AxleFile, source: str) -> dict[str, LoadCase]:
-    ratio = file.steering.rack_mm_per_rev
-    cases = {
-        ident: replace(case, rack_mm_per_rev=ratio) if isinstance(case, Steer) else case
-        for ident, case in sorted(LOAD_CASES.items(), key=lambda item: CASE_ORDER.index(item[0]))
-    }
+    cases = {ident: LOAD_CASES[ident] for ident in CASE_ORDER}
     for ident, sweep in file.load_cases.items():
         if ident not in cases:
             raise InputError(

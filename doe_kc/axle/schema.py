@@ -46,7 +46,7 @@ class Hardpoints(Strict):
     SFR: Point
     WLC: Point
     ARB: Point
-    CLAMP: Point = [4.0, -655.0, 340.0]
+    CLAMP: Point | None = None
 
 
 class Bushing(Strict):

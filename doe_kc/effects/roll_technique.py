@@ -42,8 +42,7 @@ class RollTechnique(Effect):
         roll = axle.load_cases.get("roll")
         if options["technique"] != "counter_phase" or type(roll) is not Roll:
             return axle
-        pads = PadRoll(**vars(roll), half_track=axle.half_track)
-        return replace(axle, load_cases={**axle.load_cases, "roll": pads})
+        return replace(axle, load_cases={**axle.load_cases, "roll": PadRoll(**vars(roll))})
 
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
         roll = curves.cases.get("roll")

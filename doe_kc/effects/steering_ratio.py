@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Size
-from doe_kc.solver.load_cases.steer import Steer
 
 
 @effect
@@ -33,12 +31,4 @@ class SteeringRatio(Effect):
         return {"factor": one["factor"] * other["factor"]}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        factor = options["factor"]
-        cases = {
-            ident: replace(case, rack_mm_per_rev=factor * case.rack_mm_per_rev)
-            if isinstance(case, Steer)
-            else case
-            for ident, case in axle.load_cases.items()
-        }
-        changed = axle.changed({"steering.rack_mm_per_rev": factor * axle.rack_mm_per_rev})
-        return replace(changed, load_cases=cases)
+        return axle.changed({"steering.rack_mm_per_rev": options["factor"] * axle.rack_mm_per_rev})

@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from doe_kc.axle.model import NEARLY_RIGID, Axle
-from doe_kc.axle.parameters import Parameter, design_parameters, with_values
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import Parameter, design_parameters
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
 from doe_kc.errors import RunError
@@ -70,12 +70,6 @@ def exact_changes(
     """(parameters, characteristics) exact derivative times the parameter's step."""
     paths = [p.path for p in rows]
     gradients = characteristic_gradients(axle, solve(axle), paths, columns, windows=windows).T
-    if "strut.flexibility" in paths and not axle.topology.strut_bending:
-        bending = with_values(axle, {"strut.flexibility": NEARLY_RIGID})
-        solution = solve(bending, compiled=False)
-        gradients[paths.index("strut.flexibility")] = characteristic_gradients(
-            bending, solution, ["strut.flexibility"], columns, windows=windows
-        )[:, 0]
     return np.asarray(gradients * np.array([p.step for p in rows])[:, None])
 
 

@@ -49,12 +49,17 @@ def body(name: str, design: ca.SX, origin: ca.SX, gibbs: ca.SX) -> Body:
 
 @dataclass(frozen=True)
 class Freedom:
-    """One motion that a joint leaves free; its row is axis . (force or moment) - resistance = 0."""
+    """One motion that a joint leaves free; its row is axis . (force or moment) - resistance = 0.
+
+    compliance: factor on the first term, so that resistance is what the joint would offer at compliance 1
+    and a joint without any does not move. It is a number of the axle's, not of the equilibrium.
+    """
 
     name: str
     symbol: ca.SX
     axis: ca.SX
     rotates: bool
+    compliance: ca.SX | float = 1.0
 
 
 @dataclass(frozen=True)
@@ -97,6 +102,7 @@ class Builder:
     constants: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
     controls: dict[str, ca.SX] = field(default_factory=dict)
     states: list[tuple[ca.SX, ca.SX]] = field(default_factory=list)
+    slips: list[str] = field(default_factory=list)
     outputs: dict[str, ca.SX] = field(default_factory=dict)
     probes: list[tuple[Probe, ca.SX, Response]] = field(default_factory=list)
 
@@ -157,8 +163,9 @@ class Builder:
         self.multipliers.append((Unknown(name, joint, LENGTH_SCALE), force, violation - compliance * force))
         return force
 
-    def state(self, previous: ca.SX, following: ca.SX) -> None:
-        """Path-dependent state: symbols of its previous value, expression of the next."""
+    def state(self, freedom: str, previous: ca.SX, following: ca.SX) -> None:
+        """Path-dependent state of a motion (mm): symbols of its previous value, expression of the next."""
+        self.slips.append(freedom)
         self.states.append((ca.vec(previous), ca.vec(following)))
 
     def tail_unknown(self, name: str, joint: str, scale: float) -> ca.SX:

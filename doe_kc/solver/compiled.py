@@ -33,6 +33,8 @@ FLAGS = {"driver": "-O3", "jacobian": "-O0"}
 2 s, and a design of 370 equilibria would gain 2 ms."""
 DEFAULT_FLAGS = "-O1"
 COMPILE_TIMEOUT = 120.0
+SUBSTEPS = 4
+"""Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
 DRIVER = Path(__file__).with_name("driver.c")
 
 
@@ -77,13 +79,34 @@ class CompiledKernel:
         settings: _march.Settings,
     ) -> _march.Path:
         """See `march.march`."""
+        capacity = SUBSTEPS * len(s) if kernel.nz else 0
+        path, passed = self._march(kernel, c, start, s, u, active, settings, capacity)
+        if passed > capacity:
+            path, _ = self._march(kernel, c, start, s, u, active, settings, passed)
+        return path
+
+    def _march(
+        self,
+        kernel: Kernel,
+        c: FloatArray,
+        start: _march.Start,
+        s: FloatArray,
+        u: FloatArray,
+        active: int,
+        settings: _march.Settings,
+        capacity: int,
+    ) -> tuple[_march.Path, int]:
+        """The path, with `capacity` of its substeps, and how many there were."""
+        from doe_kc.solver.march import Halt, substeps
         from doe_kc.solver.march import Path as Marched
 
         n = len(s)
         x, z = np.zeros((n, kernel.nx)), np.zeros((n, kernel.nz))
-        y, level, r = np.zeros((n, kernel.ny)), np.zeros(n), np.zeros(kernel.nx)
+        y, level = np.zeros((n, kernel.ny)), np.zeros(n)
+        end = np.zeros(2 + kernel.nu + kernel.nz + kernel.nx)
+        rows, passed = np.zeros((capacity, end.size)), np.zeros(1, dtype=np.int32)
         iterations, counts = np.zeros(n, dtype=np.int32), np.zeros(4, dtype=np.int64)
-        tail = kernel.tail_controls
+        tail, slips = kernel.tail_controls, kernel.slips
         inputs = [np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)]
         s_known, x_known, u_start, z_start, s_in, u_in, c_in = inputs
         code = self.library.march(
@@ -96,14 +119,25 @@ class CompiledKernel:
             ctypes.c_int(settings.max_halvings),
             ctypes.c_longlong(self.size_iw),
             ctypes.c_longlong(self.size_w),
+            ctypes.c_int(start.guess),
+            ctypes.c_int(len(slips)),
+            _pointer(slips),
             ctypes.c_int(len(s_known)),
             *(_pointer(a) for a in (s_known, x_known, u_start, z_start)),
             ctypes.c_int(n),
-            *(_pointer(a) for a in (s_in, u_in, x, z, y, iterations, level, r, counts)),
+            *(_pointer(a) for a in (s_in, u_in, x, z, y, iterations, level, end, counts)),
+            ctypes.c_int(capacity),
+            *(_pointer(a) for a in (rows, passed)),
         )
         if code < 0:
             raise MemoryError("the solver could not allocate its working memory")
-        return Marched(x, z, y, iterations, level, r, code - 1 if code else None, counts)
+        between = substeps(kernel, rows[: passed[0]]) if passed[0] else None
+        if not code:
+            return Marched(x, z, y, iterations, level, None, counts, None, between), int(passed[0])
+        (s_end, snap), rest = end[:2], end[2:]
+        u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
+        halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
+        return Marched(x, z, y, iterations, level, code - 1, counts, halt, between), int(passed[0])
 
 
 def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:

@@ -1,31 +1,43 @@
-"""What load cases take over from the static state: pad heights, wheel-centre heights, spring preload."""
+"""How the controls of load cases move with what they take over from the axle."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from doe_kc.solver.kernel import Kernel
-from doe_kc.solver.load_cases import LoadCase, StaticPads
+from doe_kc.solver.load_cases import Datum, LoadCase
+from doe_kc.solver.march import Substeps
 from doe_kc.solver.static import control_matrix
 from doe_kc.typing import FloatArray
 
-DATUM = ("pad L", "pad R", "wheel centre L", "wheel centre R", "preload")
-"""mm, the last in N: rows of every derivative of the datum."""
+DATUM = (
+    *("pad L", "pad R", "wheel centre L", "wheel centre R", "preload"),
+    *("half track", "rack per turn"),
+)
+"""mm, the preload in N: rows of every derivative of the datum."""
+AT_REST = 5
+"""So many of them, the first, are of the static state; the others are dimensions of the axle."""
 
 
-def control_gradient(k: Kernel, case: LoadCase, inputs: FloatArray, pads: StaticPads) -> FloatArray:
-    """(n, nu, 5) derivative of the controls at the inputs (n,) to the datum; they are affine in it."""
-    base = _controls(k, case, inputs, pads)
-    flat = [*pads.pad, *pads.wheel_centre_z, pads.preload]
+def control_gradient(k: Kernel, case: LoadCase, inputs: FloatArray, datum: Datum) -> FloatArray:
+    """(n, nu, 7) derivative of the controls at the inputs (n,) to the datum; they are affine in it."""
+    base = _controls(k, case, inputs, datum)
+    flat = [*datum.pad, *datum.wheel_centre_z, datum.preload, datum.half_track, datum.rack_mm_per_rev]
     columns = []
     for i in range(len(flat)):
         moved = list(flat)
         moved[i] += 1.0
-        shifted = StaticPads((moved[0], moved[1]), (moved[2], moved[3]), moved[4])
+        shifted = Datum((moved[0], moved[1]), (moved[2], moved[3]), *moved[4:])
         columns.append(_controls(k, case, inputs, shifted) - base)
     return np.stack(columns, axis=-1)
 
 
-def _controls(k: Kernel, case: LoadCase, inputs: FloatArray, pads: StaticPads) -> FloatArray:
-    values = {"preload": pads.preload, **case.driven(inputs, pads)}
+def gradient_between(du: FloatArray, inside: Substeps) -> FloatArray:
+    """(m, nu, .) derivative of the controls inside steps, linear between those at the ends, du (n, nu, .)."""
+    share = inside.share[:, None, None]
+    return np.asarray(du[inside.step] + share * (du[inside.step + 1] - du[inside.step]))
+
+
+def _controls(k: Kernel, case: LoadCase, inputs: FloatArray, datum: Datum) -> FloatArray:
+    values = {"preload": datum.preload, **case.driven(inputs, datum)}
     return control_matrix(k, values, len(inputs))

@@ -1,5 +1,5 @@
 /* Marches an axle along a load case: predictor, Newton with a kept factorization, step bisection.
-   The same algorithm as march.py, statement by statement; `residual`, `jacobian`, `outputs`, `state_update` are generated. */
+   The same algorithm as newton.py and march.py, statement by statement; `residual`, `jacobian`, `outputs`, `state_update` are generated. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +13,14 @@ int outputs(const double **, double **, integer *, double *, int);
 int state_update(const double **, double **, integer *, double *, int);
 
 #define HISTORY 4
+#define NEAR 0.1                /* of the predicted step: see march.py for these eight */
+#define SMOOTH 0.03
+#define GROWTH 2.0
+#define CORNER 0.5              /* mm */
+#define UNSEEN 0.02             /* mm */
+#define RETURN 0.01
+#define SLIP 2e-3               /* mm */
+#define ONWARD 1e-3
 #define STALL_LEVEL 1e-4        /* N: rounding of very stiff parts keeps the residual from falling below */
 #define STALL_STEP 1e-10        /* mm, Gibbs units: a step that no longer moves anything */
 
@@ -157,18 +165,83 @@ static void predict(int n, int points, const double *s, const double *xs, double
     }
 }
 
-/* Returns 0, or 1 + index of the step that failed. history: `known` points, newest last. */
+/* mm; 100 mm per Gibbs unit. */
+static double distance(const double *a, const double *b, const double *scale, int coordinates) {
+    double far = 0.0;
+    for (int i = 0; i < coordinates; i++) {
+        double d = fabs(a[i] - b[i]) * scale[i];
+        if (d > far) far = d;
+    }
+    return far;
+}
+
+static void with_tail(const problem *p, double *x, const double *u) {
+    for (int i = p->active; i < p->n; i++) x[i] = u[p->tail_control[i - p->active]];
+}
+
+/* One Newton step from x, Euler's along the tangent from the equilibrium of other controls. */
+static void step_from(problem *p, double *x, const double *u, const double *z) {
+    evaluate(p, x, u, z, p->r);
+    if (!p->have_lu && factor(p, x, u, z)) return;
+    solve(p, p->r, p->d);
+    p->counts[3]++;
+    for (int i = 0; i < p->active; i++) x[i] -= p->d[i];
+}
+
+/* Whether the way back from x ends where the step began: it does not from beyond a fold. */
+static int returns(problem *p, const double *x, double far, const double *last, const double *u,
+                   const double *z, double *back, int coordinates) {
+    int used, bad;
+    double level;
+    memcpy(back, x, sizeof(double) * p->n);
+    with_tail(p, back, u);
+    bad = newton(p, back, u, z, &used, &level);
+    return !bad && distance(back, last, p->scale, coordinates) <= RETURN * far;
+}
+
+/* Whether a motion under friction reverses inside a step from `last` to x. previous: the equilibrium before
+   `last`, or NULL; ratio: this step's length over that one's. */
+static int slips_back(problem *p, int slips, const int *slip, const double *x, const double *guessed,
+                      const double *last, const double *previous, double ratio, const double *u_from,
+                      const double *u, const double *z, double *on, double *following) {
+    int doubtful = 0;
+    for (int j = 0; j < slips; j++) {
+        int i = slip[j];
+        double slid = x[i] - last[i], before = previous ? (last[i] - previous[i]) * ratio : 0.0;
+        if (fabs(slid) <= SLIP) continue;
+        if (slid * before < 0.0) return 1;
+        if (fabs(slid) < 0.5 * fabs(before) || fabs(x[i] - guessed[i]) > SLIP) doubtful = 1;
+    }
+    if (!doubtful) return 0;
+    for (int i = 0; i < p->nu; i++) on[i] = u[i] + ONWARD * (u[i] - u_from[i]);
+    memcpy(following, x, sizeof(double) * p->n);
+    with_tail(p, following, on);
+    p->have_lu = 0;
+    step_from(p, following, on, z);
+    for (int j = 0; j < slips; j++) {
+        int i = slip[j];
+        double slid = x[i] - last[i], ahead = (following[i] - x[i]) / ONWARD;
+        if (fabs(slid) > SLIP && slid * ahead < 0.0 && fabs(ahead) > SLIP) return 1;
+    }
+    return 0;
+}
+
+/* Returns 0, or 1 + index of the step that failed. history: `known` points, newest last; with `guess` its
+   only point is no equilibrium. end: the last equilibrium's s, u, z and x, and how far off a solution was.
+   between: with friction, `passed` rows of step, share, u, x, z of every equilibrium, at most `capacity`. */
 int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
           const int *tail_control, const double *scale, const double *c, double tol, double refresh,
-          int max_iterations, int max_halvings, integer size_iw, integer size_w,
+          int max_iterations, int max_halvings, integer size_iw, integer size_w, int guess, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
           int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
-          int *iterations_out, double *level_out, double *r_out, long long *counts) {
+          int *iterations_out, double *level_out, double *end, long long *counts,
+          int capacity, double *between, int *passed) {
     problem p = {n, active, nu, nz, ny, row, col, nnz, tail_control, scale, c, tol, refresh,
                  max_iterations, max_halvings};
-    double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next;
-    int points = known < HISTORY ? known : HISTORY, failed = 0;
-    size_t doubles = size_w + 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + n + (nz + 1) + 2 * nu;
+    double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, *u_on, snap = 0.0, wish = 1.0;
+    int points = known < HISTORY ? known : HISTORY, failed = 0, coordinates = 0;
+    double finest = ldexp(1.0, -max_halvings) * (1.0 + 1e-9);
+    size_t doubles = size_w + 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
     memory = malloc(sizeof(double) * doubles);
     p.iw = malloc(sizeof(integer) * (size_iw + 1));
     p.pivot = malloc(sizeof(int) * n);
@@ -185,7 +258,11 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     x = m; m += n;
     z = m; m += nz + 1;
     u_now = m; m += nu;
-    u_next = m;
+    u_next = m; m += nu;
+    guessed = m; m += n;
+    back = m; m += n;
+    u_on = m;
+    while (coordinates < n && scale[coordinates] >= 1.0) coordinates++;
     for (int i = 0; i < points; i++) {
         hs[i] = s_known[known - points + i];
         memcpy(hx + i * n, x_known + (size_t)(known - points + i) * n, sizeof(double) * n);
@@ -194,31 +271,71 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     memcpy(z, z_start, sizeof(double) * nz);
     for (int step = 0; step < steps && !failed; step++) {
         const double *target = u + (size_t)step * nu;
-        double s_from = hs[points - 1], done = 0.0, part = 1.0, level = 0.0;
-        int total = 0, halved = 0;
+        double s_from = hs[points - 1], done = 0.0, level = 0.0;
+        int total = 0;
         while (done < 1.0) {
+            double part = wish < 1.0 - done ? wish : 1.0 - done;
             double to = done + part >= 1.0 - 1e-12 ? 1.0 : done + part, at = s_from + to * (s[step] - s_from);
-            int used;
+            int used, smooth = 1;
             for (int i = 0; i < nu; i++)
                 u_next[i] = to == 1.0 ? target[i] : u_now[i] + (to - done) / (1.0 - done) * (target[i] - u_now[i]);
-            predict(n, points, hs, hx, at, x);
-            for (int i = active; i < n; i++) x[i] = u_next[tail_control[i - active]];
+            const double *last = hx + (points - 1) * n;
+            if (points > 1 || guess) {
+                predict(n, points, hs, hx, at, x);
+                with_tail(&p, x, u_next);
+            } else {
+                memcpy(x, last, sizeof(double) * n);
+                with_tail(&p, x, u_next);
+                step_from(&p, x, u_next, z);
+            }
+            memcpy(guessed, x, sizeof(double) * n);
             int bad = newton(&p, x, u_next, z, &used, &level);
+            snap = 0.0;
             if (bad) {      /* the predictor may be at fault: start from the last equilibrium */
-                memcpy(x, hx + (points - 1) * n, sizeof(double) * n);
-                for (int i = active; i < n; i++) x[i] = u_next[tail_control[i - active]];
+                memcpy(x, last, sizeof(double) * n);
+                with_tail(&p, x, u_next);
                 p.have_lu = 0;
                 total += used;
                 bad = newton(&p, x, u_next, z, &used, &level);
             }
             total += used;
+            if (!bad && !guess) {
+                double gap = distance(x, guessed, scale, coordinates), moved = distance(x, last, scale, coordinates);
+                int near = gap <= UNSEEN;
+                if (!near) {
+                    double stride = distance(guessed, last, scale, coordinates), longest = INFINITY;
+                    if (points > 1)
+                        longest = GROWTH * distance(last, last - n, scale, coordinates) * fabs(at - hs[points - 1]) /
+                                  fabs(hs[points - 1] - hs[points - 2]);
+                    smooth = gap <= SMOOTH * stride;
+                    near = gap <= NEAR * stride && moved <= longest;
+                }
+                if (!near && !(gap <= CORNER && returns(&p, x, moved > gap ? moved : gap, last, u_now, z, back, coordinates))) {
+                    snap = gap;
+                    bad = 1;
+                }
+            }
+            if (!bad && slips && part > finest) {
+                const double *previous = points > 1 ? last - n : NULL;
+                double ratio = points > 1 ? (at - hs[points - 1]) / (hs[points - 1] - hs[points - 2]) : 0.0;
+                bad = slips_back(&p, slips, slip, x, guessed, last, previous, ratio, u_now, u_next, z, u_on, back);
+            }
             if (bad) {
                 p.have_lu = 0;
-                if (++halved > max_halvings) { failed = step + 1; break; }
-                part *= 0.5;
+                if (part <= finest) { failed = step + 1; break; }
+                wish = 0.5 * part;
                 continue;
             }
             if (nz) {
+                if (*passed < capacity) {
+                    double *row = between + (size_t)*passed * (2 + nu + n + nz);
+                    row[0] = step;
+                    row[1] = to;
+                    memcpy(row + 2, u_next, sizeof(double) * nu);
+                    memcpy(row + 2 + nu, x, sizeof(double) * n);
+                    memcpy(row + 2 + nu + n, z, sizeof(double) * nz);
+                }
+                ++*passed;
                 const double *arg[4] = {x, c, u_next, z};
                 double *result[1] = {z_out + (size_t)step * nz};
                 state_update(arg, result, p.iw, p.w, 0);
@@ -234,18 +351,22 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
             points++;
             memcpy(u_now, u_next, sizeof(double) * nu);
             done = to;
-            if (done < 1.0 && part < 1.0 - done) part = part * 2.0 < 1.0 - done ? part * 2.0 : 1.0 - done;
+            if (smooth && wish < 1.0) wish = 2.0 * wish < 1.0 ? 2.0 * wish : 1.0;
         }
         iterations_out[step] = total;
         level_out[step] = level;
-        memcpy(x_out + (size_t)step * n, x, sizeof(double) * n);
-        memcpy(r_out, p.r, sizeof(double) * n);
-        if (!failed && y_out) {
+        if (!failed) {
+            memcpy(x_out + (size_t)step * n, x, sizeof(double) * n);
             const double *arg[4] = {x, c, u_next, z};
             double *result[1] = {y_out + (size_t)step * ny};
             outputs(arg, result, p.iw, p.w, 0);
         }
     }
+    end[0] = hs[points - 1];
+    end[1] = snap;
+    memcpy(end + 2, u_now, sizeof(double) * nu);
+    memcpy(end + 2 + nu, z, sizeof(double) * nz);
+    memcpy(end + 2 + nu + nz, hx + (points - 1) * n, sizeof(double) * n);
     memcpy(counts, p.counts, sizeof(p.counts));
     free(memory);
     free(p.iw);

@@ -18,7 +18,7 @@ class Equations:
     p: axle values by `parameter_names`; c: constants, c = constants(p), once per design.
     u: controls by `control_names`; z: friction states before the step.
     residual: (nx,) force (N), moment (N mm) or length (mm) by row; outputs: by `output_names`;
-    next_state: (nz,). tail: number of trailing unknowns.
+    next_state: (nz,). tail: number of trailing unknowns. slips: unknowns that friction resists.
     e: probes in their units, all zero in the axle; seen: what they show, both (ne,) by `probes`.
     """
 
@@ -36,6 +36,7 @@ class Equations:
     outputs: ca.SX
     next_state: ca.SX
     constants: ca.SX
+    slips: tuple[str, ...]
     probes: tuple[Probe, ...]
     e: ca.SX
     seen: ca.SX
@@ -48,7 +49,8 @@ def _balance(b: Builder) -> tuple[list[Unknown], list[ca.SX], list[ca.SX]]:
         child, parent = joint.child, joint.parent
         force, moment = b.wrenches.get(child.name, (ca.SX.zeros(3), ca.SX.zeros(3)))
         rows[joint.label] = [
-            ca.dot(f.axis, moment if f.rotates else force) - b.resistances.get(f.name, ca.SX(0))
+            f.compliance * ca.dot(f.axis, moment if f.rotates else force)
+            - b.resistances.get(f.name, ca.SX(0))
             for f in joint.freedoms
         ]
         if parent is not None:
@@ -93,6 +95,7 @@ def finish(b: Builder) -> Equations:
         outputs=ca.vertcat(*b.outputs.values()),
         next_state=ca.vertcat(ca.SX(0, 1), *[f for _, f in b.states]),
         constants=_resolved_constants(b),
+        slips=tuple(b.slips),
         probes=tuple(p for p, _, _ in b.probes),
         e=ca.vertcat(ca.SX(0, 1), *[s for _, s, _ in b.probes]),
         seen=ca.vertcat(ca.SX(0, 1), *[response() for _, _, response in b.probes]),

@@ -79,7 +79,7 @@ def _case(
             for i in range(1, len(h)):
                 columns[i] += b.state[i] @ dz
                 dz = b.next_influence[i] * h[i] + b.next_datum[i] @ datum + b.next_state[i] @ dz
-        out.append(columns)
+        out.append(columns[b.ends])
         first = columns[-1]
     return tuple(out)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.solver.datum import control_gradient
+from doe_kc.solver.datum import AT_REST, control_gradient, gradient_between
 from doe_kc.solver.interface_blocks import InterfaceBlocks, Local
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.probe import Probe
@@ -31,7 +31,8 @@ class BranchInfluences:
 
     seen: (n, m) what the probes show, in their response units. influence: (n, ny, m) of the outputs, per
     unit of a probe. datum: (n, ny, 5) of the outputs to the static state's datum. state: (n, ny, nz) to
-    the friction states before the step; next_*: the same of the states after it, (n, nz, .).
+    the friction states before the step; next_*: the same of the states after it, (n, nz, .). ends: (n,) which
+    are the branch's own points; with friction there are others, inside its steps.
     """
 
     seen: FloatArray
@@ -41,6 +42,7 @@ class BranchInfluences:
     next_influence: FloatArray
     next_datum: FloatArray
     next_state: FloatArray
+    ends: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -99,13 +101,13 @@ def _static(found: InterfaceBlocks, s: StaticState) -> StaticInfluences:
     unknowns = [k.index(name) for name in ("pad L", "pad R", "preload")]
     controls = [k.equations.control_names.index(name) for name in ("pad_L", "pad_R", "preload")]
     centres = [k.equations.output_names.index(name) for name in WHEEL_CENTRES]
-    design = found.at(s.x0, s.u0, z0, np.zeros((k.nu, 5)))
-    du = np.zeros((k.nu, 5))
+    design = found.at(s.x0, s.u0, z0, np.zeros((k.nu, AT_REST)))
+    du = np.zeros((k.nu, AT_REST))
     du[controls, GIVEN] = 1.0
     raised = found.at(s.x, s.u, z0, du)
-    datum_design, datum = np.zeros((5, m)), np.zeros((5, m))
+    datum_design, datum = np.zeros((AT_REST, m)), np.zeros((AT_REST, m))
     datum_design[list(GIVEN)] = design.dx[unknowns, :m]
-    output_design = raised.dy[:, m : m + 5] @ datum_design
+    output_design = raised.dy[:, m : m + AT_REST] @ datum_design
     datum_design[2:4], datum[2:4] = output_design[centres], raised.dy[centres, :m]
     return StaticInfluences(
         seen_design=design.seen,
@@ -114,7 +116,7 @@ def _static(found: InterfaceBlocks, s: StaticState) -> StaticInfluences:
         datum=datum,
         output_design=output_design,
         output=raised.dy[:, :m],
-        state_design=raised.dz[:, m : m + 5] @ datum_design,
+        state_design=raised.dz[:, m : m + AT_REST] @ datum_design,
         state=raised.dz[:, :m],
     )
 
@@ -123,15 +125,20 @@ def _branch(
     found: InterfaceBlocks, static: StaticState, case: LoadCase, branch: BranchSolution
 ) -> BranchInfluences:
     """Of all rows; the first is where the branch starts, under its own controls."""
-    du = control_gradient(found.kernel, case, branch.input, static.pads)
-    before = np.vstack([branch.z[:1], branch.z[:-1]])
-    steps = [found.at(x, u, z, d) for x, u, z, d in zip(branch.x, branch.u, before, du, strict=True)]
-    return _stacked(steps, len(found.probes))
+    du = control_gradient(found.kernel, case, branch.input, static.datum)[..., :AT_REST]
+    x, u, before = branch.x, branch.u, np.vstack([branch.z[:1], branch.z[:-1]])
+    ends = np.ones(len(x), dtype=bool)
+    if (inside := branch.path.between) is not None:
+        x, u, before = (np.vstack([a[:1], b]) for a, b in ((x, inside.x), (u, inside.u), (before, inside.z)))
+        du = np.concatenate([du[:1], gradient_between(du, inside)])
+        ends = np.concatenate([[True], inside.share == 1.0])
+    steps = [found.at(*each) for each in zip(x, u, before, du, strict=True)]
+    return _stacked(steps, len(found.probes), ends)
 
 
-def _stacked(steps: list[Local], m: int) -> BranchInfluences:
+def _stacked(steps: list[Local], m: int, ends: np.ndarray) -> BranchInfluences:
     dy, dz = np.array([s.dy for s in steps]), np.array([s.dz for s in steps])
-    probes, datum, state = slice(m), slice(m, m + 5), slice(m + 5, None)
+    probes, datum, state = slice(m), slice(m, m + AT_REST), slice(m + AT_REST, None)
     return BranchInfluences(
         np.array([s.seen for s in steps]),
         dy[:, :, probes],
@@ -140,4 +147,5 @@ def _stacked(steps: list[Local], m: int) -> BranchInfluences:
         dz[:, :, probes],
         dz[:, :, datum],
         dz[:, :, state],
+        ends,
     )

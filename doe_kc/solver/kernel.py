@@ -51,6 +51,11 @@ class Kernel:
         return [u.name for u in self.equations.unknowns].index(unknown)
 
     @property
+    def slips(self) -> np.ndarray:
+        """Places in x of the motions that friction resists."""
+        return np.array([self.index(name) for name in self.equations.slips], dtype=np.int32)
+
+    @property
     def tail_controls(self) -> np.ndarray:
         """Index of the control that prescribes each tail unknown."""
         names = {"pad L": "pad_L", "pad R": "pad_R", "preload": "preload"}

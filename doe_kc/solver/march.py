@@ -1,36 +1,79 @@
 """Marching along a load case: the driver in Python, and the one call of its compiled twin.
 
-Predictor: Lagrange extrapolation of the last equilibria. Corrector: Newton, keeping a factorization as
-long as it contracts the residual well; step bisection when it does not converge.
+Predictor: Lagrange extrapolation of the last equilibria, the tangent where there is only one. Corrector:
+Newton. A step is halved when Newton does not converge, and when what it finds is not the continuation of the
+path: beyond a fold there may be another equilibrium, far off, to which no rig would follow without a snap.
+Reference: E. L. Allgower, K. Georg, Introduction to Numerical Continuation Methods, SIAM, 2003, chapter 6.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lapack
 
+from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.kernel import Buffered, Kernel
+from doe_kc.solver.newton import Iterate, Newton, Settings
 from doe_kc.typing import FloatArray
 
+__all__ = ["Halt", "Path", "Settings", "Start", "distance", "march"]
+
 HISTORY = 4
-STALL_LEVEL = 1e-4
-"""N; rounding of very stiff parts keeps the residual from falling below the tolerance."""
-STALL_STEP = 1e-10
-"""mm and Gibbs units: a step that no longer moves anything."""
+NEAR = 0.1
+"""Largest distance between prediction and equilibrium, over the length of the predicted step."""
+SMOOTH = 0.03
+"""The same below which a halved step may grow again."""
+GROWTH = 2.0
+"""Longest step over the one before, per input. Both hold with room where the axle touches a bump stop."""
+CORNER = 0.5
+"""mm, and 1/100 Gibbs unit (1.1 deg): farthest equilibrium from its prediction where the path has a corner
+(contact, lift-off, reversal of friction); the way back must then end where the step began."""
+UNSEEN = 0.02
+"""mm, and 1/100 Gibbs unit: a distance that needs no explanation."""
+SLIP = 2e-3
+"""mm; a motion under friction that is shorter may reverse unseen."""
+ONWARD = 1e-3
+"""Part of a step, on which the tangent at its end is measured."""
+RETURN = 0.01
+"""Over the step, or over its distance from the prediction: how near the way back must come."""
 
 
 @dataclass(frozen=True)
-class Settings:
-    """tol: largest residual in N (moments over 100 mm, lengths times 1000 N/mm); refresh: contraction
-    above which the Jacobian is renewed; max_halvings: bisections of one step before it is given up."""
+class Halt:
+    """Where a march ended before its end: the last equilibrium, at path coordinate s under the controls u.
 
-    tol: float = 1e-7
-    refresh: float = 0.1
-    max_iterations: int = 25
-    max_halvings: int = 7
+    snap: distance in mm (100 mm per Gibbs unit) from its prediction of an equilibrium that is not the
+    continuation of the path; 0 when Newton's method found none.
+    """
+
+    s: float
+    x: FloatArray
+    u: FloatArray
+    z: FloatArray
+    snap: float
+
+
+@dataclass(frozen=True)
+class Substeps:
+    """Every equilibrium that a march of an axle with friction went through, those inside steps included.
+
+    step: (m,) index of the step; share: (m,) of it, 1 at its end; u: (m, nu), x: (m, nx); z: (m, nz) friction
+    states before.
+    """
+
+    step: np.ndarray
+    share: FloatArray
+    u: FloatArray
+    x: FloatArray
+    z: FloatArray
+
+
+def substeps(kernel: Kernel, rows: FloatArray) -> Substeps:
+    """From rows (m, 2 + nu + nx + nz) of step, share, u, x, z."""
+    step, share, u, x, z = np.split(rows, np.cumsum([1, 1, kernel.nu, kernel.nx]), axis=1)
+    return Substeps(step[:, 0].astype(int), share[:, 0], u, x, z)
 
 
 @dataclass(frozen=True)
@@ -38,7 +81,8 @@ class Path:
     """Equilibria along a branch. x: (n, nx); z: (n, nz) states after each step; y: (n, ny) outputs.
 
     failed: index of the step that did not converge, or None; rows after it are not filled.
-    residual: (nx,) of the last step tried. counts: residuals, Jacobians, factorizations, Newton steps.
+    counts: residuals, Jacobians, factorizations, Newton steps. halt: of a march that failed.
+    between: of an axle with friction.
     """
 
     x: FloatArray
@@ -46,20 +90,25 @@ class Path:
     y: FloatArray
     iterations: np.ndarray
     level: FloatArray
-    residual: FloatArray
     failed: int | None
     counts: np.ndarray
+    halt: Halt | None = None
+    between: Substeps | None = None
 
 
 @dataclass(frozen=True)
 class Start:
     """Known equilibria before the branch, newest last: path coordinates s, states x; controls u and
-    friction states z of the newest."""
+    friction states z of the newest.
+
+    guess: its only row of x is no equilibrium, so that nothing has to continue it.
+    """
 
     s: FloatArray
     x: FloatArray
     u: FloatArray
     z: FloatArray
+    guess: bool = False
 
 
 def march(
@@ -81,163 +130,143 @@ def march(
     active = kernel.nx if full else kernel.nx - kernel.equations.tail
     if compiled is not None:
         return compiled.march(kernel, c, start, s, u, active, chosen)
-    return _Marcher(kernel, c, active, chosen).run(start, s, u)
+    return _Marcher(kernel, c, start, active, chosen).run(s, u)
 
 
-@dataclass
 class _Marcher:
     """The Python twin of driver.c."""
 
-    kernel: Kernel
-    c: FloatArray
-    active: int
-    settings: Settings
-    counts: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
+    def __init__(self, kernel: Kernel, c: FloatArray, start: Start, active: int, settings: Settings) -> None:
+        self._kernel, self._c, self._guess = kernel, c, start.guess
+        self._newton = Newton(kernel, c, active, settings)
+        self._finest = 0.5**settings.max_halvings * (1.0 + 1e-9)
+        self._out, self._state = (Buffered(kernel.functions[n]) for n in ("outputs", "state_update"))
+        self._hs, self._hx = list(start.s[-HISTORY:]), [np.array(x) for x in start.x[-HISTORY:]]
+        self._u, self._z = np.array(start.u), np.array(start.z)
+        self._slips = kernel.slips
+        self._rows: list[FloatArray] = []
+        self._snap, self._smooth, self._part = 0.0, True, 1.0
 
-    def __post_init__(self) -> None:
-        self._res, self._jac, self._out, self._state = (
-            Buffered(self.kernel.functions[n]) for n in ("residual", "jacobian", "outputs", "state_update")
-        )
-        m = self.active
-        keep = (self.kernel.rows < m) & (self.kernel.cols < m)
-        self._keep = keep
-        self._rows, self._cols = self.kernel.rows[keep], self.kernel.cols[keep]
-        self._scale = self.kernel.scale[:m]
-        self._tail = self.kernel.tail_controls
-        self._lu: tuple[FloatArray, np.ndarray] | None = None
-
-    def run(self, start: Start, s: FloatArray, u: FloatArray) -> Path:
-        k = self.kernel
-        x_out, z_out = np.zeros((len(s), k.nx)), np.zeros((len(s), k.nz))
-        y_out = np.zeros((len(s), k.ny))
-        iterations, level = np.zeros(len(s), dtype=np.int32), np.zeros(len(s))
-        hs, hx = list(start.s[-HISTORY:]), [np.array(x) for x in start.x[-HISTORY:]]
-        z, u_now = np.array(start.z), np.array(start.u)
-        self._r = np.zeros(k.nx)
-        failed = None
-        for step in range(len(s)):
-            ok, x, z, used = self._one_step(hs, hx, s[step], u_now, u[step], z)
-            iterations[step], level[step] = used, self._norm(self._r)
-            x_out[step] = x
-            if not ok:
+    def run(self, s: FloatArray, u: FloatArray) -> Path:
+        k, n = self._kernel, len(s)
+        x, z, y = np.zeros((n, k.nx)), np.zeros((n, k.nz)), np.zeros((n, k.ny))
+        iterations, level = np.zeros(n, dtype=np.int32), np.zeros(n)
+        failed = halt = None
+        for step in range(n):
+            reached, iterations[step], level[step] = self._one_step(step, s[step], u[step])
+            if not reached:
                 failed = step
+                halt = Halt(self._hs[-1], self._hx[-1].copy(), self._u, self._z, self._snap)
                 break
-            z_out[step], u_now = z, np.array(u[step])
-            y_out[step] = self._out(x, self.c, u[step], z)
-        return Path(x_out, z_out, y_out, iterations, level, self._r, failed, self.counts)
+            x[step], z[step] = self._hx[-1], self._z
+            y[step] = self._out(x[step], self._c, u[step], self._z)
+        between = substeps(k, np.array(self._rows)) if self._rows else None
+        return Path(x, z, y, iterations, level, failed, self._newton.counts, halt, between)
 
-    def _one_step(
-        self,
-        hs: list[float],
-        hx: list[FloatArray],
-        s_to: float,
-        u_from: FloatArray,
-        u_to: FloatArray,
-        z: FloatArray,
-    ) -> tuple[bool, FloatArray, FloatArray, int]:
-        s_from, done, part, total, halved = hs[-1], 0.0, 1.0, 0, 0
-        x = hx[-1]
+    def _one_step(self, step: int, s_to: float, u_to: FloatArray) -> tuple[bool, int, float]:
+        """(reached, Newton iterations, norm of the residual) of the step to s_to."""
+        s_from, done, total, level = self._hs[-1], 0.0, 0, 0.0
         while done < 1.0:
+            part = min(self._part, 1.0 - done)
             to = 1.0 if done + part >= 1.0 - 1e-12 else done + part
             at = s_from + to * (s_to - s_from)
-            u = u_to if to == 1.0 else u_from + (to - done) / (1.0 - done) * (u_to - u_from)
-            ok, x, used = self._newton(self._with_tail(_predict(hs, hx, at), u), u, z)
-            total += used
-            if not ok:
-                self._lu = None
-                ok, x, used = self._newton(self._with_tail(hx[-1].copy(), u), u, z)
-                total += used
-            if not ok:
-                self._lu = None
-                halved += 1
-                if halved > self.settings.max_halvings:
-                    return False, x, z, total
-                part *= 0.5
+            u = u_to if to == 1.0 else self._u + (to - done) / (1.0 - done) * (u_to - self._u)
+            predicted = self._predicted(at, u)
+            self._snap, self._smooth = 0.0, True
+            reached = self._newton.equilibrium(predicted, u, self._z)
+            total += reached.iterations
+            if not reached.converged:  # the predictor may be at fault: start from the last equilibrium
+                self._newton.forget()
+                last = self._newton.with_tail(self._hx[-1].copy(), u)
+                reached = self._newton.equilibrium(last, u, self._z)
+                total += reached.iterations
+            level = reached.level
+            sound = reached.converged and self._continues(predicted, reached, at)
+            if sound and len(self._slips) and part > self._finest:
+                sound = not self._slips_back(predicted, reached.x, at, u)
+            if not sound:
+                self._newton.forget()
+                if part <= self._finest:
+                    return False, total, level
+                self._part = 0.5 * part
                 continue
-            if self.kernel.nz:
-                z = self._state(x, self.c, u, z).copy()
-            if len(hs) == HISTORY:
-                del hs[0], hx[0]
-            hs.append(at)
-            hx.append(x)
-            u_from, done = u, to
-            if done < 1.0 and part < 1.0 - done:
-                part = min(part * 2.0, 1.0 - done)
-        return True, x, z, total
+            if self._kernel.nz:
+                self._rows.append(np.concatenate([[step, to], u, reached.x, self._z]))
+            self._accept(at, reached.x, u)
+            done = to
+            if self._smooth and self._part < 1.0:
+                self._part = min(2.0 * self._part, 1.0)
+        return True, total, level
 
-    def _with_tail(self, x: FloatArray, u: FloatArray) -> FloatArray:
-        if self.active < self.kernel.nx:
-            x[self.active :] = u[self._tail]
-        return x
+    def _predicted(self, at: float, u: FloatArray) -> FloatArray:
+        if len(self._hs) > 1 or self._guess:
+            return self._newton.with_tail(_predict(self._hs, self._hx, at), u)
+        last = self._newton.with_tail(self._hx[-1].copy(), u)
+        return self._newton.step_from(last, u, self._z)
 
-    def _residual(self, x: FloatArray, u: FloatArray, z: FloatArray) -> FloatArray:
-        self.counts[0] += 1
-        return self._res(x, self.c, u, z).copy()
+    def _accept(self, at: float, x: FloatArray, u: FloatArray) -> None:
+        if self._kernel.nz:
+            self._z = self._state(x, self._c, u, self._z).copy()
+        if len(self._hs) == HISTORY:
+            del self._hs[0], self._hx[0]
+        self._hs.append(at)
+        self._hx.append(x)
+        self._u = u
 
-    def _norm(self, r: FloatArray) -> float:
-        worst = float(np.abs(r[: self.active] / self._scale).max())
-        return worst if worst == worst else float("inf")
+    def _continues(self, predicted: FloatArray, reached: Iterate, at: float) -> bool:
+        """Whether an equilibrium continues the path."""
+        if self._guess:
+            return True
+        last = self._hx[-1]
+        gap, moved = distance(self._kernel, reached.x, predicted), distance(self._kernel, reached.x, last)
+        if gap <= UNSEEN:
+            return True
+        stride = distance(self._kernel, predicted, last)
+        self._smooth = gap <= SMOOTH * stride
+        if gap <= NEAR * stride and moved <= self._longest(at):
+            return True
+        if gap <= CORNER and self._returns(reached.x, max(gap, moved)):
+            return True
+        self._snap = gap
+        return False
 
-    def _factor(self, x: FloatArray, u: FloatArray, z: FloatArray) -> bool:
-        matrix = np.zeros((self.active, self.active), order="F")
-        nonzeros = self._jac(x, self.c, u, z)[self._keep]
-        matrix[self._rows, self._cols] = nonzeros / self._scale[self._rows]
-        self.counts[1:3] += 1
-        if not np.isfinite(matrix).all():
+    def _slips_back(self, predicted: FloatArray, x: FloatArray, at: float, u: FloatArray) -> bool:
+        """Whether a motion under friction reverses inside a step: its laws hold over monotone motion."""
+        slid = (x - self._hx[-1])[self._slips]
+        steady = np.abs(slid) <= SLIP
+        before = np.zeros_like(slid)
+        if len(self._hs) > 1:
+            ratio = (at - self._hs[-1]) / (self._hs[-1] - self._hs[-2])
+            before = (self._hx[-1] - self._hx[-2])[self._slips] * ratio
+        if np.any(~steady & (slid * before < 0.0)):
+            return True
+        slows = np.abs(slid) < 0.5 * np.abs(before)
+        corner = np.abs(x - predicted)[self._slips] > SLIP
+        if not np.any(~steady & (slows | corner)):
             return False
-        lu, pivots, info = lapack.dgetrf(matrix, overwrite_a=True)
-        self._lu = (lu, pivots) if info == 0 else None
-        return bool(info == 0)
+        on = u + ONWARD * (u - self._u)
+        self._newton.forget()
+        following = self._newton.step_from(self._newton.with_tail(x.copy(), on), on, self._z)
+        ahead = (following - x)[self._slips] / ONWARD
+        return bool(np.any(~steady & (slid * ahead < 0.0) & (np.abs(ahead) > SLIP)))
 
-    def _newton(self, x: FloatArray, u: FloatArray, z: FloatArray) -> tuple[bool, FloatArray, int]:
-        """(converged, x, iterations); a factorization is renewed when it contracts too little."""
-        tol, fresh, iterations = self.settings.tol, False, 0
-        r = self._residual(x, u, z)
-        now = best = self._norm(r)
-        while iterations < self.settings.max_iterations:
-            if now <= tol or not np.isfinite(now) or now > 1e6 * best + 1e9:
-                break
-            if self._lu is None:
-                if not self._factor(x, u, z):
-                    break
-                fresh = True
-            iterations += 1
-            step, trial, trial_r, following = self._trial(x, r, now, u, z, fresh=fresh)
-            if fresh and self._stalled(step, now, following):
-                self._r = r
-                return True, x, iterations
-            if following > self.settings.refresh * now:
-                self._lu = None
-                if not fresh and not following <= 0.5 * now:
-                    continue  # a stale factorization misled: try a new one
-            fresh = False
-            x, r, now = trial, trial_r, following
-            best = min(best, now)
-        self._r = r
-        return now <= tol, x, iterations
+    def _longest(self, at: float) -> float:
+        """mm that the path may go on to `at`, from what it went before."""
+        if len(self._hs) < 2:
+            return float("inf")
+        before = distance(self._kernel, self._hx[-1], self._hx[-2])
+        return float(GROWTH * before * abs(at - self._hs[-1]) / abs(self._hs[-1] - self._hs[-2]))
 
-    def _stalled(self, step: FloatArray, now: float, following: float) -> bool:
-        """Whether a fresh step neither moves the axle nor improves a residual that is small already."""
-        moved = float(np.abs(step[self._scale >= 1.0]).max())
-        return following > 0.5 * now and now <= STALL_LEVEL and moved <= STALL_STEP
+    def _returns(self, x: FloatArray, far: float) -> bool:
+        """Whether the way back ends where the step began: it does not from beyond a fold."""
+        back = self._newton.equilibrium(self._newton.with_tail(x.copy(), self._u), self._u, self._z)
+        return back.converged and distance(self._kernel, back.x, self._hx[-1]) <= RETURN * far
 
-    def _trial(
-        self, x: FloatArray, r: FloatArray, now: float, u: FloatArray, z: FloatArray, *, fresh: bool
-    ) -> tuple[FloatArray, FloatArray, FloatArray, float]:
-        """(step, x, residual, norm); the step is halved while a fresh Jacobian sends the residual far up."""
-        assert self._lu is not None
-        m, damp = self.active, 1.0
-        d, _ = lapack.dgetrs(*self._lu, r[:m] / self._scale)
-        self.counts[3] += 1
-        for _ in range(7):
-            trial = x.copy()
-            trial[:m] -= damp * d
-            trial_r = self._residual(trial, u, z)
-            following = self._norm(trial_r)
-            if following <= 10.0 * now or not fresh:
-                break
-            damp *= 0.5
-        return d, trial, trial_r, following
+
+def distance(kernel: Kernel, a: FloatArray, b: FloatArray) -> float:
+    """Largest difference of two states' coordinates (nx,) in mm; 100 mm per Gibbs unit."""
+    n = int(np.argmin(kernel.scale >= FORCE_SCALE))  # constraint forces and the tail come after them
+    return float(np.max(np.abs(a[:n] - b[:n]) * kernel.scale[:n]))
 
 
 def _predict(hs: list[float], hx: list[FloatArray], at: float) -> FloatArray:

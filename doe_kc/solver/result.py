@@ -8,16 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.errors import RunError
-from doe_kc.solver.load_cases import LoadCase, StaticPads
+from doe_kc.solver.load_cases import Datum, LoadCase
 from doe_kc.solver.march import Path
 from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
 class Failure:
-    """Why an axle has no solution: where on the path, and which joint is worst off.
+    """Why an axle has no solution: where on the path, how it stood last, and the likely cause.
 
-    residual: of that joint's row, in `unit`.
+    input: that has no equilibrium; last_input: the last that has one, both in `input_unit`. deflection: the
+    joint that stands farthest from design there, in words. cause: a clause.
     """
 
     load_case: str
@@ -25,15 +26,19 @@ class Failure:
     step: int
     input: float
     input_unit: str
-    joint: str
-    residual: float
-    unit: str
+    last_input: float
+    deflection: str
+    cause: str
 
     def __str__(self) -> str:
-        where = f"load case {self.load_case}"
+        where = self.load_case
         if self.branch:
-            where += f", branch {self.branch}, step {self.step} (input {self.input:g} {self.input_unit})"
-        return f"no equilibrium: {where}; worst residual {self.residual:.3g} {self.unit} at {self.joint}"
+            where = (
+                f"load case {where}, branch {self.branch}, step {self.step} "
+                f"(input {self.input:g} {self.input_unit}); "
+                f"last equilibrium at {self.last_input:g} {self.input_unit}"
+            )
+        return f"no equilibrium: {where}, {self.deflection}; {self.cause}"
 
 
 class NotConverged(RunError):
@@ -57,7 +62,7 @@ class StaticState:
     u: FloatArray
     z: FloatArray
     y: FloatArray
-    pads: StaticPads
+    datum: Datum
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ through the path, z_next = g(x, c, u, z), so they are carried along with their d
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -16,10 +17,11 @@ from scipy import sparse
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import internal_gradient
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change
-from doe_kc.solver.datum import control_gradient
+from doe_kc.solver.datum import control_gradient, gradient_between
 from doe_kc.solver.kernel import kernel
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.result import BranchSolution, Solution, StaticState
+from doe_kc.solver.topology import Topology
 from doe_kc.typing import FloatArray
 
 
@@ -39,11 +41,59 @@ class Sensitivities:
 def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
-    ValueError when the solution has no static state; cases that it lacks are left out.
+    To `strut.flexibility` at 0, where its bound is, the one-sided derivative. ValueError when the solution
+    has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
-    return _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+    found = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+    soft = [i for i, path in enumerate(paths) if _softens(axle, path)]
+    if soft:
+        bent = replace(axle, topology=replace(axle.topology, strut_bending=True))
+        lifted = in_topology(solution, axle.topology, bent.topology)
+        assert lifted.static is not None
+        columns = _Differentiator(bent, lifted.static, tuple(paths[i] for i in soft)).run(lifted)
+        found.static[:, soft] = columns.static
+        for ident, branches in columns.branches.items():
+            for own, other in zip(found.branches[ident], branches, strict=True):
+                own[:, :, soft] = other
+    return found
+
+
+def _softens(axle: Axle, path: str) -> bool:
+    """Whether a parameter would make a rigid strut bend."""
+    return not axle.topology.strut_bending and any(
+        name.startswith("strut.flexibility") for name in internal_gradient(axle, path)
+    )
+
+
+def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:
+    """The same equilibria as states of a topology that has further unknowns, zero there."""
+    a, b = kernel(old), kernel(new)
+    unknowns = np.array([b.index(u.name) for u in a.equations.unknowns])
+    controls = np.array([b.equations.control_names.index(name) for name in a.equations.control_names])
+
+    def placed(rows: FloatArray, places: np.ndarray, width: int) -> FloatArray:
+        out = np.zeros((*rows.shape[:-1], width))
+        out[..., places] = rows
+        return out
+
+    def moved(part: Any, *names: str) -> Any:
+        changes = {n: placed(getattr(part, n), unknowns, b.nx) for n in names if n.startswith("x")}
+        changes |= {n: placed(getattr(part, n), controls, b.nu) for n in names if n.startswith("u")}
+        return replace(part, **changes)
+
+    def carried(branch: BranchSolution) -> BranchSolution:
+        between = None if branch.path.between is None else moved(branch.path.between, "x", "u")
+        lifted: BranchSolution = moved(branch, "x", "u")
+        return replace(lifted, path=replace(branch.path, between=between))
+
+    cases = {
+        ident: replace(case, branches=tuple(carried(branch) for branch in case.branches))
+        for ident, case in solution.cases.items()
+    }
+    static = None if solution.static is None else moved(solution.static, "x0", "u0", "x", "u")
+    return replace(solution, static=static, cases=cases)
 
 
 class _Differentiator:
@@ -107,12 +157,12 @@ class _Differentiator:
         return dx[0], dy[0], dz
 
     def _static_state(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Derivatives of the static state and of its datum (pads, wheel-centre heights, preload)."""
+        """Derivatives of the static state and of its datum as in `DATUM`."""
         k, s, count = self._kernel, self._static, len(self._paths)
         no_z, no_du = np.zeros((k.nz, count)), np.zeros((k.nu, count))
         z0 = np.zeros(k.nz)
         dx0, _, _ = self._point(s.x0, s.u0, z0, no_du, no_z)
-        raised = np.array([internal_gradient(self._axle, p).get("ride_height", 0.0) for p in self._paths])
+        raised = self._change_of("ride_height")
         du = no_du.copy()
         for control, unknown, shift in (
             ("pad_L", "pad L", raised),
@@ -124,7 +174,12 @@ class _Differentiator:
         heights = [dy[self._outputs.index(f"wc_z@{side}")] for side in ("L", "R")]
         pads = [du[k.equations.control_names.index(f"pad_{side}")] for side in ("L", "R")]
         preload = du[k.equations.control_names.index("preload")]
-        return dx, dy, dz, np.array([*pads, *heights, preload])
+        dimensions = [-self._change_of("WLC.y@L"), self._change_of("steering.rack_mm_per_rev")]
+        return dx, dy, dz, np.array([*pads, *heights, preload, *dimensions])
+
+    def _change_of(self, internal: str) -> FloatArray:
+        """(np,) d(internal value) / d(path)."""
+        return np.array([internal_gradient(self._axle, p).get(internal, 0.0) for p in self._paths])
 
     def _case(
         self,
@@ -141,8 +196,14 @@ class _Differentiator:
         for branch in branches:
             if not (loop and out):
                 dz, dy_start = dz0, dy0
-            du = control_gradient(self._kernel, case, branch.input, self._static.pads) @ datum
-            _, dy, dz = self._points(branch.x[1:], branch.u[1:], branch.z[:-1], du[1:], dz)
+            du = control_gradient(self._kernel, case, branch.input, self._static.datum) @ datum
+            inside = branch.path.between
+            if inside is None:
+                _, dy, dz = self._points(branch.x[1:], branch.u[1:], branch.z[:-1], du[1:], dz)
+            else:  # friction remembers where a motion reversed inside a step
+                between = gradient_between(du, inside)
+                _, dy, dz = self._points(inside.x, inside.u, inside.z, between, dz)
+                dy = [d for d, at in zip(dy, inside.share, strict=True) if at == 1.0]
             out.append(np.array([dy_start, *dy]))
             dy_start = dy[-1]
         return tuple(out)

@@ -11,16 +11,16 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.errors import InputError, nearest
-from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE
 from doe_kc.solver.compiled import (
     COMPILE_VARIABLE,
     CompiledKernel,
     CompileError,
     compiled_kernel,
 )
+from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.load_cases import CASE_ORDER, LoadCase
-from doe_kc.solver.march import Path, Settings, Start, march
+from doe_kc.solver.march import Settings, Start, march
 from doe_kc.solver.result import (
     BranchSolution,
     CaseSolution,
@@ -56,8 +56,8 @@ def solve(
     options = settings or Settings()
     c = k.constant_values(dict(axle.values))
     static = static_state(k, library, c, axle, options)
-    if isinstance(static, Path):
-        return _ended(axle, k, None, {}, _failure(k, static, "static equilibrium", "", 0.0, "", 0), throw)
+    if isinstance(static, Failure):
+        return _ended(axle, k, None, {}, static, throw)
     solved: dict[str, CaseSolution] = {}
     for ident, case in chosen.items():
         result = _solve_case(k, library, c, static, case, options)
@@ -139,7 +139,7 @@ def _solve_case(
     done: list[BranchSolution] = []
     full = False
     for name, inputs in branch_inputs(case, loop=loop).items():
-        values = {"preload": static.pads.preload, **case.driven(inputs, static.pads)}
+        values = {"preload": static.datum.preload, **case.driven(inputs, static.datum)}
         if loop:
             values["friction"] = 1.0
         full = "hold_wheel_centre" in values
@@ -147,7 +147,7 @@ def _solve_case(
         start, origin = _start(static, done, u, inputs, loop=loop)
         path = march(k, library, c, start, inputs[1:], u[1:], full=full, settings=settings)
         if path.failed is not None:
-            return _failure(k, path, case.id, name, inputs[path.failed + 1], case.unit, path.failed + 1)
+            return sweep_failure(k, c, start, path, inputs[1:], u[1:], (case.id, name, case.unit), full=full)
         x0, y0, z0 = origin
         done.append(
             BranchSolution(
@@ -183,23 +183,3 @@ def _start(
     s = np.concatenate([done[0].input[seeds], inputs[:1]])
     x = np.vstack([done[0].x[seeds], static.x])
     return Start(s, x, u[0], static.z), origin
-
-
-def _failure(k: Kernel, path: Path, case: str, branch: str, value: float, unit: str, step: int) -> Failure:
-    weighted = np.abs(path.residual / k.scale)
-    if path.failed is None or not np.isfinite(weighted).any():
-        worst = 0
-    else:
-        worst = int(np.nanargmax(np.where(np.isfinite(weighted), weighted, np.inf)))
-    unknown = k.equations.unknowns[worst]
-    units = {FORCE_SCALE: "N", MOMENT_SCALE: "N mm"}
-    return Failure(
-        case,
-        branch,
-        step,
-        float(value),
-        unit,
-        unknown.joint,
-        float(path.residual[worst]),
-        units.get(unknown.scale, "mm"),
-    )

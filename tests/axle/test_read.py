@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import design_parameters, parameter_value, read_axle
+from doe_kc.axle.read import axle_from_document
 from doe_kc.errors import InputError
 from tests.reference import EXAMPLE, nominal
 
@@ -315,6 +316,21 @@ def test_right_overrides_are_chassis_coordinates(tmp_path: Path) -> None:
     assert parameter_value(axle, "llr.Fx") == 1.0
 
 
+@pytest.mark.parametrize("size", [1.0, 1.3])
+def test_the_strut_clamp_of_a_file_without_one_grows_with_the_axle(size: float) -> None:
+    document = tomllib.loads(TEXT)
+    own = document["hardpoints"].pop("CLAMP")
+    for point in document["hardpoints"].values():
+        point[:] = [size * v for v in point]
+    axle = axle_from_document(document, source="test")
+    clamp, lower, upper = (
+        np.array([axle.values[f"{n}.{a}@L"] for a in "xyz"]) for n in ("CLAMP", "LWD", "UPB")
+    )
+    np.testing.assert_allclose(clamp, size * np.array(own), atol=2.0)
+    np.testing.assert_allclose(np.cross(upper - lower, clamp - lower), 0.0, atol=1e-6)
+    assert axle.values["WLC.z@L"] < clamp[2] < lower[2]
+
+
 def test_load_case_options_arrive(tmp_path: Path) -> None:
     text = edited('technique = "body"\namplitude = 4.0', 'technique = "counter_phase"\namplitude = 50.0')
     text = text.replace("[load_cases.vertical]", '[load_cases.vertical]\ncontrol = "wheel"')
@@ -322,7 +338,7 @@ def test_load_case_options_arrive(tmp_path: Path) -> None:
     cases = read_axle(written(tmp_path, text)).load_cases
     assert (cases["roll"].unit, cases["roll"].amplitude, cases["roll"].steps) == ("mm", 50.0, 24)
     assert cases["vertical"].control == "wheel"  # type: ignore[attr-defined]
-    assert cases["steer"].rack_mm_per_rev == 60.0  # type: ignore[attr-defined]
+    assert read_axle(written(tmp_path, text)).rack_mm_per_rev == 60.0
 
 
 def test_a_tabulated_bushing_that_repeats_its_stiffness_is_that_bushing(tmp_path: Path) -> None:

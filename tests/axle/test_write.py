@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import Axle, read_axle, with_values
+from doe_kc.axle import Axle, parameter_value, read_axle, with_values
+from doe_kc.axle.model import strut_clamp
 from doe_kc.axle.write import HEADER, write_axle
 from doe_kc.characteristics import reduce_all
 from doe_kc.effects import EFFECTS, apply_effect
@@ -128,6 +129,25 @@ def test_a_whole_design_reads_back(tmp_path: Path) -> None:
     assert text.count("\n") < PLAIN.count("\n") + 10
 
 
+@pytest.mark.parametrize("effect_in", ["", "[effects.steering_ratio]\nfactor = 1.05\n"])
+def test_the_rack_ratio_steers_the_same_before_and_after(effect_in: str, tmp_path: Path) -> None:
+    """At the rate that is set, not at the one that the file was read with: 4 to 5 deg of toe at full lock."""
+    text = f"{PLAIN}\n{effect_in}"
+    nominal = changed(text, {}, tmp_path)
+    axle = changed(text, {"steering.rack_mm_per_rev": 60.0}, tmp_path)
+    again = read_axle(written(axle, text, tmp_path)[0])
+    ends = []
+    for each in (axle, again, nominal):
+        found = solve(each, ["steer"], compiled=False)
+        branch = found.cases["steer"].branches[0]
+        ends.append(branch.y[-1, [found.column("rack_travel"), found.column("toe@L")]])
+    np.testing.assert_array_equal(ends[0], ends[1])
+    assert ends[0][0] / ends[2][0] == pytest.approx(
+        60.0 / parameter_value(nominal, "steering.rack_mm_per_rev"), rel=0.01
+    )
+    assert abs(ends[0][1] - ends[2][1]) > 3.0
+
+
 @pytest.mark.parametrize("ident", EFFECTS)
 def test_an_effect_is_added_to_a_file_without_it(ident: str, tmp_path: Path) -> None:
     axle = apply_effect(with_values(read_axle(AXLE), {"LLF.z": 213.0}), ident, {}, source="test")
@@ -148,11 +168,8 @@ def test_missing_keys_come_before_the_first_table(tmp_path: Path) -> None:
     axle = changed(text, {"ride_height": 4.5, "scb.Tz": 1.3, "CLAMP.x": 5.0}, tmp_path)
     path, new = written(axle, text, tmp_path)
     document = read_toml(path)
-    assert (document["ride_height"], document["scb"], document["hardpoints"]["CLAMP"][0]) == (
-        4.5,
-        {"Tz": 1.3},
-        5.0,
-    )
+    assert (document["ride_height"], document["scb"]) == (4.5, {"Tz": 1.3})
+    assert document["hardpoints"]["CLAMP"] == [5.0, *strut_clamp(document["hardpoints"])[1:]]
     assert new.index("ride_height") < new.index("[units]")
 
 

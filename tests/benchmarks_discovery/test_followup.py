@@ -63,7 +63,9 @@ def test_a_load_case_without_an_equilibrium_is_not_driven(
     plain: HiddenCar, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def stuck(_: Car) -> CleanRecords:
-        raise NotConverged(Failure("lateral_offset", "", 3, 1500.0, "N", "axle", 1.0, "N"))
+        raise NotConverged(
+            Failure("lateral_offset", "pos", 3, 1500.0, "N", 1400.0, "rack moved by 9 mm", "over-centre")
+        )
 
     monkeypatch.setattr(Car, "clean", stuck)
     carry_out(plain, advised({"further_tests": [RUN, PARTS]}), tmp_path)

@@ -28,14 +28,14 @@ class Rig:
         self.static = found
 
     def controls(self, n: int, values: Mapping[str, object]) -> np.ndarray:
-        pads = self.static.pads
+        pads = self.static.datum
         held = {"pad_L": pads.pad[0], "pad_R": pads.pad[1], "preload": pads.preload}
         return control_matrix(self.kernel, {**held, **values}, n)  # type: ignore[dict-item]
 
     def path(self, waypoints: Sequence[Mapping[str, float]], steps: int, *, friction: bool = False) -> Path:
         """Straight lines between waypoints, which hold changes from rest (pads) or values; from rest."""
         names = sorted({n for w in waypoints for n in w})
-        pads = {"pad_L": self.static.pads.pad[0], "pad_R": self.static.pads.pad[1]}
+        pads = {"pad_L": self.static.datum.pad[0], "pad_R": self.static.datum.pad[1]}
         corners = np.array([[w.get(n, 0.0) + pads.get(n, 0.0) for n in names] for w in ({}, *waypoints)])
         t = np.linspace(0.0, len(waypoints), steps * len(waypoints) + 1)[1:]
         columns = {n: np.interp(t, range(len(corners)), corners[:, i]) for i, n in enumerate(names)}

@@ -20,7 +20,7 @@ from doe_kc.solver import elements
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.elements._base import STAGES
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
-from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, StaticPads
+from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, Datum
 from doe_kc.solver.load_cases.roll import TECHNIQUES
 from tests.reference import DATA
 
@@ -93,7 +93,7 @@ def test_a_load_case_says_what_it_sweeps(case) -> None:
     assert len(inputs) == 2 * case.steps + 1
     assert np.all(np.diff(inputs) > 0)
     # at input 0 nothing has moved from the static state
-    static = StaticPads((1.0, 2.0), (310.0, 311.0), 4000.0)
+    static = Datum((1.0, 2.0), (310.0, 311.0), 4000.0, 790.0, 52.0)
     still = case.controls(np.zeros(1), static)
     for name, value in still.items():
         held = {"pad_L": 1.0, "pad_R": 2.0, "wc_z_L": 310.0, "wc_z_R": 311.0, "lateral_offset": value}

@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
-import math
+import tomllib
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
+from doe_kc.axle.read import axle_from_document
 from doe_kc.effects import apply_effect
 from doe_kc.errors import DoeKcError, RunError
-from doe_kc.solver.march import Settings
+from doe_kc.solver.diagnosis import unresisted
+from doe_kc.solver.kernel import kernel
+from doe_kc.solver.march import Halt, Settings
 from doe_kc.solver.result import Failure, NotConverged
 from doe_kc.solver.suite import solve
-from tests.reference import nominal
+from tests.reference import EXAMPLE, nominal
+
+STEER = replace(nominal().load_cases["steer"], amplitude=3600.0)
 
 
 def far_steer() -> Axle:
     """A rack that travels half a metre: the tie rod cannot follow."""
-    axle = nominal()
-    case = replace(axle.load_cases["steer"], amplitude=3600.0)
-    return replace(axle, load_cases={**axle.load_cases, "steer": case})
+    return replace(nominal(), load_cases={**nominal().load_cases, "steer": STEER})
 
 
-def test_the_reason_names_load_case_step_input_and_joint() -> None:
+def test_the_reason_names_load_case_step_input_last_equilibrium_and_cause() -> None:
     found = solve(far_steer(), ["vertical", "steer"], compiled=False, throw=False)
     failure = found.failure
     assert failure is not None
@@ -32,18 +36,25 @@ def test_the_reason_names_load_case_step_input_and_joint() -> None:
     assert failure.input_unit == "deg"
     assert failure.input == pytest.approx(failure.step * 3600.0 / 30)
     assert 400.0 < failure.input < 3600.0
-    assert failure.joint
-    assert failure.unit in {"N", "N mm", "mm"}
+    assert failure.input - 3600.0 / 30 <= failure.last_input < failure.input
+    assert failure.cause.startswith("over-centre: ")
     text = str(failure)
     for part in (
         "steer",
         "pos",
         f"step {failure.step}",
         f"{failure.input:g} deg",
-        failure.joint,
-        failure.unit,
+        f"last equilibrium at {failure.last_input:g} deg",
+        failure.deflection,
+        failure.cause,
     ):
         assert part in text
+    # it stands where fine steps end too
+    case = found.cases["vertical"].load_case
+    axle = replace(far_steer(), load_cases={"vertical": case, "steer": replace(STEER, steps=240)})
+    fine = solve(axle, ["steer"], compiled=False, throw=False).failure
+    assert fine is not None
+    assert fine.last_input == pytest.approx(failure.last_input, abs=1.5)
 
 
 def test_what_was_solved_before_the_failure_is_kept() -> None:
@@ -63,12 +74,45 @@ def test_throw_raises_not_converged_with_the_failure() -> None:
 
 
 def test_a_static_failure_says_so() -> None:
-    found = solve(nominal(), compiled=False, throw=False, settings=Settings(max_iterations=1, max_halvings=0))
+    found = solve(nominal(), compiled=False, throw=False, settings=Settings(max_iterations=0))
     assert found.failure is not None
     assert found.static is None
     assert found.cases == {}
-    assert "static equilibrium" in str(found.failure)
-    assert math.isfinite(found.failure.residual)
+    assert str(found.failure).startswith("no equilibrium: static equilibrium, ")
+
+
+def test_a_load_that_the_axle_cannot_carry_names_its_share() -> None:
+    """Newton's method alone finds a state beyond a fold, with the wheels turned over."""
+    mounts = ("llf", "llr", "sff", "sfr", "upb")
+    soft = with_values(nominal(), {f"{b}.F{a}": 0.007 for b in mounts for a in "xyz"})
+    found = solve(soft, compiled=False, throw=False).failure
+    assert found is not None
+    assert found.cause.startswith("too soft: it carries ")
+    assert 0.0 < found.last_input < 1.0
+    assert f"{100 * found.last_input:.3g} % of the static load" in str(found)
+
+
+def test_what_nothing_resists_is_named() -> None:
+    """A top mount without any resistance to turning: the rod may twist as it likes."""
+    document = tomllib.loads((EXAMPLE / "axle.toml").read_text())
+    for resists in (True, False):
+        line = [[-5.0, -20.0 * resists], [5.0, 20.0 * resists]]
+        document["bushings"]["upb"]["table"] = {"Tx": line, "Ty": line, "Tz": line}
+        axle = axle_from_document(document, source="test")
+        k = kernel(axle.topology)
+        design = Halt(0.0, np.zeros(k.nx), np.zeros(k.nu), np.zeros(k.nz), 0.0)
+        active = k.nx - k.equations.tail
+        found = unresisted(k, k.constant_values(dict(axle.values)), design, active)
+        assert found == "" if resists else found.startswith("strut twist ")
+
+
+def test_where_newton_fails_the_load_is_ramped_up() -> None:
+    soft = with_values(nominal(), {f"{b}.F{a}": 0.01 for b in ("llf", "llr") for a in "xyz"})
+    direct = solve(soft, [], compiled=False)
+    ramped = solve(soft, [], compiled=False, settings=Settings(max_iterations=6))
+    assert direct.static is not None
+    assert ramped.static is not None
+    np.testing.assert_allclose(ramped.static.y, direct.static.y, rtol=1e-9, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -87,7 +131,8 @@ def test_a_static_failure_says_so() -> None:
 def test_impossible_designs_are_a_value_never_an_exception(values: dict[str, float]) -> None:
     found = solve(with_values(nominal(), values), compiled=False, throw=False)
     if found.failure is not None:
-        assert found.failure.joint
+        assert found.failure.deflection
+        assert found.failure.cause
         assert found.failure.load_case in str(found.failure)
 
 

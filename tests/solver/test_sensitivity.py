@@ -104,6 +104,42 @@ def test_friction_free(free: tuple[Axle, Sensitivities], path: str) -> None:
     assert ratio < 1e-5, where
 
 
+@pytest.mark.parametrize("path", ["steering.rack_mm_per_rev", "WLC.y", "right.WLC.y"])
+@pytest.mark.parametrize("friction", [False, True])
+def test_dimensions_that_load_cases_use(path: str, *, friction: bool) -> None:
+    """The rack's travel per turn, and the lever of pads that roll by an angle."""
+    axle = apply_effect(short(nominal()), "roll_technique", {}, source="test")
+    axle = replace(axle, load_cases={i: axle.load_cases[i] for i in ("roll", "steer")})
+    if friction:
+        axle = apply_effect(axle, "steering_friction", {}, source="test")
+    exact = sensitivities(axle, tight(axle), [path])
+    ratio, where = worst(axle, exact, path)
+    assert ratio < 1e-5, where
+    case = "roll" if path == "WLC.y" else "steer"
+    assert path == "right.WLC.y" or np.abs(exact.branches[case][0][:, :, 0]).max() > 0.01
+
+
+@pytest.mark.parametrize("path", ["strut.flexibility", "right.strut.flexibility"])
+@pytest.mark.parametrize("effect", ["", "strut_friction"])
+def test_a_rigid_strut_has_the_one_sided_derivative_to_its_flexibility(path: str, effect: str) -> None:
+    axle = replace(short(nominal()), load_cases={"lateral": short(nominal()).load_cases["lateral"]})
+    if effect:
+        axle = apply_effect(axle, effect, {}, source="test")
+    rigid = tight(axle)
+    exact = sensitivities(axle, rigid, ["spring.rate", path])
+    h = 2e-3
+    near, far = (tight(with_values(axle, {path: size})) for size in (h, 2 * h))
+    toe = [rigid.column(f"toe@{side}") for side in "LR"]
+    for i, branch in enumerate(rigid.cases["lateral"].branches):
+        one, two = (s.cases["lateral"].branches[i].y - branch.y for s in (near, far))
+        found, mine = ((4 * one - two) / (2 * h))[:, toe], exact.branches["lateral"][i][:, toe, 1]
+        assert np.abs(mine).max() > 1e-3
+        np.testing.assert_allclose(mine, found, rtol=0, atol=1e-4 * np.abs(mine).max())
+    alone = sensitivities(axle, rigid, ["spring.rate"])
+    for one, other in zip(alone.branches["lateral"], exact.branches["lateral"], strict=True):
+        np.testing.assert_allclose(one[:, :, 0], other[:, :, 0], rtol=1e-9, atol=1e-12)
+
+
 LOOPS = {
     "dahl": [("steering_friction", {}), ("strut_friction", {})],
     "iwan": [("steering_friction", {"law": "iwan"}), ("strut_friction", {"law": "iwan"})],

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
+from doe_kc.axle.model import BUSHINGS
+from doe_kc.axle.read import axle_from_document
 from doe_kc.effects import apply_effect
 from doe_kc.solver.elements.responses import OUTPUT_UNITS
 from doe_kc.solver.load_cases import LoadCase
@@ -15,7 +18,7 @@ from doe_kc.solver.load_cases.roll import TECHNIQUES
 from doe_kc.solver.march import Settings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
-from tests.reference import nominal
+from tests.reference import EXAMPLE, nominal
 from tests.solver.tangent import Rig
 
 LATERAL = ("wc_y", "cp_y")
@@ -45,6 +48,33 @@ def test_left_with_plus_equals_right_with_minus(solution: Solution, case: str) -
     left, right = curves(solution, case, "L"), curves(solution, case, "R")
     np.testing.assert_allclose(left, right[::-1], rtol=0, atol=1e-6)
     assert np.abs(left - right).max() > 0.1
+
+
+UNLIKE = {
+    **{
+        axis: [[-4.0, -9e3], [-1.0, -4e3], [0.0, 200.0], [2.0, 1.2e4], [4.0, 4e4]]
+        for axis in ("Fx", "Fy", "Fz")
+    },
+    **{
+        axis: [[-4.0, -90.0], [-1.0, -40.0], [0.0, 15.0], [2.0, 200.0], [4.0, 900.0]]
+        for axis in ("Tx", "Ty", "Tz")
+    },
+}
+"""Tables that are not odd: unlike in compression and extension, with a force at rest."""
+
+
+@pytest.mark.parametrize("bushing", BUSHINGS)
+@pytest.mark.parametrize("kind", "FT")
+def test_a_table_that_is_not_odd_is_mirrored(bushing: str, kind: str) -> None:
+    document = tomllib.loads((EXAMPLE / "axle.toml").read_text())
+    document["bushings"][bushing]["table"] = {a: t for a, t in UNLIKE.items() if a[0] == kind}
+    axle = axle_from_document(document, source="test")
+    found = solve(axle, ["vertical", "steer"], compiled=False)
+    plain = solve(nominal(), ["vertical"], compiled=False)
+    for case, order in (("vertical", 1), ("steer", -1)):
+        left, right = curves(found, case, "L"), curves(found, case, "R")[::order]
+        np.testing.assert_allclose(left, right, rtol=0, atol=1e-6)
+    assert np.abs(curves(found, "vertical", "L") - curves(plain, "vertical", "L")).max() > 1e-3
 
 
 def test_counter_phase_roll_is_antisymmetric_and_rolls_the_same_way() -> None:

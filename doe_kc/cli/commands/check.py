@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import logging
+
 import typer
 
+from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.cli._app import app
 from doe_kc.cli.options import MeasurementOption, OutOption, StudyArgument
 from doe_kc.correlation.methods import method_class
 from doe_kc.study import read_study
 from doe_kc.workflow.measure import check_measurement
+
+log = logging.getLogger("doe_kc")
 
 
 @app.command()
@@ -16,6 +21,8 @@ def check(study: StudyArgument, measurement: MeasurementOption = None, out: OutO
     """Validate the study, its axle and its rig records; run nothing."""
     found = read_study(study, measurement=measurement, out=out)
     axle = found.axle
+    for sentence in axle_warnings(axle):
+        log.warning(sentence)
     typer.echo(f"study        {found.name} ({found.source})")
     typer.echo(f"axle         {axle.name} ({found.axle_path})")
     typer.echo(f"load cases   {', '.join(axle.load_cases)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import typer
 
 from doe_kc.axle import read_axle
 from doe_kc.axle.model import Axle
+from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.cli._app import app
 from doe_kc.cli.changes import apply_effects, apply_settings
 from doe_kc.cli.options import JsonOption
@@ -19,6 +21,8 @@ from doe_kc.output import write_json
 from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.load_cases.roll import TECHNIQUES
 from doe_kc.solver.suite import solve
+
+log = logging.getLogger("doe_kc")
 
 
 @app.command()
@@ -40,6 +44,8 @@ def simulate(
     """Solve the K&C load cases of an axle: curves (tidy CSV) and characteristics."""
     model = apply_settings(apply_effects(read_axle(axle), effects or []), settings or [])
     model = with_roll(model, roll)
+    for sentence in axle_warnings(model):
+        log.warning(sentence)
     started = time.perf_counter()
     solution = solve(model, checked_cases(model, case))
     seconds = time.perf_counter() - started

@@ -1,4 +1,7 @@
-"""Anti-roll bar: vertical forces F = k (z_L - z_R) at the drop links on the tubes.
+"""Anti-roll bar: vertical forces F = k (dz_L - dz_R) at the drop links on the tubes.
+
+dz is the travel from design: the links are assembled to the length at which the bar is free of force there,
+whatever the design heights of the two sides.
 
 The bar follows the fourth power of the outer radius, k_bar = k_nominal (r / r_nominal)^4, the law of a solid
 round bar k = G pi r^4 / (2 L a^2) with its lever a fixed by the nominal pair. A drop link of compliance c at
@@ -30,9 +33,10 @@ class AntiRollBar(Element):
         rate = b.constant(bar / (1 + 2 * bar * b.parameter("arb.link_flexibility")))
         tubes = [b.bodies[f"tube.{side}"] for side in SIDES]
         links = [t.point(hardpoint(b, "ARB", s)) for t, s in zip(tubes, SIDES, strict=True)]
+        design = b.constant(hardpoint(b, "ARB", "L")[2] - hardpoint(b, "ARB", "R")[2])
         handed: dict[str, ca.SX] = {}
         left, right = (stretch(b, "drop link", "z", s, _of(handed, s)) for s in SIDES)
-        up = rate * (links[0][2] - left - (links[1][2] - right))
+        up = rate * (links[0][2] - left - (links[1][2] - right) - design)
         handed |= {"L": up, "R": -up}
         force = ca.vertcat(0, 0, up)
         b.push(tubes[0], -force, links[0])

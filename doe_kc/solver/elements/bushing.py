@@ -3,6 +3,10 @@
 Force per local axis F = k (d + b d^3) + f0 or F = factor * table(d) + f0, d = outer minus inner point in
 the axes of the inner part; torque is the gradient of 1/2 phi^T K phi with phi the rotation vector of
 inner^T outer. The force pair acts at the displaced outer point, so the couple d x F loads the inner part.
+
+The right side is the mirror image. Deflections and forces along mirrored axes are mirror images as they are;
+rotations and torques about them are so with the opposite sign (they are axial vectors), which a table that is
+not odd needs.
 """
 
 from __future__ import annotations
@@ -12,7 +16,7 @@ import casadi as ca
 from doe_kc.solver import curve, rotation
 from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._base import NM_PER_DEG
-from doe_kc.solver.elements._cuts import SHIFTS, TURNS, push_pair, stretch, turn_pair
+from doe_kc.solver.elements._cuts import SHIFTS, TURNS, push_pair, stretch, turn_pair, turn_sign
 
 FORCE_AXES = ("Fx", "Fy", "Fz")
 TORQUE_AXES = ("Tx", "Ty", "Tz")
@@ -70,7 +74,7 @@ def _force(b: Builder, name: str, side: str, axis: str, d: ca.SX) -> ca.SX:
 def _torque(b: Builder, name: str, side: str, axis: str, phi: ca.SX) -> ca.SX:
     factor = b.parameter(f"{name}.{axis}@{side}")
     if table := _table(b, name, side, axis):
-        return b.constant(factor) * table(phi)
+        return b.constant(factor) * turn_sign(side) * table(turn_sign(side) * phi)
     return b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}") * NM_PER_DEG) * phi
 
 

@@ -44,14 +44,14 @@ def add_friction(b: Builder, freedom: str, law: FrictionLaw, x: ca.SX, prefix: s
     if law == "dahl":
         before = ca.SX.sym(f"{freedom} state", 2)
         force = on * dahl_force(x, before[0], before[1], level, presliding)
-        b.state(before, ca.vertcat(x, force))
+        b.state(freedom, before, ca.vertcat(x, force))
     else:
         before = ca.SX.sym(f"{freedom} state", IWAN_ELEMENTS)
         strength = level / IWAN_ELEMENTS
         rates = strength / (presliding * ca.SX(iwan_yields()))
         each = on * ca.fmin(ca.fmax(rates * (x - before), -strength), strength)
         force = ca.sum1(each)
-        b.state(before, x - each / rates)
+        b.state(freedom, before, x - each / rates)
     b.resist(freedom, force)
     return force
 

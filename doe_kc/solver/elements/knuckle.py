@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import ClassVar
 
 import casadi as ca
@@ -19,9 +20,6 @@ from doe_kc.solver.elements._base import (
 )
 from doe_kc.solver.elements._cuts import TURNS, cut, side_axes, turn_pair
 from doe_kc.solver.freedoms import rotations
-
-NEARLY_RIGID = 1e-4
-"""Flexibility in place of 0, for the rigid side of an axle whose other strut bends."""
 
 
 @element
@@ -76,15 +74,18 @@ def _turning_ball(b: Builder, carrier: Body, knuckle: Body, side: str) -> None:
 
 
 def _bending_tube(b: Builder, knuckle: Body, side: str) -> Body:
-    """Tube turning about the clamp: bending about both transverse axes, torsion about the damper axis."""
+    """Tube turning about the clamp: bending about both transverse axes, torsion about the damper axis.
+
+    The flexibility multiplies the moment instead of dividing the stiffness, so that 0 is a rigid clamp.
+    """
     clamp = hardpoint(b, "CLAMP", side)
     name = f"tube {side}"
     turn, turns = rotations(name, knuckle.axes)
     tube = body(name, clamp, knuckle.point(clamp), rotation.compose(knuckle.gibbs, turn))
-    flexibility = b.parameter(f"strut.flexibility@{side}")
-    softness = ca.if_else(flexibility > 0, flexibility, flexibility + NEARLY_RIGID) / NM_PER_DEG
-    bending = b.constant(b.parameter(f"strut.bending@{side}") / softness)
-    torsion = b.constant(b.parameter(f"strut.torsion@{side}") / softness)
+    flexibility = b.constant(b.parameter(f"strut.flexibility@{side}"))
+    turns = [replace(freedom, compliance=flexibility) for freedom in turns]
+    bending = b.constant(b.parameter(f"strut.bending@{side}") * NM_PER_DEG)
+    torsion = b.constant(b.parameter(f"strut.torsion@{side}") * NM_PER_DEG)
     kappa, slope = rotation.angle_ratio(ca.dot(turn, turn))
     axis, phi = strut_axis(b, side), kappa * turn
     torque = bending * phi + (torsion - bending) * ca.dot(axis, phi) * axis

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from doe_kc.registry import import_members
-from doe_kc.solver.load_cases._base import LOAD_CASES, Controls, LoadCase, StaticPads, load_case
+from doe_kc.solver.load_cases._base import LOAD_CASES, Controls, Datum, LoadCase, load_case
 
 import_members(sys.modules[__name__])
 
@@ -20,4 +20,4 @@ CASE_ORDER = (
     "steer",
 )
 
-__all__ = ["CASE_ORDER", "LOAD_CASES", "Controls", "LoadCase", "StaticPads", "load_case"]
+__all__ = ["CASE_ORDER", "LOAD_CASES", "Controls", "Datum", "LoadCase", "load_case"]

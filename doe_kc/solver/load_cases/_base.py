@@ -19,12 +19,18 @@ lateral_offset (mm); switches 0/1: hold_wheel_centre, hold_load, hold_height, bi
 
 
 @dataclass(frozen=True)
-class StaticPads:
-    """Where the static state left the axle (mm, N): the datum of every load case."""
+class Datum:
+    """What load cases take over from the axle: where its static state left it, and two of its dimensions.
+
+    pad, wheel_centre_z: left and right, mm. preload: of the springs, N. half_track: |y| of the left design
+    wheel centre, mm. rack_mm_per_rev: rack travel per steering-wheel turn, mm.
+    """
 
     pad: tuple[float, float]
     wheel_centre_z: tuple[float, float]
     preload: float
+    half_track: float
+    rack_mm_per_rev: float
 
 
 @dataclass(frozen=True)
@@ -55,12 +61,12 @@ class LoadCase(ABC):
         """(2 steps + 1,) inputs from -amplitude to +amplitude, 0 among them."""
         return np.linspace(-1.0, 1.0, 2 * self.steps + 1) * self.amplitude
 
-    def driven(self, value: FloatArray, static: StaticPads) -> Controls:
+    def driven(self, value: FloatArray, static: Datum) -> Controls:
         """Controls of the axle at the inputs `value` (n,) as they are given, in `unit`."""
         return self.controls(self.gain * value, static)
 
     @abstractmethod
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
         """Controls of the axle at the true inputs `value` (n,), in `unit`."""
 
 
@@ -76,6 +82,6 @@ def load_case(case: LoadCase) -> LoadCase:
     return case
 
 
-def held_pads(static: StaticPads) -> Controls:
+def held_pads(static: Datum) -> Controls:
     """Both pads at their static height."""
     return {"pad_L": static.pad[0], "pad_R": static.pad[1]}

@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from doe_kc.solver.load_cases._base import (
     Controls,
+    Datum,
     LoadCase,
-    StaticPads,
     held_pads,
     load_case,
 )
@@ -26,7 +26,7 @@ class Brake(LoadCase):
     input_label: ClassVar[str] = "Brake force per wheel (rearwards +)"
     window: ClassVar[float] = 1000.0
 
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
         return held_pads(static) | {"brake_L": value, "brake_R": value}
 
 

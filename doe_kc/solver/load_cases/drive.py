@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from doe_kc.solver.load_cases._base import (
     Controls,
+    Datum,
     LoadCase,
-    StaticPads,
     held_pads,
     load_case,
 )
@@ -26,7 +26,7 @@ class Drive(LoadCase):
     input_label: ClassVar[str] = "Drive force per wheel (forwards +)"
     window: ClassVar[float] = 1000.0
 
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
         return held_pads(static) | {"drive_L": value, "drive_R": value}
 
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from doe_kc.solver.load_cases._base import (
     Controls,
+    Datum,
     LoadCase,
-    StaticPads,
     held_pads,
     load_case,
 )
@@ -28,7 +28,7 @@ class Roll(LoadCase):
     input_label: ClassVar[str] = "Body roll (right side down +)"
     window: ClassVar[float] = 1.0
 
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
         return held_pads(static) | {"roll": np.radians(value)}
 
 
@@ -46,7 +46,7 @@ class CounterPhaseRoll(LoadCase):
     input_label: ClassVar[str] = "Counter-phase pad travel (right pad up +)"
     window: ClassVar[float] = 15.0
 
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
         return {"pad_L": static.pad[0] - value, "pad_R": static.pad[1] + value}
 
 
@@ -54,13 +54,11 @@ class CounterPhaseRoll(LoadCase):
 class PadRoll(Roll):
     """The body is held, the pads move against each other as far as a body roll of the input would let them.
 
-    half_track: lever of the pads, mm; each pad moves half_track tan(angle).
+    Each pad moves half_track tan(angle).
     """
 
-    half_track: float = 750.0
-
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
-        travel = self.half_track * np.tan(np.radians(value))
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
+        travel = static.half_track * np.tan(np.radians(value))
         return {"pad_L": static.pad[0] - travel, "pad_R": static.pad[1] + travel}
 
 

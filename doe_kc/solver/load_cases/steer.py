@@ -7,8 +7,8 @@ from typing import ClassVar
 
 from doe_kc.solver.load_cases._base import (
     Controls,
+    Datum,
     LoadCase,
-    StaticPads,
     held_pads,
     load_case,
 )
@@ -17,12 +17,7 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class Steer(LoadCase):
-    """Steering-wheel angle in deg, + moves the rack to the right (+Y); pads hold their height.
-
-    rack_mm_per_rev: rack travel per steering-wheel turn, mm.
-    """
-
-    rack_mm_per_rev: float = 52.0
+    """Steering-wheel angle in deg, + moves the rack to the right (+Y); pads hold their height."""
 
     id: ClassVar[str] = "steer"
     label: ClassVar[str] = "Steering input"
@@ -31,8 +26,8 @@ class Steer(LoadCase):
     input_label: ClassVar[str] = "Steering-wheel angle (rack to the right +)"
     window: ClassVar[float] = 100.0
 
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
-        return held_pads(static) | {"rack": value * self.rack_mm_per_rev / 360.0}
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
+        return held_pads(static) | {"rack": value * static.rack_mm_per_rev / 360.0}
 
 
 load_case(Steer(amplitude=60.0 * 360.0 / 52.0, steps=30))

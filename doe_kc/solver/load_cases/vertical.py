@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from doe_kc.solver.load_cases._base import Controls, LoadCase, StaticPads, load_case
+from doe_kc.solver.load_cases._base import Controls, Datum, LoadCase, load_case
 from doe_kc.typing import FloatArray
 
 
@@ -26,7 +26,7 @@ class Vertical(LoadCase):
     input_label: ClassVar[str] = "Pad travel (up +)"
     window: ClassVar[float] = 20.0
 
-    def controls(self, value: FloatArray, static: StaticPads) -> Controls:
+    def controls(self, value: FloatArray, static: Datum) -> Controls:
         if self.control == "wheel":
             left, right = static.wheel_centre_z
             return {

@@ -43,3 +43,12 @@ def test_the_rate_is_g_pi_r4_over_2_l_a2(radius: float) -> None:
 def test_the_drop_links_are_in_series_with_the_bar() -> None:
     (left, _), _ = forces(1.0, 0.0, {"arb.link_flexibility": 1 / 300.0})
     assert -left[2] == pytest.approx(1 / (1 / 22.0 + 2 / 300.0))
+
+
+def test_different_design_heights_give_no_preload() -> None:
+    """Links are assembled to length: 4 mm between the sides were 88 N of preload."""
+    higher = {"ARB.z@R": hardpoint("ARB")[2] + 4.0}
+    (left, _), (right, _) = forces(0.0, 0.0, higher)
+    np.testing.assert_allclose([left, right], 0, atol=1e-9)
+    (left, _), _ = forces(12.0, -8.0, higher)
+    np.testing.assert_allclose(left, [0, 0, -22.0 * 20.0])

@@ -1,0 +1,80 @@
+"""The march follows one path: no snap passes for a result, corners and reversals of friction are met."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.axle import Axle, parameter_value, with_values
+from doe_kc.axle.model import HARDPOINTS
+from doe_kc.effects import apply_effect
+from doe_kc.solver.compiled import find_compiler
+from doe_kc.solver.suite import solve
+from tests.reference import nominal
+
+needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
+
+
+def with_steps(axle: Axle, case: str, steps: int, amplitude: float | None = None) -> Axle:
+    only = replace(axle.load_cases[case], steps=steps)
+    return replace(axle, load_cases={case: only if amplitude is None else replace(only, amplitude=amplitude)})
+
+
+def scattered(seed: int) -> Axle:
+    rng, axle = np.random.default_rng(seed), nominal()
+    paths = [f"{name}.{axis}" for name in HARDPOINTS if name not in axle.follow for axis in "xyz"]
+    return with_values(axle, {p: parameter_value(axle, p) + rng.uniform(-60.0, 60.0) for p in paths})
+
+
+SNAPPING = (77, 105, 176, 203)
+"""Scattered axles whose steering folds over between two of the default steps."""
+
+
+@pytest.mark.parametrize("seed", [*SNAPPING, 1, 2])
+def test_coarse_and_fine_steps_end_alike(seed: int) -> None:
+    axle = scattered(seed)
+    coarse, fine = (
+        solve(with_steps(axle, "steer", steps), compiled=False, throw=False) for steps in (30, 120)
+    )
+    assert (coarse.failure is None) == (fine.failure is None)
+    if coarse.failure is not None and fine.failure is not None:
+        assert coarse.failure.cause.startswith("over-centre")
+        assert coarse.failure.last_input == pytest.approx(fine.failure.last_input, abs=0.5)
+    else:
+        assert seed not in SNAPPING
+        for a, b in zip(coarse.cases["steer"].branches, fine.cases["steer"].branches, strict=True):
+            np.testing.assert_allclose(b.y[::4], a.y, rtol=1e-9, atol=1e-6)
+
+
+@needs_compiler
+@pytest.mark.parametrize("effect", ["", "strut_friction", "tie_rod_free_play"])
+def test_compiled_and_interpreted_take_the_same_steps(effect: str) -> None:
+    axle = scattered(77)
+    if effect:
+        axle = apply_effect(nominal(), effect, {}, source="test")
+    one, other = (solve(axle, ["vertical", "steer"], compiled=c, throw=False) for c in (True, False))
+    assert (one.failure is None) == (other.failure is None)
+    if one.failure is not None and other.failure is not None:
+        assert str(one.failure) == str(other.failure)
+    for case, solved in one.cases.items():
+        for a, b in zip(solved.branches, other.cases[case].branches, strict=True):
+            np.testing.assert_allclose(a.path.counts, b.path.counts, rtol=0.02, atol=2)
+            np.testing.assert_allclose(a.x, b.x, rtol=1e-9, atol=1e-9)
+            if a.path.between is not None and b.path.between is not None:
+                np.testing.assert_array_equal(a.path.between.share, b.path.between.share)
+                np.testing.assert_allclose(a.path.between.z, b.path.between.z, rtol=1e-7, atol=1e-7)
+
+
+@pytest.mark.parametrize(("law", "force"), [("dahl", 200.0), ("iwan", 600.0)])
+def test_a_lifted_wheel_held_by_friction_does_not_depend_on_the_steps(law: str, force: float) -> None:
+    """In roll one wheel lifts off; at touch-down its strut reverses inside a step."""
+    axle = apply_effect(nominal(), "strut_friction", {"force_N": force, "law": law}, source="test")
+    coarse, fine = (
+        solve(with_steps(axle, "roll", 24 * n, 12.0), compiled=False).cases["roll"].branches for n in (1, 8)
+    )
+    load = solve(with_steps(axle, "roll", 24, 12.0), compiled=False).column("tyre_load@L")
+    assert min(b.y[:, load].min() for b in coarse) == 0.0
+    for a, b in zip(coarse, fine, strict=True):
+        assert np.abs(a.y[:, load] - b.y[::8, load]).max() < 0.02 * force / 4
