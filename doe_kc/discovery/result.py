@@ -44,8 +44,10 @@ class Rival:
 class Finding:
     """An effect that the data ask for.
 
-    probability: that it is this effect, in whatever place. rivals: most probable first. gain: ln of the
-    evidence over the model without it. detectability: standard deviations that it makes after re-tuning.
+    All is judged beside the other effects of the final set. probability: that it is this effect, in whatever
+    place, among it, none at all, and its rivals in its place, each refitted. log10_odds: of the effect against
+    the best of those, `against`: the id of a rival, empty for none at all. rivals: most probable first. gain:
+    ln of the evidence over the set without it. detectability: standard deviations that it makes after re-tuning.
     wrong_name: chance that noise names its closest rival instead. alike: effects that the records hardly
     tell from it, whatever their odds. largest: its largest amplitude, in typical sizes. believed: whether
     that is not surely too large. relevant: whether it is worth naming. elsewhere: other places that explain
@@ -55,6 +57,8 @@ class Finding:
     hypothesis: Hypothesis
     estimates: tuple[Estimate, ...]
     probability: float
+    log10_odds: float
+    against: str
     rivals: tuple[Rival, ...]
     gain: float
     detectability: float

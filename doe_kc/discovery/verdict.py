@@ -19,10 +19,6 @@ CLEAR = 5.0
 REMAINDER = 0.2
 """Share of the largest disagreement, before, that may remain of a gap that is all but closed: laws differ."""
 ALL_BUT_CLOSED = 0.95
-MANY = 2
-"""Effects at once from which more are believed only if all of them are clear."""
-VISIBLE = 12.0
-"""Standard deviations, after re-tuning, that make an effect clear."""
 HARM = 6.0
 """ln predictive density that a held-out load case may lose to chance."""
 HARM_SHARE = 0.02
@@ -50,7 +46,7 @@ def verdict(
     agrees = remaining.chance >= NOISE or law_explains(before, remaining, tuned, final)
     if not findings:
         return Verdict("none") if agrees else Verdict("unexplained")
-    objections = [*_implausible(findings), *_harmed(held_out), *_crowded(findings)]
+    objections = [*_implausible(findings), *_harmed(held_out)]
     if closed < CLOSED:
         objections.append(f"it closes only {closed:.0%} of the gap that re-tuning leaves")
     if not agrees:
@@ -112,9 +108,3 @@ def _closed(tuned: Fit, final: Fit) -> float:
     if before < CLEAR * (2.0 * expected) ** 0.5:
         return 1.0
     return 1.0 - max(0.0, after) / before
-
-
-def _crowded(findings: Sequence[Finding]) -> list[str]:
-    if len(findings) <= MANY or all(f.detectability >= VISIBLE for f in findings):
-        return []
-    return [f"{len(findings)} effects at once, not all of them clear, would have to act together"]
