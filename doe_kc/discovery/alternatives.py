@@ -121,9 +121,7 @@ def _at_final_set(found: Search, base: Fit, without: Fit, temper: float, bench: 
     known = {s.hypothesis.name: s for s in _screened(found, without)}
     first = rescreened(without, project, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
-    there = [
-        rescreened(without, project, s) for s in known.values() if _may_replace(base, s.hypothesis)
-    ]
+    there = [rescreened(without, project, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
     near = _near([first, *there], project, threshold(len(known) + 1), without, bench)
     rivals = [t for t in tried(without, near, bench) if plausible(t)]

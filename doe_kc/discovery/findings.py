@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import log_ndtr, logsumexp, ndtr
 
 from doe_kc.discovery.alternatives import Alternatives
+from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.disagreement import NOISE
 from doe_kc.discovery.fit import Fit
@@ -65,12 +66,12 @@ def _stands_out(own: Alternatives, least: float) -> bool:
 
 def _finding(found: Search, own: Alternatives, place: slice, hidden: FloatArray) -> Finding:
     """hidden: standard deviations by effects that are not seen, of its sizes and those behind them."""
-    final, hypothesis = found.final, own.hypothesis
+    hypothesis = own.hypothesis
     logs = log_probabilities(own, [s.hypothesis for s in found.steps[0].screened])
     against, odds = best_alternative(logs, hypothesis.effect)
-    amplitudes = found.plain.z[place]
-    sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, amplitudes, strict=True)]
-    sd = _with_law(hypothesis, amplitudes, np.sqrt(np.diag(final.covariance))[place], found.shares)
+    most_probable, _ = amplitudes(found.plain, hypothesis)
+    sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
+    sd = _with_law(hypothesis, most_probable, amplitudes(found.final, hypothesis)[1], found.shares)
     detectability = _detectability(found.plain, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_names(own, detectability)
@@ -103,13 +104,13 @@ def _finding(found: Search, own: Alternatives, place: slice, hidden: FloatArray)
 
 
 def _with_law(
-    hypothesis: Hypothesis, amplitudes: FloatArray, sd: FloatArray, shares: Mapping[str, float]
+    hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray, shares: Mapping[str, float]
 ) -> FloatArray:
     """(m,) standard deviations; a stiffness whose law is another is not one number but a range."""
     share = shares.get(hypothesis.name, 0.0)
     own = [
         share * a if s.growth == "compliance" else 0.0
-        for s, a in zip(hypothesis.sizes, amplitudes, strict=True)
+        for s, a in zip(hypothesis.sizes, most_probable, strict=True)
     ]
     return np.asarray(np.hypot(sd, own))
 
@@ -156,8 +157,8 @@ def _detectability(final: Fit, place: slice) -> float:
     """Standard deviations that the effect makes at its size, all else re-tuned."""
     covariance = final.covariance[place, place]
     information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
-    amplitudes = final.z[place]
-    return float(np.sqrt(max(0.0, float(amplitudes @ information @ amplitudes))))
+    sizes = final.z[place]
+    return float(np.sqrt(max(0.0, float(sizes @ information @ sizes))))
 
 
 def _wrong_names(own: Alternatives, detectability: float) -> dict[str, float]:

@@ -183,7 +183,7 @@ def _expanded(
     tuning: FloatArray | None = None,
 ) -> Fit:
     growth = model.growth(z, residual)
-    jacobian = np.hstack([model.tuning(z) if tuning is None else tuning, growth])
+    jacobian = np.hstack([model.tuning(z, residual) if tuning is None else tuning, growth])
     cost = cost_of(model, z, residual)
     return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
 

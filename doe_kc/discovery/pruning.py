@@ -14,9 +14,7 @@ DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""
 
 
-def pruned(
-    found: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]
-) -> Fit:
+def pruned(found: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]) -> Fit:
     """The fit without the members, but the latest, that cost more evidence than they bring.
 
     without_law: of a member whose law is open, errors that do not grant it, or what it makes would pass for

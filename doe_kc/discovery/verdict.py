@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from doe_kc.discovery.adequacy import LIMIT
 from doe_kc.discovery.disagreement import NOISE, Map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
@@ -16,9 +17,6 @@ CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
 CLEAR = 5.0
 """Standard deviations of a sum of squares beyond which a gap is clear of noise."""
-REMAINDER = 0.2
-"""Share of the largest disagreement, before, that may remain of a gap that is all but closed: laws differ."""
-ALL_BUT_CLOSED = 0.95
 HARM = 6.0
 """ln predictive density that a held-out load case may lose to chance."""
 HARM_SHARE = 0.02
@@ -35,18 +33,17 @@ class Verdict:
 
 def verdict(
     findings: Sequence[Finding],
-    before: Map,
     remaining: Map,
     held_out: Sequence[HeldOut],
     tuned: Fit,
     final: Fit,
 ) -> Verdict:
-    """findings: the relevant ones. before, remaining: maps of the re-tuned and of the final model."""
+    """findings: the relevant ones. remaining: map of the final model."""
     closed = _closed(tuned, final)
-    agrees = remaining.chance >= NOISE or law_explains(before, remaining, tuned, final)
+    agrees = remaining.chance >= NOISE
     if not findings:
         return Verdict("none") if agrees else Verdict("unexplained")
-    objections = [*_implausible(findings), *_harmed(held_out)]
+    objections = [*_implausible(findings), *_harmed(held_out), *_missed(held_out)]
     if closed < CLOSED:
         objections.append(f"it closes only {closed:.0%} of the gap that re-tuning leaves")
     if not agrees:
@@ -58,12 +55,6 @@ def verdict(
     if objections:
         return Verdict("unexplained", tuple(objections))
     return Verdict("class" if any(map(ambiguous, findings)) else "named")
-
-
-def law_explains(before: Map, remaining: Map, tuned: Fit, final: Fit) -> bool:
-    """Whether what remains is small beside what is explained: the shape of a law, not another effect."""
-    small = remaining.largest <= REMAINDER * before.largest
-    return small and _closed(tuned, final) >= ALL_BUT_CLOSED
 
 
 def ambiguous(finding: Finding) -> bool:
@@ -98,6 +89,16 @@ def _harmed(held_out: Sequence[HeldOut]) -> list[str]:
         f"held-out load case {h.load_case} is predicted worse than without the effect"
         for h in held_out
         if h.gain < -allowed
+    ]
+
+
+def _missed(held_out: Sequence[HeldOut]) -> list[str]:
+    """Load cases that the model does not predict, however much better than without the effects."""
+    return [
+        f"held-out load case {h.load_case} deviates from its prediction by an RMS of "
+        f"{h.law_granted.rms:.2f}, {h.law_granted.excess:.0f} standard deviations more than noise"
+        for h in held_out
+        if h.law_granted.excess > LIMIT
     ]
 
 
