@@ -43,8 +43,8 @@ class EffectModel:
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides, which are linear), d together, then m amplitudes of all members'
-    sizes. The priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot be
-    negative.
+    sizes. The priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot
+    be negative.
     """
 
     axle: Axle

@@ -110,8 +110,9 @@ class Discovery:
     """verdict: named, class (one of several), none (none needed) or unexplained.
 
     findings: effects worth naming, largest first; leads where the verdict is unexplained. traces: effects
-    that the data show but too small to matter; of the rig only where the set holds. sentences: the verdict in words. raw: map of the nominal
-    axle; tuned: after re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
+    that the data show but too small to matter; of the rig only where the set holds. sentences: the verdict in
+    words. adequacy: whether the final set explains the records. raw: map of the nominal axle; tuned: after
+    re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
     scan: places of the generic scan at the re-tuned axle, None where noise explains what remains there.
     widened: by how much all ranges of the parameters are wider than the study's, 1 where the records do not
     ask for that; beyond: paths of the parameters that the final axle has outside the study's. separating: of

@@ -101,8 +101,12 @@ def _one(finding: Finding) -> str:
 
 def odds_words(finding: Finding) -> str:
     """How sure an effect is, and against what: `log10 odds > 6 against its removal`."""
-    other = f"{_known(finding.against)} in its place" if finding.against else "its removal"
-    return f"log10 odds {odds_number(finding.log10_odds)} against {other}"
+    return f"log10 odds {odds_number(finding.log10_odds)} against {against_words(finding)}"
+
+
+def against_words(finding: Finding) -> str:
+    """The best alternative to an effect."""
+    return f"{_known(finding.against)} in its place" if finding.against else "its removal"
 
 
 def odds_number(log10_odds: float) -> str:

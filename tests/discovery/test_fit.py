@@ -25,7 +25,7 @@ def test_residual_and_its_derivatives_agree(with_hub: Fit) -> None:
     rng = np.random.default_rng(2)
     step = 1e-4 * rng.standard_normal(z.size) * model.prior_sd
     change = model.residual(z + step) - model.residual(z - step)
-    jacobian = np.hstack([model.tuning(z), model.growth(z, with_hub.residual)])
+    jacobian = np.hstack([model.tuning(z, with_hub.residual), model.growth(z, with_hub.residual)])
     expected = 2.0 * jacobian @ step
     assert np.linalg.norm(change - expected) < 0.01 * np.linalg.norm(expected)
 
