@@ -66,8 +66,8 @@ def effect_frame(found: Discovery) -> pd.DataFrame:
 
 COLUMNS = (
     "effect", "label", "place", "kind", "probability", "log10_odds", "against", "size", "value", "sd",
-    "unit", "typical", "times_typical", "in_words", "gain_ln_evidence", "detectability_sd", "wrong_name_chance", "rivals",
-    "physics", "shown_by", "mistaken_for",
+    "unit", "typical", "times_typical", "in_words", "gain_ln_evidence", "detectability_sd",
+    "wrong_name_chance", "rivals", "physics", "shown_by", "mistaken_for",
 )  # fmt: skip
 
 

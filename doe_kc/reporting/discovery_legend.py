@@ -50,8 +50,8 @@ LEGEND = {
     ),
     "Adequacy": (
         "How often noise alone leaves as much as remains: on the map of disagreements, and of load cases "
-        "held out. Something that the library does not list has odds of 2 % before the records; what remains can "
-        "raise them to the stated probability at most."
+        "held out. Something that the library does not list has odds of 2 % before the records; what "
+        "remains can raise them to the stated probability at most."
     ),
     "Trace": f"The records show it, but it is less than {RELEVANT:g} of its typical size.",
     "ln evidence": "Gained over the model without it; the price of its extra freedom is paid.",

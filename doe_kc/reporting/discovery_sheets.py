@@ -88,8 +88,8 @@ def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
     frame = effect_frame(found)
     heads = (
         "Id", "Effect", "Place", "Kind", "Probability", "log10 odds", "Against", "Size", "Value", "sd",
-        "Unit", "Typical", "Times typical", "In words", "ln evidence", "Detectability, sd", "Chance of a wrong name", "Rivals",
-        "What happens in the car", "Shown by", "Mistaken for",
+        "Unit", "Typical", "Times typical", "In words", "ln evidence", "Detectability, sd",
+        "Chance of a wrong name", "Rivals", "What happens in the car", "Shown by", "Mistaken for",
     )  # fmt: skip
     formats = [
         "", "", "", "", "0.0%", ODDS, "", "", "0.0000", "0.0000", "", "0.000", "0.00", "", "0.0", "0.0",
