@@ -54,7 +54,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     somewhere = None if before.agrees else bench.scanned(found.tuned, max(1.0, remaining.mean_square))
     decoy = best_decoy(compared, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
-    traces = tuple(f for f in every if not f.relevant and (holds.holds or not _on_rig(f)))
+    traces = shown_traces(every, holds)
     stands = _standings(found, (*relevant, *traces), len(library), resolved=resolved(found, holds))
     outside = beyond(model.space, found.plain)
     ambiguous = classes(relevant) if judged.kind == "class" else ()
@@ -122,9 +122,10 @@ def resolved(found: Search, holds: Adequacy) -> bool:
     return holds.holds and not any(open_)
 
 
-def _on_rig(finding: Finding) -> bool:
-    """Whether it is a fault of the rig: where the set does not hold, a trace of one stands for anything."""
-    return EFFECTS[finding.hypothesis.effect].on_rig
+def shown_traces(every: Sequence[Finding], holds: Adequacy) -> tuple[Finding, ...]:
+    """Effects too small to matter; of the rig only where the set holds: else they stand for anything."""
+    small = (f for f in every if not f.relevant)
+    return tuple(f for f in small if holds.holds or not EFFECTS[f.hypothesis.effect].on_rig)
 
 
 def _standings(

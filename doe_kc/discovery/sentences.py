@@ -126,8 +126,8 @@ def adequacy_words(holds: Adequacy) -> str:
     if holds.unlisted is None:
         return f"{text}; something that the library does not list, or a law of another shape, is at work."
     return (
-        f"{text}; something that the library does not list is at most {holds.unlisted:.0%} probable, with "
-        f"{UNLISTED:.0%} assumed before the records."
+        f"{text}; something that the library does not list is at most {100.0 * holds.unlisted:.0f} % probable, "
+        f"with {100.0 * UNLISTED:.0f} % assumed before the records."
     )
 
 
