@@ -125,8 +125,9 @@ def adequacy_words(holds: Adequacy) -> str:
         )
     if holds.unlisted is None:
         return f"{text}; something that the library does not list, or a law of another shape, is at work."
+    most = 100.0 * holds.unlisted
     return (
-        f"{text}; something that the library does not list is at most {100.0 * holds.unlisted:.0f} % probable, "
+        f"{text}; something that the library does not list is at most {most:.0f} % probable, "
         f"with {100.0 * UNLISTED:.0f} % assumed before the records."
     )
 
