@@ -17,7 +17,13 @@ from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
 from doe_kc.reporting.discovery_effects import effect_frame
 from doe_kc.reporting.discovery_gaps import gap_rows
-from doe_kc.reporting.discovery_tables import disagreement_rows, library_frame, parameter_frame
+from doe_kc.reporting.discovery_tables import (
+    disagreement_rows,
+    library_frame,
+    ordered_standings,
+    parameter_frame,
+)
+from doe_kc.reporting.discovery_words import STATUS_WORDS
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
@@ -117,6 +123,7 @@ def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
     )
     title(ws, f"Library of effects: {study}", below)
     frame = library_frame(found)
+    frame["status"] = [STATUS_WORDS[s.status] for s in ordered_standings(found)]
     heads = (
         "Id", "Effect", "Place", "Status", "Detectable size", "Times typical", "Typical size", "Absorbed, %",
         "Hidden by", "Parts to measure", "Looks like", "Mistaken for", "What happens in the car", "Shown by",

@@ -79,7 +79,7 @@ def test_library_names_every_hypothesis_once() -> None:
     assert len(frame) == len(found.standings)
     first = frame.iloc[0]
     assert (first["effect"], first["status"]) == ("hub_compliance", "found")
-    excluded = frame[frame["status"] == "would have shown"]
+    excluded = frame[frame["status"] == "excluded"]
     assert (excluded["detectable_times_typical"] <= 1.0).all()
     assert excluded["detectable"].str.len().min() > 3
     assert frame["physics"].str.endswith(".").all()
