@@ -83,11 +83,11 @@ class Bench:
             self.watch(what, 1)
         return [out[i] for i in range(len(starts))]
 
-    def held_out(self, tuned: Fit, final: Fit) -> tuple[HeldOut, ...]:
-        """Every load case of the records, predicted from the others."""
+    def held_out(self, tuned: Fit, plain: Fit, final: Fit) -> tuple[HeldOut, ...]:
+        """Every load case of the records, predicted from the others; see `held_out`."""
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
         found: dict[int, HeldOut] = {}
-        for i, result in self._run(held_out, [(tuned, final, case) for case in cases]):
+        for i, result in self._run(held_out, [(tuned, plain, final, case) for case in cases]):
             found[i] = result
             self.watch("load cases held out", 1)
         return tuple(found[i] for i in range(len(cases)))

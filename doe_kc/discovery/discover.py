@@ -7,22 +7,26 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from doe_kc.discovery.adequacy import Adequacy, adequacy
+from doe_kc.discovery.alternatives import Alternatives, alternatives
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import raw_map, remaining_map
 from doe_kc.discovery.extra_test import ExtraTest, extra_tests
-from doe_kc.discovery.findings import accepted_at, findings
+from doe_kc.discovery.findings import findings
 from doe_kc.discovery.gaps import gaps, returned
+from doe_kc.discovery.granted import sticks
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import Search, accepted_steps, threshold
+from doe_kc.discovery.search import Search, accepted_at, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
 from doe_kc.discovery.standing import Standing, Status, standings
 from doe_kc.discovery.trials import Trial
-from doe_kc.discovery.verdict import classes, law_explains, verdict
+from doe_kc.discovery.verdict import classes, verdict
 from doe_kc.discovery.widening import beyond, searched
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.threads import one_thread
 
@@ -41,26 +45,29 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     remaining = remaining_map(contrasts(found.final.model.likelihood), found.final.residual, project)
     shapes = contrasts(model.likelihood)
     before = remaining_map(shapes, found.tuned.residual, projection(found.tuned))
-    small = law_explains(before, remaining, found.tuned, found.plain)
-    every = findings(found, 1.0 if small else remaining.chance)
+    compared = alternatives(found, max(1.0, remaining.mean_square), bench)
+    every = findings(found, compared)
     relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
-    predicted = bench.held_out(found.tuned, found.plain) if relevant else ()
-    judged = verdict(relevant, before, remaining, predicted, found.tuned, found.plain)
+    predicted = bench.held_out(found.tuned, found.plain, found.final) if relevant else ()
+    judged = verdict(relevant, remaining, predicted, found.tuned, found.plain)
+    holds = adequacy(remaining, predicted)
     somewhere = None if before.agrees else bench.scanned(found.tuned, max(1.0, remaining.mean_square))
-    decoy = best_decoy(found, relevant)
+    decoy = best_decoy(compared, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
-    stands = _standings(found, every, len(library))
+    traces = shown_traces(every, holds)
+    stands = _standings(found, (*relevant, *traces), len(library), resolved=resolved(found, holds))
     outside = beyond(model.space, found.plain)
     ambiguous = classes(relevant) if judged.kind == "class" else ()
-    separating = _separating(found, relevant, ambiguous)
+    separating = _separating(compared, ambiguous)
     return Discovery(
         verdict=judged.kind,
-        sentences=sentences(judged, relevant, whole, remaining, somewhere, outside, widened),
+        sentences=sentences(judged, relevant, holds, whole, remaining, somewhere, outside, widened),
         findings=relevant,
-        traces=tuple(f for f in every if not f.relevant),
+        traces=traces,
         classes=ambiguous,
         standings=stands,
         unexplained=tuple(remaining.worst(WORST)) if judged.kind == "unexplained" else (),
+        adequacy=holds,
         search=found,
         decoy=decoy,
         nominal=nominal,
@@ -80,24 +87,23 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     )
 
 
-def best_decoy(found: Search, relevant: Sequence[Finding]) -> Trial | None:
-    """The best refit of another effect in place of the one that was accepted for the largest finding."""
-    for finding in relevant[:1]:
-        for step in accepted_steps(found):
-            if step.trials[0].hypothesis == finding.hypothesis:
-                others = [t for t in step.trials if t.hypothesis.effect != finding.hypothesis.effect]
-                return others[0] if others else None
+def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) -> Trial | None:
+    """The best refit of another effect in place of the largest finding, None where none is plausible."""
+    for own in compared:
+        if relevant and own.hypothesis == relevant[0].hypothesis:
+            others = [t for t in own.trials if t.hypothesis.effect != own.hypothesis.effect]
+            return others[0] if others else None
     return None
 
 
 def _separating(
-    found: Search, relevant: Sequence[Finding], ambiguous: Sequence[Sequence[str]]
+    compared: Sequence[Alternatives], ambiguous: Sequence[Sequence[str]]
 ) -> dict[tuple[str, str], tuple[ExtraTest, ...]]:
     """Of every class, the load cases that tell its first effect from each other one."""
     out: dict[tuple[str, str], tuple[ExtraTest, ...]] = {}
-    steps = {f.hypothesis.effect: accepted_at(found, f.hypothesis) for f in relevant}
+    trials = {c.hypothesis.effect: c.trials for c in compared}
     for first, *others in ambiguous:
-        own, *rest = steps[first].trials
+        own, *rest = trials[first]
         for other in others:
             rival = next((t for t in rest if t.hypothesis.effect == other), None)
             if rival is not None:
@@ -105,14 +111,35 @@ def _separating(
     return out
 
 
-def _standings(found: Search, every: Sequence[Finding], count: int) -> tuple[Standing, ...]:
+def resolved(found: Search, holds: Adequacy) -> bool:
+    """Whether limits of effects that are not in the model mean anything.
+
+    They take the model for right. Where what remains is not noise it is not; where the law of a friction is
+    not the model's, what is missing of that hides effects larger than any such limit.
+    """
+    final = found.final
+    open_ = (found.shares.get(h.name, 0.0) > 0.0 and sticks(final, h) for h in final.model.members)
+    return holds.holds and not any(open_)
+
+
+def shown_traces(every: Sequence[Finding], holds: Adequacy) -> tuple[Finding, ...]:
+    """Effects too small to matter; of the rig only where the set holds: else they stand for anything."""
+    small = (f for f in every if not f.relevant)
+    return tuple(f for f in small if holds.holds or not EFFECTS[f.hypothesis.effect].on_rig)
+
+
+def _standings(
+    found: Search, named: Sequence[Finding], count: int, *, resolved: bool
+) -> tuple[Standing, ...]:
+    """named: findings and traces that are given."""
     critical, last = float(np.sqrt(2.0 * threshold(count))), found.steps[-1].before
     members: list[tuple[Screened, Status]] = []
-    for f in every:
-        step = accepted_at(found, f.hypothesis)
-        own = next(s for s in step.screened if s.hypothesis == f.hypothesis)
+    statuses: dict[str, Status] = {f.hypothesis.name: "found" if f.relevant else "trace" for f in named}
+    for hypothesis in found.final.model.members:
+        step = accepted_at(found, hypothesis)
+        own = next(s for s in step.screened if s.hypothesis == hypothesis)
         own = own.with_errors(step.before.model.likelihood, last.model.likelihood)
-        members.append((own, "found" if f.relevant else "trace"))
+        members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
-    return standings(last, projection(last, effects=False), others, members, critical)
+    return standings(last, projection(last, effects=False), others, members, critical, resolved=resolved)

@@ -1,20 +1,22 @@
-"""From the search's steps to findings: sizes with their uncertainty, probabilities, rivals."""
+"""From the final set of effects to findings: sizes with their uncertainty, probabilities, rivals."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from scipy.special import log_ndtr, logsumexp, ndtr
 
+from doe_kc.discovery.alternatives import Alternatives
+from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.disagreement import NOISE
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Estimate, Finding, Rival
-from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import Search, Step, accepted_steps
+from doe_kc.discovery.search import Search
 from doe_kc.discovery.standing import wrong_name_chance
 from doe_kc.discovery.trials import Trial, amounts
 from doe_kc.discovery.unseen import unseen
@@ -26,58 +28,59 @@ WEAK, STRONG = 6.0, 10.0
 other."""
 BESIDE = 0.01
 """Share of the largest gain from which an effect between the two is named where laws had to be opened."""
-UNLISTED = 0.02
-"""Prior odds that an effect outside the library, which looks like the one named, is at work instead."""
 ALIKE = 0.05
 """Chance of a wrong name from which two effects are alike to the records."""
 DECISIVE = 4.6
 """ln evidence, a hundred to one, that settles even between effects that are alike."""
 MENTIONED = 0.01
 """Probability from which a rival is listed."""
+NOTHING = ""
+"""In place of an effect's id: none at all."""
 
 
-def findings(found: Search, unexplained: float) -> tuple[Finding, ...]:
-    """Every member of the final model. unexplained: chance that noise alone leaves what remains."""
+def findings(found: Search, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
+    """Every member of the final model, each judged beside all the others. compared: in their order."""
     hidden = unseen(found)
     every = [
-        _finding(found, h, place, hidden[place.start - found.final.model.dimension :], unexplained)
-        for h, place in found.final.model.places()
+        _finding(found, one, place, hidden[place.start - found.final.model.dimension :])
+        for one, (_, place) in zip(compared, found.final.model.places(), strict=True)
     ]
     most = max((f.gain for f in every), default=0.0)
     least = BESIDE * most if any(found.shares.values()) else 0.0
-    return tuple(replace(f, relevant=f.relevant and _stands_out(found, f, least)) for f in every)
+    return tuple(
+        replace(f, relevant=f.relevant and _stands_out(one, least))
+        for f, one in zip(every, compared, strict=True)
+    )
 
 
-def _stands_out(found: Search, finding: Finding, least: float) -> bool:
+def _stands_out(own: Alternatives, least: float) -> bool:
     """Whether the effect is more than what the law of a much larger one could leave behind.
 
-    A weak one is named where noise did not explain what remained without it.
+    A weak one is named where noise does not explain what remains without it.
     """
-    strength = float(np.sqrt(2.0 * max(0.0, found.losses[finding.hypothesis.name])))
-    asked = accepted_at(found, finding.hypothesis).map.chance < NOISE
-    return strength >= STRONG or ((strength >= WEAK or asked) and finding.gain >= least)
+    strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
+    if strength >= STRONG:
+        return True
+    return own.trials[0].gain >= least and (strength >= WEAK or own.map.chance < NOISE)
 
 
-def _finding(
-    found: Search, hypothesis: Hypothesis, place: slice, hidden: FloatArray, unexplained: float
-) -> Finding:
+def _finding(found: Search, own: Alternatives, place: slice, hidden: FloatArray) -> Finding:
     """hidden: standard deviations by effects that are not seen, of its sizes and those behind them."""
-    final = found.final
-    step = accepted_at(found, hypothesis)
-    shares = probabilities(step.trials, step.temper, unexplained)
-    amplitudes = found.plain.z[place]
-    sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, amplitudes, strict=True)]
-    sd = _with_law(hypothesis, amplitudes, np.sqrt(np.diag(final.covariance))[place], found.shares)
-    own = next(s for s in step.screened if s.hypothesis == hypothesis)
-    detectability = _detectability(found.plain, place) if sizes else own.detectability
+    hypothesis = own.hypothesis
+    logs = log_probabilities(own, [s.hypothesis for s in found.steps[0].screened])
+    against, odds = best_alternative(logs, hypothesis.effect)
+    most_probable, _ = amplitudes(found.plain, hypothesis)
+    sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
+    sd = _with_law(hypothesis, most_probable, amplitudes(found.final, hypothesis)[1], found.shares)
+    detectability = _detectability(found.plain, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
-    chances = _wrong_names(step, own, detectability)
-    for effect, chance in _mistaken(step).items():
+    chances = _wrong_names(own, detectability)
+    for effect, chance in _mistaken(own).items():
         chances[effect] = max(chances.get(effect, 0.0), chance)
     rivals = tuple(
-        Rival(effect, p)
-        for effect, p in sorted(shares.items(), key=lambda item: -item[1])
-        if effect != hypothesis.effect and p >= MENTIONED
+        Rival(effect, float(np.exp(log)))
+        for effect, log in sorted(logs.items(), key=lambda item: -item[1])
+        if effect not in (hypothesis.effect, NOTHING) and np.exp(log) >= MENTIONED
     )
     return Finding(
         hypothesis=hypothesis,
@@ -85,54 +88,53 @@ def _finding(
             estimate(s, a, float(np.hypot(e, more)))
             for (s, a), e, more in zip(sizes, sd, hidden[: len(sizes)], strict=True)
         ),
-        probability=shares.get(hypothesis.effect, 0.0),
+        probability=float(np.exp(logs[hypothesis.effect])),
+        log10_odds=odds,
+        against=against,
         rivals=rivals,
-        gain=next(t.gain for t in step.trials if t.hypothesis == hypothesis),
+        gain=own.trials[0].gain,
         detectability=detectability,
         wrong_name=max(chances.values(), default=0.0),
-        alike=_alike(step, own, chances),
+        alike=_alike(own, chances),
         largest=max((a for _, a, _ in counted), default=1.0),
         believed=believed(counted),
-        relevant=matters(counted) and not _trace_would_do(step, hypothesis),
-        elsewhere=_elsewhere(step, hypothesis),
+        relevant=matters(counted) and not _trace_would_do(own),
+        elsewhere=_elsewhere(own),
     )
 
 
 def _with_law(
-    hypothesis: Hypothesis, amplitudes: FloatArray, sd: FloatArray, shares: Mapping[str, float]
+    hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray, shares: Mapping[str, float]
 ) -> FloatArray:
     """(m,) standard deviations; a stiffness whose law is another is not one number but a range."""
     share = shares.get(hypothesis.name, 0.0)
     own = [
         share * a if s.growth == "compliance" else 0.0
-        for s, a in zip(hypothesis.sizes, amplitudes, strict=True)
+        for s, a in zip(hypothesis.sizes, most_probable, strict=True)
     ]
     return np.asarray(np.hypot(sd, own))
 
 
-def accepted_at(found: Search, hypothesis: Hypothesis) -> Step:
-    """The step that brought a member in."""
-    return next(s for s in accepted_steps(found) if s.trials[0].hypothesis == hypothesis)
+def log_probabilities(own: Alternatives, library: Sequence[Hypothesis]) -> dict[str, float]:
+    """Effect id -> ln of its probability in this place of the final set; NOTHING: of none at all.
 
-
-def probabilities(trials: Sequence[Trial], temper: float, unexplained: float) -> dict[str, float]:
-    """Effect id -> probability among the refitted ones, none at all, and one outside the library.
-
-    Prior odds are equal for all effects, shared between the places of each. What remains unexplained counts
-    against all: a Bayes factor of at most -e p ln p for the model (T. Sellke, M. J. Bayarri, J. O. Berger,
-    The American Statistician 55, 2001).
+    Prior odds are those of the effects, shared between the places that each has in the library.
     """
-    logs = {t.hypothesis.name: t.gain / temper for t in trials}
-    top = max(logs.values())
-    p = min(max(unexplained, 1e-4), 1.0)
-    support = -np.e * p * np.log(p) if p < np.exp(-1.0) else 1.0
-    unlisted = top + float(np.log(UNLISTED / support))
-    total = float(logsumexp([*logs.values(), 0.0, unlisted]))
-    out: dict[str, float] = {}
-    for t in trials:
-        share = float(np.exp(logs[t.hypothesis.name] - total))
-        out[t.hypothesis.effect] = out.get(t.hypothesis.effect, 0.0) + share
-    return out
+    places = Counter(h.effect for h in library)
+    logs: dict[str, float] = {NOTHING: 0.0}
+    for t in own.trials:
+        effect = t.hypothesis.effect
+        log = t.gain / own.temper - float(np.log(max(places[effect], 1)))
+        logs[effect] = float(np.logaddexp(logs.get(effect, -np.inf), log))
+    total = float(logsumexp(list(logs.values())))
+    return {effect: log - total for effect, log in logs.items()}
+
+
+def best_alternative(logs: Mapping[str, float], effect: str) -> tuple[str, float]:
+    """What is likeliest in an effect's stead, and log10 of the effect's odds against that."""
+    others = {e: log for e, log in logs.items() if e != effect}
+    best = max(others, key=lambda e: others[e])
+    return best, float((logs[effect] - others[best]) / np.log(10.0))
 
 
 def estimate(size: Size, amplitude: float, sd: float) -> Estimate:
@@ -155,16 +157,17 @@ def _detectability(final: Fit, place: slice) -> float:
     """Standard deviations that the effect makes at its size, all else re-tuned."""
     covariance = final.covariance[place, place]
     information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
-    amplitudes = final.z[place]
-    return float(np.sqrt(max(0.0, float(amplitudes @ information @ amplitudes))))
+    sizes = final.z[place]
+    return float(np.sqrt(max(0.0, float(sizes @ information @ sizes))))
 
 
-def _wrong_names(step: Step, own: Screened, detectability: float) -> dict[str, float]:
-    """Effect id -> chance that noise names it instead, from the remaining changes where the search stood."""
-    project = projection(step.before)
-    direction = _unit(project(own.change))
+def _wrong_names(own: Alternatives, detectability: float) -> dict[str, float]:
+    """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
+    project = projection(own.without)
+    first, *others = own.screened
+    direction = _unit(project(first.change))
     out: dict[str, float] = {}
-    for s in step.screened:
+    for s in others:
         effect = s.hypothesis.effect
         if effect != own.hypothesis.effect and not s.failed:
             chance = wrong_name_chance(detectability, float(direction @ _unit(project(s.change))))
@@ -172,17 +175,17 @@ def _wrong_names(step: Step, own: Screened, detectability: float) -> dict[str, f
     return out
 
 
-def _mistaken(step: Step) -> dict[str, float]:
-    """Effect id -> chance that noise alone puts its refit before the best one's, in truth the right one.
+def _mistaken(own: Alternatives) -> dict[str, float]:
+    """Effect id -> chance that noise alone puts its refit before the effect's own, in truth the right one.
 
     Phi(-d / 2), d the distance of what both predict in standard deviations of the records.
     """
-    best, *rest = step.trials
+    first, *rest = own.trials
     out: dict[str, float] = {}
     for t in rest:
         effect = t.hypothesis.effect
-        if effect != best.hypothesis.effect and _whole(t):
-            apart = float(np.linalg.norm(t.fit.residual - best.fit.residual))
+        if effect != first.hypothesis.effect and _whole(t):
+            apart = float(np.linalg.norm(t.fit.residual - first.fit.residual))
             out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
     return out
 
@@ -192,31 +195,31 @@ def _whole(trial: Trial) -> bool:
     return all(abs(a) > max(ABSENT, sd) for s, a, sd in amounts(trial) if s.needed)
 
 
-def _alike(step: Step, own: Screened, chances: Mapping[str, float]) -> tuple[str, ...]:
+def _alike(own: Alternatives, chances: Mapping[str, float]) -> tuple[str, ...]:
     """Effects that the records hardly tell from this one and whose evidence is not decisively less."""
-    best = max(t.gain for t in step.trials if t.hypothesis.effect == own.hypothesis.effect)
-    rivals = (t for t in step.trials if t.hypothesis.effect != own.hypothesis.effect and _whole(t))
-    close = dict.fromkeys(t.hypothesis.effect for t in rivals if (best - t.gain) / step.temper < DECISIVE)
+    best = max(t.gain for t in own.trials if t.hypothesis.effect == own.hypothesis.effect)
+    rivals = (t for t in own.trials if t.hypothesis.effect != own.hypothesis.effect and _whole(t))
+    close = dict.fromkeys(t.hypothesis.effect for t in rivals if (best - t.gain) / own.temper < DECISIVE)
     return tuple(e for e in close if chances.get(e, 0.0) > ALIKE)
 
 
-def _trace_would_do(step: Step, own: Hypothesis) -> bool:
+def _trace_would_do(own: Alternatives) -> bool:
     """Whether a trace of another effect explains the records about as well: every car has those."""
-    best = next(t.gain for t in step.trials if t.hypothesis == own)
+    first, *rest = own.trials
     return any(
-        t.hypothesis.effect != own.effect
+        t.hypothesis.effect != own.hypothesis.effect
         and t.gain > 0.0
-        and (best - t.gain) / step.temper < DECISIVE
+        and (first.gain - t.gain) / own.temper < DECISIVE
         and not matters(amounts(t))
-        for t in step.trials
+        for t in rest
     )
 
 
-def _elsewhere(step: Step, own: Hypothesis) -> tuple[str, ...]:
+def _elsewhere(own: Alternatives) -> tuple[str, ...]:
     """Other places of the same effect whose evidence is not decisively less."""
-    best = next(t.gain for t in step.trials if t.hypothesis == own)
-    others = (t for t in step.trials if t.hypothesis.effect == own.effect and t.hypothesis != own)
-    close = (t for t in others if (best - t.gain) / step.temper < DECISIVE)
+    first, *rest = own.trials
+    others = (t for t in rest if t.hypothesis.effect == own.hypothesis.effect)
+    close = (t for t in others if (first.gain - t.gain) / own.temper < DECISIVE)
     return tuple(t.hypothesis.location for t in close if t.hypothesis.location)
 
 

@@ -14,8 +14,9 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
 from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.correlation.likelihood import rewhitened
+from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
 
@@ -156,6 +157,24 @@ def with_errors(found: Fit, model: EffectModel) -> Fit:
     )
 
 
+def to_errors(found: Fit, likelihood: Likelihood) -> Fit:
+    """The fit followed to the same records with other errors, from where it is."""
+    if found.model.likelihood is likelihood:
+        return found
+    model = found.model.with_errors(likelihood)
+    return followed(with_errors(found, model), model)
+
+
+def last_member(found: Fit, hypothesis: Hypothesis) -> Fit:
+    """The same fit with one member's sizes behind those of all others."""
+    model = found.model
+    place = next(p for h, p in model.places() if h == hypothesis)
+    own = np.r_[place]
+    order = np.concatenate([np.delete(np.arange(found.z.size), own), own])
+    moved = model.without(hypothesis).extended(hypothesis)
+    return replace(found, model=moved, z=found.z[order], jacobian=found.jacobian[:, order])
+
+
 def _expanded(
     model: EffectModel,
     z: FloatArray,
@@ -164,7 +183,7 @@ def _expanded(
     tuning: FloatArray | None = None,
 ) -> Fit:
     growth = model.growth(z, residual)
-    jacobian = np.hstack([model.tuning(z) if tuning is None else tuning, growth])
+    jacobian = np.hstack([model.tuning(z, residual) if tuning is None else tuning, growth])
     cost = cost_of(model, z, residual)
     return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
 

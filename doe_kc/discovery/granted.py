@@ -110,9 +110,18 @@ def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatA
     for curve, change in zip(model.likelihood.curves, changes, strict=True):
         key = (curve.response, curve.branches)
         largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
+    return Made(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
+
+
+def sticks(found: Fit, member: Hypothesis) -> bool:
+    """Whether a member of a fit is a friction."""
+    return _frictional(found.model, member, found.z)
+
+
+def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
+    place = next(p for h, p in model.places() if h == member)
     alone = replace(model, members=(member,))
-    axle = alone.with_effects(np.concatenate([z[: model.dimension], z[place]]))
-    return Made(changes, largest, axle.topology.frictional, float(whitened @ whitened))
+    return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
 
 
 def _widened(curve: CurveData, at: int, made: Sequence[Made], shares: Sequence[float]) -> CurveData:

@@ -7,29 +7,42 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.fit import Fit, fit, followed
 from doe_kc.typing import FloatArray
 
 STEPS = 8
 """Most steps of a refit, which begins close to where it ends."""
+LEVEL = 0.02
+"""Standard deviation of the noise's own size, relative: it is taken from three runs of every load case."""
 
 
 @dataclass(frozen=True)
 class Prediction:
     """rms: of the held-out records' deviations in standard deviations of the prediction, those of its
-    parameters among them; 1 is as good as predicted. score: ln of the predictive density, relative."""
+    parameters among them; 1 is as good as predicted. score: ln of the predictive density, relative. size:
+    number of records."""
 
     rms: float
     score: float
+    size: int
+
+    @property
+    def excess(self) -> float:
+        """Standard deviations by which the RMS is above 1, of so many records and of the noise's size."""
+        return (self.rms - 1.0) / float(np.hypot(1.0 / np.sqrt(2.0 * self.size), LEVEL))
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """One load case, predicted by the re-tuned model without the effects and by the one with them."""
+    """One load case, predicted by the re-tuned model without the effects and by the one with them.
+
+    law_granted: by that, what the laws of its effects leave open among the records' errors.
+    """
 
     load_case: str
     tuned: Prediction
     with_effect: Prediction
+    law_granted: Prediction
 
     @property
     def gain(self) -> float:
@@ -37,9 +50,15 @@ class HeldOut:
         return self.with_effect.score - self.tuned.score
 
 
-def held_out(tuned: Fit, final: Fit, case: str) -> HeldOut:
-    """One load case of the records, predicted from all the others."""
-    return HeldOut(case, _prediction(_without(tuned, case)), _prediction(_without(final, case)))
+def held_out(tuned: Fit, plain: Fit, final: Fit, case: str) -> HeldOut:
+    """One load case of the records, predicted from all the others.
+
+    plain, final: with the effects, to the records' own errors and to those that grant their laws.
+    """
+    with_effect = law_granted = _prediction(_without(plain, case))
+    if final.model.likelihood is not plain.model.likelihood:
+        law_granted = _prediction(followed(final, replace(final.model, left_out=case)))
+    return HeldOut(case, _prediction(_without(tuned, case)), with_effect, law_granted)
 
 
 def _without(found: Fit, case: str) -> Fit:
@@ -56,4 +75,4 @@ def _prediction(found: Fit) -> Prediction:
     root = cholesky(covariance, lower=True)
     reduced: FloatArray = solve_triangular(root, residual, lower=True)
     score = -0.5 * float(reduced @ reduced) - float(np.sum(np.log(np.diag(root))))
-    return Prediction(float(np.sqrt(np.mean(reduced**2))), score)
+    return Prediction(float(np.sqrt(np.mean(reduced**2))), score, int(reduced.size))

@@ -14,7 +14,7 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
-from doe_kc.discovery.calibration import input_gains
+from doe_kc.discovery.calibration import calibrated
 from doe_kc.effects import apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -29,6 +29,8 @@ RIG = 6.0
 """The same for the nuisances of the rig, in their standard deviations."""
 DIFFERENCE = 1e-3
 """Step of amplitudes for their derivatives, in typical sizes."""
+STRETCH = 0.1
+"""Step of the inputs' calibrations for their derivatives, in standard deviations."""
 NO_CHARACTERISTICS = np.zeros(0)
 
 
@@ -39,10 +41,10 @@ class EffectModel:
     left_out: load case whose records are held back from fits, None for none. sides: (M, k) change of the
     residual by each difference between the sides, in its standard deviation.
 
-    A point is z = (u, b, a), (d + m,): places of the parameters, linear nuisances (calibrations of the
-    rig's inputs, differences between the sides), d together, then m amplitudes of all members' sizes. The
-    priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot be
-    negative.
+    A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
+    then differences between the sides, which are linear), d together, then m amplitudes of all members'
+    sizes. The priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot
+    be negative.
     """
 
     axle: Axle
@@ -66,10 +68,14 @@ class EffectModel:
         return tuple(s for h in self.members for s in h.sizes)
 
     @cached_property
-    def nuisances(self) -> FloatArray:
-        """(M, k) derivative of the residual to the nuisances, each in its standard deviation."""
-        rig = input_gains(self.likelihood)
-        return rig if self.sides is None else np.hstack([rig, self.sides])
+    def cases(self) -> tuple[str, ...]:
+        """(k,) load cases of the records, whose inputs' calibrations are the first nuisances."""
+        return tuple(dict.fromkeys(c.load_case for c in self.likelihood.curves))
+
+    @property
+    def calibrations(self) -> slice:
+        """Places of the calibrations in z."""
+        return slice(self.space.dimension, self.space.dimension + len(self.cases))
 
     @property
     def parameters(self) -> int:
@@ -79,7 +85,8 @@ class EffectModel:
     @property
     def dimension(self) -> int:
         """d, parameters and nuisances: all that tuning may move."""
-        return self.space.dimension + int(self.nuisances.shape[1])
+        sides = 0 if self.sides is None else int(self.sides.shape[1])
+        return self.space.dimension + len(self.cases) + sides
 
     @cached_property
     def prior_sd(self) -> FloatArray:
@@ -139,24 +146,40 @@ class EffectModel:
         return {s.name: float(a) for s, a in zip(hypothesis.sizes, z[place], strict=True)}
 
     def axle_at(self, z: FloatArray) -> Axle:
-        """The axle at a point."""
+        """The axle at a point, its load cases driven as the rig says."""
         return with_values(self.with_effects(z), self.space.values(z[: self.parameters]))
 
     def curves(self, z: FloatArray) -> CurveSet:
         """What the rig would read; NotConverged when the axle has no equilibrium."""
-        axle = self.axle_at(z)
+        axle = self._driven(self.axle_at(z), z)
         return observed(axle, curve_set(solve(axle)))
+
+    def _driven(self, axle: Axle, z: FloatArray) -> Axle:
+        return calibrated(axle, self.cases, z[self.calibrations])
 
     def residual(self, z: FloatArray) -> FloatArray:
         """(M,) in standard deviations of the data."""
         plain = self.likelihood.residual(self.curves(z), NO_CHARACTERISTICS)
-        return np.asarray(plain + self.nuisances @ z[self.parameters : self.dimension])
+        if self.sides is None:
+            return plain
+        return np.asarray(plain + self.sides @ z[self.calibrations.stop : self.dimension])
 
-    def tuning(self, z: FloatArray) -> FloatArray:
-        """(M, d) derivative of the residual to parameters (exact) and nuisances."""
-        expansion = linearize(self.with_effects(z), self.space, z[: self.parameters])
+    def tuning(self, z: FloatArray, residual: FloatArray) -> FloatArray:
+        """(M, d) derivative of the residual to parameters (exact) and nuisances. residual: at z."""
+        expansion = linearize(self._driven(self.with_effects(z), z), self.space, z[: self.parameters])
         found = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
-        return np.hstack([found, self.nuisances])
+        columns = [found, self._stretched(z, residual)]
+        return np.hstack(columns if self.sides is None else [*columns, self.sides])
+
+    def _stretched(self, z: FloatArray, residual: FloatArray) -> FloatArray:
+        """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""
+        moved = z.copy()
+        moved[self.calibrations] += STRETCH
+        change = (self.residual(moved) - residual) / STRETCH
+        out = np.zeros((residual.size, len(self.cases)))
+        for curve, place in self.likelihood.slices():
+            out[place, self.cases.index(curve.load_case)] = change[place]
+        return out
 
     def growth(self, z: FloatArray, residual: FloatArray, *, which: slice | None = None) -> FloatArray:
         """(M, m) derivative to the amplitudes by forward differences. residual: at z."""

@@ -8,25 +8,22 @@ import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.fit import Fit, followed, with_errors
+from doe_kc.discovery.fit import Fit, to_errors
 
 DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""
 
 
-def pruned(
-    found: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]
-) -> tuple[Fit, dict[str, float]]:
-    """The fit without the members that cost more evidence than they bring.
+def pruned(found: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]) -> Fit:
+    """The fit without the members, but the latest, that cost more evidence than they bring.
 
-    Also what the model would lose without each but the latest, ln evidence. without_law: of a member whose
-    law is open, errors that do not grant it, or what it makes would pass for an error of the records.
+    without_law: of a member whose law is open, errors that do not grant it, or what it makes would pass for
+    an error of the records.
     """
-    losses: dict[str, float] = {}
     while len(found.model.members) > 1:
         losses = {h.name: _loss(found, place) for h, place in list(found.model.places())[:-1]}
         members = [(h, p) for h, p in found.model.places() if losses.get(h.name, np.inf) < DOUBTFUL * least]
-        withs = [_judged(found, without_law.get(h.name)) for h, _ in members]
+        withs = [to_errors(found, without_law.get(h.name, found.model.likelihood)) for h, _ in members]
         starts = [
             (w.model.without(h), np.delete(w.z, np.r_[place]))
             for w, (h, place) in zip(withs, members, strict=True)
@@ -40,20 +37,8 @@ def pruned(
         least_lost = min(kept, key=lambda name: losses[name], default="")
         if not least_lost or losses[least_lost] > least:
             break
-        found = _with_errors(kept[least_lost], found.model.likelihood)
-    return found, losses
-
-
-def _judged(found: Fit, errors: Likelihood | None) -> Fit:
-    """The fit under the errors that a member is judged by."""
-    return found if errors is None else _with_errors(found, errors)
-
-
-def _with_errors(found: Fit, errors: Likelihood) -> Fit:
-    if found.model.likelihood is errors:
-        return found
-    model = found.model.with_errors(errors)
-    return followed(with_errors(found, model), model)
+        found = to_errors(kept[least_lost], found.model.likelihood)
+    return found
 
 
 def _loss(found: Fit, place: slice) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from doe_kc.discovery.adequacy import Adequacy
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.extra_test import ExtraTest
@@ -44,17 +45,21 @@ class Rival:
 class Finding:
     """An effect that the data ask for.
 
-    probability: that it is this effect, in whatever place. rivals: most probable first. gain: ln of the
-    evidence over the model without it. detectability: standard deviations that it makes after re-tuning.
-    wrong_name: chance that noise names its closest rival instead. alike: effects that the records hardly
-    tell from it, whatever their odds. largest: its largest amplitude, in typical sizes. believed: whether
-    that is not surely too large. relevant: whether it is worth naming. elsewhere: other places that explain
-    the records about as well.
+    All is judged beside the other effects of the final set. probability: that it is this effect, in whatever
+    place, among it, none at all, and its rivals in its place, each refitted. log10_odds: of the effect
+    against the best of those, `against`: the id of a rival, empty for none at all. rivals: most probable
+    first. gain: ln of the evidence over the set without it. detectability: standard deviations that it makes
+    after re-tuning. wrong_name: chance that noise names its closest rival instead. alike: effects that the
+    records hardly tell from it, whatever their odds. largest: its largest amplitude, in typical sizes.
+    believed: whether that is not surely too large. relevant: whether it is worth naming. elsewhere: other
+    places that explain the records about as well.
     """
 
     hypothesis: Hypothesis
     estimates: tuple[Estimate, ...]
     probability: float
+    log10_odds: float
+    against: str
     rivals: tuple[Rival, ...]
     gain: float
     detectability: float
@@ -105,8 +110,9 @@ class Discovery:
     """verdict: named, class (one of several), none (none needed) or unexplained.
 
     findings: effects worth naming, largest first; leads where the verdict is unexplained. traces: effects
-    that the data show but too small to matter. sentences: the verdict in words. raw: map of the nominal
-    axle; tuned: after re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
+    that the data show but too small to matter; of the rig only where the set holds. sentences: the verdict in
+    words. adequacy: whether the final set explains the records. raw: map of the nominal axle; tuned: after
+    re-tuning; final: with the effects. nominal: (M,) residual of the nominal axle.
     scan: places of the generic scan at the re-tuned axle, None where noise explains what remains there.
     widened: by how much all ranges of the parameters are wider than the study's, 1 where the records do not
     ask for that; beyond: paths of the parameters that the final axle has outside the study's. separating: of
@@ -120,6 +126,7 @@ class Discovery:
     classes: tuple[tuple[str, ...], ...]
     standings: tuple[Standing, ...]
     unexplained: tuple[tuple[Contrast, float], ...]
+    adequacy: Adequacy
     search: Search
     decoy: Trial | None
     nominal: FloatArray

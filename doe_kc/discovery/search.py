@@ -12,7 +12,7 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
-from doe_kc.discovery.fit import Fit, fit, followed, with_errors
+from doe_kc.discovery.fit import Fit, fit, to_errors
 from doe_kc.discovery.granted import closed, opened
 from doe_kc.discovery.leaders import compatible, leaders, overlooked
 from doe_kc.discovery.model import EffectModel
@@ -56,16 +56,16 @@ class Search:
     """tuned: without any effect. final: with all accepted ones, the shape of their laws granted.
 
     plain: fitted to the records' own errors alone, from there: what is handed over, with the smallest gap.
-    losses: member's name -> ln evidence that would be lost without it, all others refitted.
     shares: member's name -> by how much of what it makes of a curve its law departs from the model's.
+    without_law: of a member whose law is open, the final errors without what is granted to that.
     """
 
     tuned: Fit
     steps: tuple[Step, ...]
     final: Fit
     plain: Fit
-    losses: Mapping[str, float]
     shares: Mapping[str, float]
+    without_law: Mapping[str, Likelihood]
 
 
 def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> Search:
@@ -76,7 +76,6 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
     tuned = current = tune(model)
     bench.watch("re-tuning", 1)
     steps: list[Step] = []
-    losses: dict[str, float] = {}
     shares: dict[str, float] = {}
     without_law: dict[str, Likelihood] = {}
     while True:
@@ -85,14 +84,14 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
         full = step.accepted and len(step.trials[0].fit.model.members) > MOST
         if not step.accepted or full or len(steps) == MOST_STEPS:
             break
-        current, lost = pruned(step.trials[0].fit, threshold(len(library)), bench, without_law)
-        losses |= {step.trials[0].hypothesis.name: step.trials[0].gain, **lost}
-        exact = to_records(with_conditioning(current, model.axle, bench), model.likelihood)
+        current = pruned(step.trials[0].fit, threshold(len(library)), bench, without_law)
+        exact = to_errors(with_conditioning(current, model.axle, bench), model.likelihood)
         current, shares = opened(exact)
         without_law = closed(exact, shares)
         if current.model.likelihood is not step.trials[0].fit.model.likelihood:
             current = settled(current, bench)
-    return Search(tuned, tuple(steps), current, to_records(current, model.likelihood), losses, shares)
+    plain = to_errors(current, model.likelihood)
+    return Search(tuned, tuple(steps), current, plain, shares, without_law)
 
 
 def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
@@ -123,12 +122,6 @@ def settled(current: Fit, bench: Bench) -> Fit:
     return found or current
 
 
-def to_records(current: Fit, likelihood: Likelihood) -> Fit:
-    """The fit to the records' own errors alone, from where it is."""
-    own = current.model.with_errors(likelihood)
-    return followed(with_errors(current, own), own)
-
-
 def tune(model: EffectModel) -> Fit:
     """The best axle without a further effect, the differences between its sides linear about it."""
     first = fit(model, model.centre)
@@ -145,6 +138,11 @@ def threshold(count: int) -> float:
 def accepted_steps(found: Search) -> list[Step]:
     """Steps that brought in an effect, the latest first."""
     return [s for s in reversed(found.steps) if s.accepted]
+
+
+def accepted_at(found: Search, hypothesis: Hypothesis) -> Step:
+    """The step that brought a member in, the latest one."""
+    return next(s for s in accepted_steps(found) if s.trials[0].hypothesis == hypothesis)
 
 
 def _step(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.adequacy import UNLISTED, Adequacy
+from doe_kc.discovery.disagreement import DRAWS, Map
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.scan import Scan
@@ -13,6 +14,8 @@ from doe_kc.discovery.verdict import Verdict
 from doe_kc.effects import EFFECTS
 from doe_kc.rounding import unit_words, with_sd
 
+CERTAIN = 6.0
+"""log10 odds beyond which no more is said: what the models share is less sure than that."""
 ADVISED = 6
 """Tests that are listed at most."""
 LISTED = 8
@@ -22,13 +25,14 @@ LISTED = 8
 def sentences(
     verdict: Verdict,
     findings: Sequence[Finding],
+    holds: Adequacy,
     gap: Gap,
     remaining: Map,
     scan: Scan | None,
     beyond: Sequence[str],
     widened: float,
 ) -> tuple[str, ...]:
-    """Verdict first, then each effect, then how far the gap shrank.
+    """Verdict first, then each effect, whether the set holds, and how far the gap shrank.
 
     beyond: paths of parameters outside their bounds. widened: by how much wider ranges were allowed.
     """
@@ -42,6 +46,7 @@ def sentences(
         ]
         if scan is not None and scan.interface is not None:
             out.append(f"The data point to {scan.places[0].words}.")
+    out.append(adequacy_words(holds))
     if beyond:
         out.append(_outside(beyond, widened))
     out.append(
@@ -88,10 +93,47 @@ def _one(finding: Finding) -> str:
     )
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
     label = _label(finding)
-    text = f"{label[0].upper()}{label[1:]}: probability {finding.probability:.1%}"
+    text = f"{label[0].upper()}{label[1:]}: {odds_words(finding)}"
     text += f"; {sizes}" if sizes else ""
     text += f"; at {' or '.join(finding.elsewhere)} it would do as well" if finding.elsewhere else ""
     return text + (f"; else {rivals}." if rivals else ".")
+
+
+def odds_words(finding: Finding) -> str:
+    """How sure an effect is, and against what: `log10 odds > 6 against its removal`."""
+    return f"log10 odds {odds_number(finding.log10_odds)} against {against_words(finding)}"
+
+
+def against_words(finding: Finding) -> str:
+    """The best alternative to an effect."""
+    return f"{_known(finding.against)} in its place" if finding.against else "its removal"
+
+
+def odds_number(log10_odds: float) -> str:
+    """`4.2`; beyond CERTAIN no more is said than that."""
+    return f"> {CERTAIN:g}" if log10_odds > CERTAIN else f"{log10_odds:.1f}"
+
+
+def adequacy_words(holds: Adequacy) -> str:
+    """One line on whether the set explains the records, and on something that the library does not list."""
+    text = f"Adequacy: noise alone leaves as large a disagreement in {_share(holds.map_chance)} of cars"
+    if holds.worst is not None and holds.held_out_chance is not None:
+        worst = holds.worst
+        text += (
+            f", and deviations of a load case held out as large as those of {worst.load_case} "
+            f"(RMS {worst.law_granted.rms:.2f}) in {_share(holds.held_out_chance)}"
+        )
+    if holds.unlisted is None:
+        return f"{text}; something that the library does not list, or a law of another shape, is at work."
+    most = 100.0 * holds.unlisted
+    return (
+        f"{text}; something that the library does not list is at most {most:.0f} % probable, "
+        f"with {100.0 * UNLISTED:.0f} % assumed before the records."
+    )
+
+
+def _share(chance: float) -> str:
+    return "less than 0.1 %" if chance <= 1.0 / DRAWS else f"{100.0 * chance:.2g} %"
 
 
 def next_tests(

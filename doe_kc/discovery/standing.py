@@ -1,4 +1,4 @@
-"""Where every hypothesis of the library stands: found, excluded above a size, or not testable and why."""
+"""Where every hypothesis of the library stands: found, excluded above a size, not testable or unresolved."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from doe_kc.discovery.screen import Screened
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.typing import FloatArray
 
-Status = Literal["found", "trace", "excluded", "not testable", "no solution"]
+Status = Literal["found", "trace", "excluded", "unresolved", "not testable", "no solution"]
 POWER = 0.84
 """Standard deviations above the critical value at which an effect is found in 80 % of cars."""
+ONE_SIDED = 1.645
+"""Standard deviations of a one-sided 95 % limit."""
 ALIKE = 0.8
 """|correlation| after re-tuning from which two effects are listed as alike."""
 UNSURE = 0.005
@@ -33,8 +35,10 @@ HIDING = 3
 class Standing:
     """One hypothesis.
 
+    status: excluded from its limits on where the model holds; unresolved where it does not.
     limits: (m,) of each of its sizes the smallest amplitude, as a multiple of the typical one, that would be
-    found in 80 % of cars whatever the others are; inf when re-tuning absorbs nearly all, nan for a shape.
+    found in 80 % of cars whatever the others are and that is above the 95 % limit of what the records say of
+    it, if the model is right but for this size; inf when re-tuning absorbs nearly all, nan for a shape.
     detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
     parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
     remaining change is the same, with the correlation. bench: of one that hardly shows, parts to measure
@@ -57,10 +61,13 @@ def standings(
     screened: Sequence[Screened],
     members: Sequence[tuple[Screened, Status]],
     critical: float,
+    *,
+    resolved: bool,
 ) -> tuple[Standing, ...]:
     """Of members (as screened before they were added) and of all others screened at the final model.
 
-    critical: |z| that a hypothesis must reach among so many.
+    critical: |z| that a hypothesis must reach among so many. resolved: whether the model holds, so that what
+    it does not see can be excluded.
     """
     everything = [s for s, _ in members] + list(screened)
     known = dict(enumerate(status for _, status in members))
@@ -73,11 +80,12 @@ def standings(
     for i, s in enumerate(everything):
         by_bounds = float(np.linalg.norm(changes[found.residual.size :, i]))
         limits = _limits(s, by_bounds, critical)
+        limits = limits if i in known else np.maximum(limits, _upper(s))
         amounts = limits[~np.isnan(limits)]
         whole = float(np.linalg.norm(s.change))
         seen = _trusted(s.detectability, whole, by_bounds)
         detectable = float(amounts.min()) if amounts.size else _limit(seen, critical)
-        status: Status = known.get(i) or _status(s, detectable)
+        status: Status = known.get(i) or _status(s, detectable, resolved=resolved)
         alike = tuple(
             (everything[j].hypothesis.name, float(correlation[i, j]))
             for j in np.argsort(-np.abs(correlation[i]))
@@ -125,10 +133,17 @@ def _limit(visible: float, critical: float) -> float:
     return float("inf") if visible <= 0.0 else (critical + POWER) / visible
 
 
-def _status(screened: Screened, detectable: float) -> Status:
+def _upper(screened: Screened) -> FloatArray:
+    """(m,) amplitudes that the sizes pass with a chance of 5 %, to first order."""
+    return np.asarray(np.abs(screened.amplitudes) + ONE_SIDED * screened.sd)
+
+
+def _status(screened: Screened, detectable: float, *, resolved: bool) -> Status:
     if screened.failed:
         return "no solution"
-    return "excluded" if detectable <= 1.0 else "not testable"
+    if detectable > 1.0:
+        return "not testable"
+    return "excluded" if resolved else "unresolved"
 
 
 def _moves(found: Fit, changes: FloatArray) -> FloatArray:

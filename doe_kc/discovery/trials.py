@@ -36,9 +36,14 @@ def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Tria
     trials = []
     for s, found in zip(screened, fits, strict=True):
         if found is not None:
-            odds = float(np.log(EFFECTS[s.hypothesis.effect].odds))
-            trials.append(Trial(s.hypothesis, found, found.evidence - current.evidence + odds))
+            gain = found.evidence - current.evidence + log_odds(s.hypothesis)
+            trials.append(Trial(s.hypothesis, found, gain))
     return sorted(trials, key=lambda t: -t.gain)
+
+
+def log_odds(hypothesis: Hypothesis) -> float:
+    """ln of how much likelier its effect is than others before any measurement."""
+    return float(np.log(EFFECTS[hypothesis.effect].odds))
 
 
 def plausible(trial: Trial) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from doe_kc.discovery.adequacy import LIMIT
 from doe_kc.discovery.disagreement import NOISE, Map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
@@ -16,13 +17,6 @@ CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
 CLEAR = 5.0
 """Standard deviations of a sum of squares beyond which a gap is clear of noise."""
-REMAINDER = 0.2
-"""Share of the largest disagreement, before, that may remain of a gap that is all but closed: laws differ."""
-ALL_BUT_CLOSED = 0.95
-MANY = 2
-"""Effects at once from which more are believed only if all of them are clear."""
-VISIBLE = 12.0
-"""Standard deviations, after re-tuning, that make an effect clear."""
 HARM = 6.0
 """ln predictive density that a held-out load case may lose to chance."""
 HARM_SHARE = 0.02
@@ -39,18 +33,17 @@ class Verdict:
 
 def verdict(
     findings: Sequence[Finding],
-    before: Map,
     remaining: Map,
     held_out: Sequence[HeldOut],
     tuned: Fit,
     final: Fit,
 ) -> Verdict:
-    """findings: the relevant ones. before, remaining: maps of the re-tuned and of the final model."""
+    """findings: the relevant ones. remaining: map of the final model."""
     closed = _closed(tuned, final)
-    agrees = remaining.chance >= NOISE or law_explains(before, remaining, tuned, final)
+    agrees = remaining.chance >= NOISE
     if not findings:
         return Verdict("none") if agrees else Verdict("unexplained")
-    objections = [*_implausible(findings), *_harmed(held_out), *_crowded(findings)]
+    objections = [*_implausible(findings), *_harmed(held_out), *_missed(held_out)]
     if closed < CLOSED:
         objections.append(f"it closes only {closed:.0%} of the gap that re-tuning leaves")
     if not agrees:
@@ -62,12 +55,6 @@ def verdict(
     if objections:
         return Verdict("unexplained", tuple(objections))
     return Verdict("class" if any(map(ambiguous, findings)) else "named")
-
-
-def law_explains(before: Map, remaining: Map, tuned: Fit, final: Fit) -> bool:
-    """Whether what remains is small beside what is explained: the shape of a law, not another effect."""
-    small = remaining.largest <= REMAINDER * before.largest
-    return small and _closed(tuned, final) >= ALL_BUT_CLOSED
 
 
 def ambiguous(finding: Finding) -> bool:
@@ -105,6 +92,16 @@ def _harmed(held_out: Sequence[HeldOut]) -> list[str]:
     ]
 
 
+def _missed(held_out: Sequence[HeldOut]) -> list[str]:
+    """Load cases that the model does not predict, however much better than without the effects."""
+    return [
+        f"held-out load case {h.load_case} deviates from its prediction by an RMS of "
+        f"{h.law_granted.rms:.2f}, {h.law_granted.excess:.0f} standard deviations more than noise"
+        for h in held_out
+        if h.law_granted.excess > LIMIT
+    ]
+
+
 def _closed(tuned: Fit, final: Fit) -> float:
     """Share of the gap beyond noise that is closed; 1 where there is no clear gap."""
     expected = float(tuned.residual.size)
@@ -112,9 +109,3 @@ def _closed(tuned: Fit, final: Fit) -> float:
     if before < CLEAR * (2.0 * expected) ** 0.5:
         return 1.0
     return 1.0 - max(0.0, after) / before
-
-
-def _crowded(findings: Sequence[Finding]) -> list[str]:
-    if len(findings) <= MANY or all(f.detectability >= VISIBLE for f in findings):
-        return []
-    return [f"{len(findings)} effects at once, not all of them clear, would have to act together"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.sentences import CERTAIN, against_words
 from doe_kc.discovery.verdict import SURE
 from doe_kc.effects import EFFECTS
 from doe_kc.reporting.discovery_sizes import FoundSize, found_sizes
@@ -59,14 +60,14 @@ def rival_words(finding: Finding) -> str:
 
 
 def effect_frame(found: Discovery) -> pd.DataFrame:
-    """One row a number of an effect: value, sd, unit, probability, rivals, physics."""
+    """One row a number of an effect: value, sd, unit, probability, odds, rivals, physics."""
     return pd.DataFrame([_record(r) for r in effect_rows(found)], columns=list(COLUMNS))
 
 
 COLUMNS = (
-    "effect", "label", "place", "kind", "probability", "size", "value", "sd", "unit", "typical",
-    "times_typical", "in_words", "gain_ln_evidence", "detectability_sd", "wrong_name_chance", "rivals",
-    "physics", "shown_by", "mistaken_for",
+    "effect", "label", "place", "kind", "probability", "log10_odds", "against", "size", "value", "sd",
+    "unit", "typical", "times_typical", "in_words", "gain_ln_evidence", "detectability_sd",
+    "wrong_name_chance", "rivals", "physics", "shown_by", "mistaken_for",
 )  # fmt: skip
 
 
@@ -79,6 +80,8 @@ def _record(row: EffectRow) -> dict[str, object]:
         "place": row.place,
         "kind": row.kind,
         "probability": f.probability,
+        "log10_odds": min(f.log10_odds, CERTAIN),
+        "against": against_words(f),
         "size": s.size.name if s else "",
         "value": s.estimate.value if s else math.nan,
         "sd": s.estimate.sd if s else math.nan,

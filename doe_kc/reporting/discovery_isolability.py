@@ -31,6 +31,7 @@ BARS: dict[Status, str] = {
     "found": style.PALETTE["blue"],
     "trace": style.PALETTE["sky"],
     "excluded": style.PALETTE["green"],
+    "unresolved": style.PALETTE["yellow"],
     "not testable": style.PALETTE["orange"],
     "no solution": style.PALETTE["grey"],
 }

@@ -40,15 +40,26 @@ LEGEND = {
         "rigid / none': the limit that the value passes with a chance of 5 %."
     ),
     "Probability": (
-        "That it is this effect, in whatever place, among those refitted, none and an effect outside the "
-        "library."
+        "That it is this effect, in whatever place, all other effects in the model: among it, its removal "
+        "and its rivals in its place, each refitted. An effect outside the library is another question: see "
+        "the adequacy."
+    ),
+    "log10 odds": (
+        "Of the effect against the best alternative, all others in the model: 2 is a hundred to one; 6 says "
+        "6 or more."
+    ),
+    "Adequacy": (
+        "How often noise alone leaves as much as remains: on the map of disagreements, and of load cases "
+        "held out. Something that the library does not list has odds of 2 % before the records; what "
+        "remains can raise them to the stated probability at most."
     ),
     "Trace": f"The records show it, but it is less than {RELEVANT:g} of its typical size.",
     "ln evidence": "Gained over the model without it; the price of its extra freedom is paid.",
     "Detectability": "Standard deviations that the effect makes after re-tuning.",
     "Detectable size": (
-        "Would be found in four of five cars; of several numbers all together. For a stiffness 'below': a"
-        " softer part would have been found."
+        "Would be found in four of five cars, and is above the 95 % limit of what the records say of it, if "
+        "the model is right but for this effect; of several numbers all together. For a stiffness 'below': a "
+        "softer part would have been found."
     ),
     "Absorbed": (
         "Share of the effect that re-tuning hides. Hidden by: the parameters that move most for it at its"
@@ -57,6 +68,7 @@ LEGEND = {
     "Looks like": "Hypotheses that change the records nearly alike after re-tuning, with the correlation.",
     "Held out": (
         "Each load case is left out of the fit and predicted; RMS in standard deviations of the "
-        "prediction. Gain: ln predictive density won by the effect."
+        "prediction. Law granted: with what the laws of the effects leave open among the errors; by "
+        "that the verdict goes. Gain: ln predictive density won by the effect."
     ),
 }

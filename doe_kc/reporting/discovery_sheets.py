@@ -17,7 +17,13 @@ from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
 from doe_kc.reporting.discovery_effects import effect_frame
 from doe_kc.reporting.discovery_gaps import gap_rows
-from doe_kc.reporting.discovery_tables import disagreement_rows, library_frame, parameter_frame
+from doe_kc.reporting.discovery_tables import (
+    disagreement_rows,
+    library_frame,
+    ordered_standings,
+    parameter_frame,
+)
+from doe_kc.reporting.discovery_words import STATUS_WORDS
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
@@ -33,6 +39,8 @@ from doe_kc.reporting.workbook_cells import (
 from doe_kc.reporting.workbook_table import FIRST, Value, table
 from doe_kc.rounding import sd_format
 
+ODDS = '[>=6]"> 6";0.0'
+"""log10 odds; 6 stands for 6 or more."""
 STRONG = 20.0
 """Standard deviations at which the colour of a disagreement is full."""
 PRINTED = 40
@@ -85,34 +93,37 @@ def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
     title(ws, f"Effects: {study}", "What the records ask for; leads where the verdict is unexplained.")
     frame = effect_frame(found)
     heads = (
-        "Id", "Effect", "Place", "Kind", "Probability", "Size", "Value", "sd", "Unit", "Typical",
-        "Times typical", "In words", "ln evidence", "Detectability, sd", "Chance of a wrong name", "Rivals",
-        "What happens in the car", "Shown by", "Mistaken for",
+        "Id", "Effect", "Place", "Kind", "Probability", "log10 odds", "Against", "Size", "Value", "sd",
+        "Unit", "Typical", "Times typical", "In words", "ln evidence", "Detectability, sd",
+        "Chance of a wrong name", "Rivals", "What happens in the car", "Shown by", "Mistaken for",
     )  # fmt: skip
     formats = [
-        "", "", "", "", "0.0%", "", "0.0000", "0.0000", "", "0.000", "0.00", "", "0.0", "0.0", "0.00%",
+        "", "", "", "", "0.0%", ODDS, "", "", "0.0000", "0.0000", "", "0.000", "0.00", "", "0.0", "0.0",
+        "0.00%",
     ]  # fmt: skip
     table(ws, heads, _rows(frame), formats=formats)
     if frame.empty:
         put(ws, FIRST, 1, "No effect is asked for.", color=MUTED)
     for row, sd in enumerate(frame["sd"], start=FIRST):
-        ws.cell(row, 7).number_format = ws.cell(row, 8).number_format = sd_format(float(sd))
-    wide = [24, 30, 16, 9, 11, 16, 13, 11, 9, 10, 10, 34, 12, 13, 12, 34, 44, 44, 34]
+        ws.cell(row, 9).number_format = ws.cell(row, 10).number_format = sd_format(float(sd))
+    wide = [24, 30, 16, 9, 11, 8, 22, 16, 13, 11, 9, 10, 10, 34, 12, 13, 12, 34, 44, 44, 34]
     wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
     ws.freeze_panes = ws.cell(FIRST, 4)
     page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
-    ws.print_area = f"A1:P{FIRST - 1 + max(1, len(frame))}"  # the rest is the same of every car
+    ws.print_area = f"A1:R{FIRST - 1 + max(1, len(frame))}"  # the rest is the same of every car
 
 
 def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
     """Where every hypothesis stands."""
     ws = book.create_sheet("Library")
     below = (
-        "Excluded: would have been found from the detectable size on. Not testable: re-tuning absorbs it, "
-        "or it shows too little; see what hides it, and the parts that, measured on a bench, would show it."
+        "Would have shown: from the detectable size on, if the model is right but for this. Not resolved: "
+        "the same, but the model does not explain the records. Not testable: re-tuning absorbs it, or it "
+        "shows too little; see what hides it, and the parts that, measured on a bench, would show it."
     )
     title(ws, f"Library of effects: {study}", below)
     frame = library_frame(found)
+    frame["status"] = [STATUS_WORDS[s.status] for s in ordered_standings(found)]
     heads = (
         "Id", "Effect", "Place", "Status", "Detectable size", "Times typical", "Typical size", "Absorbed, %",
         "Hidden by", "Parts to measure", "Looks like", "Mistaken for", "What happens in the car", "Shown by",
@@ -150,12 +161,15 @@ def held_out_sheet(book: Workbook, found: Discovery, study: str) -> None:
     ws = book.create_sheet("Held out")
     below = "Each load case predicted by models fitted to all others; RMS 1 = as good as predicted."
     title(ws, f"Load cases held out: {study}", below)
-    rows = [(case_label(h.load_case), h.tuned.rms, h.with_effect.rms, h.gain) for h in found.held_out]
-    heads = ("Load case", "RMS re-tuned", "RMS with effect", "Gain, ln density")
-    table(ws, heads, rows, formats=["", "0.00", "0.00", "0.0"])
+    rows = [
+        (case_label(h.load_case), h.tuned.rms, h.with_effect.rms, h.law_granted.rms, h.gain)
+        for h in found.held_out
+    ]
+    heads = ("Load case", "RMS re-tuned", "RMS with effect", "RMS, law granted", "Gain, ln density")
+    table(ws, heads, rows, formats=["", "0.00", "0.00", "0.00", "0.0"])
     if not rows:
         put(ws, FIRST, 1, "No effect was found, so there is nothing to predict better.", color=MUTED)
-    widths(ws, [30, 15, 15, 17])
+    widths(ws, [30, 15, 15, 17, 17])
     page(ws, study)
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-
+from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.result import Discovery, Estimate, Finding
 from doe_kc.effects.hypothesis import Size
 from doe_kc.rounding import number, unit_words, with_sd
@@ -46,19 +45,17 @@ class FoundSize:
 
 def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
-    sd = np.sqrt(np.diag(found.fitted.covariance))
-    place = next(p for h, p in found.fitted.model.places() if h == finding.hypothesis)
-    for size, estimate, i in zip(
-        finding.hypothesis.sizes, finding.estimates, range(place.start, place.stop), strict=True
+    known = zip(*amplitudes(found.fitted, finding.hypothesis), strict=True)
+    for size, estimate, (amplitude, sd) in zip(
+        finding.hypothesis.sizes, finding.estimates, known, strict=True
     ):
-        amplitude = float(found.fitted.z[i])
         one_sided = not (size.signed or size.shape or size.growth == "factor")
         yield FoundSize(
             size,
             estimate,
-            amplitude,
-            size.value(amplitude + ONE_SIDED * float(sd[i])),
-            not one_sided or amplitude >= SEEN * float(sd[i]),
+            float(amplitude),
+            size.value(float(amplitude + ONE_SIDED * sd)),
+            bool(not one_sided or amplitude >= SEEN * sd),
         )
 
 

@@ -126,8 +126,8 @@ def gap_frame(found: Discovery) -> pd.DataFrame:
 
 def held_out_frame(found: Discovery) -> pd.DataFrame:
     """One row a load case that was left out of the fit; RMS in sd of the prediction, gain in ln density."""
-    columns = ["load_case", "rms_tuned", "rms_with_effect", "gain_ln_density"]
-    rows = [(h.load_case, h.tuned.rms, h.with_effect.rms, h.gain) for h in found.held_out]
+    columns = ["load_case", "rms_tuned", "rms_with_effect", "rms_law_granted", "gain_ln_density"]
+    rows = [(h.load_case, h.tuned.rms, h.with_effect.rms, h.law_granted.rms, h.gain) for h in found.held_out]
     return pd.DataFrame(rows, columns=columns)
 
 

@@ -24,7 +24,8 @@ HEADLINES: dict[VerdictKind, str] = {
 STATUS_WORDS: dict[Status, str] = {
     "found": "found",
     "trace": "seen, too small to matter",
-    "excluded": "excluded",
+    "excluded": "would have shown",
+    "unresolved": "not resolved",
     "not testable": "not testable",
     "no solution": "has no equilibrium in this axle",
 }

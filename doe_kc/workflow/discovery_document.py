@@ -7,7 +7,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from doe_kc.discovery.adequacy import Adequacy
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.sentences import CERTAIN, adequacy_words, odds_words
 from doe_kc.discovery.standing import Standing, said_limit
 from doe_kc.effects.hypothesis import Size
 from doe_kc.reporting.discovery_sizes import size_words
@@ -21,10 +23,17 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
 
     effects: those that the verdict names, or the most probable of a class; leads: in their place where the
     verdict is unexplained; traces: seen, too small to matter. parameters: value, sd, unit of each option,
-    lists for a list option. excluded: places whose sizes would have been found from `above` on (stiffnesses:
-    below it), null for a size that the records do not show. beyond_bounds: paths of parameters that the
-    records ask to be outside the study's bounds. points_to: interface and law of the generic scan, where the
-    verdict is unexplained. not_testable: ids of which no place is testable. gap: whitened RMS of all records.
+    lists for a list option. log10_odds: of each effect against the best alternative, its removal or a rival
+    in its place, all others in the model; 6 says 6 or more; against: id of that rival, null for the removal.
+    adequacy: how often noise alone leaves as large a disagreement as remains (map_chance), and as large an
+    RMS of the worst load case held out (held_out_chance, worst_held_out; null where none was); unlisted: the
+    largest probability of something outside the library, null where the set does not explain the records.
+    excluded: places whose sizes would have been found from `above` on (stiffnesses: below it) if the model is
+    right but for that, null for a size that the records do not show; unresolved: ids of effects that would
+    be among them, had the records not something else that the model does not explain. beyond_bounds:
+    paths of parameters that the records ask to be outside the study's bounds. points_to: interface and law of
+    the generic scan, where the verdict is unexplained. not_testable: ids of which no place is testable. gap:
+    whitened RMS of all records.
     further_tests: those of next_test that are computed, see `further_tests`.
     """
     findings = [effect_entry(f) for f in found.findings]
@@ -35,7 +44,9 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
         "leads": findings if open_ else [],
         "traces": [effect_entry(f) for f in found.traces],
         "classes": [list(c) for c in found.classes],
+        "adequacy": _adequacy(found.adequacy),
         "excluded": [_excluded(s) for s in found.standings if s.status == "excluded"],
+        "unresolved": sorted({s.hypothesis.effect for s in found.standings if s.status == "unresolved"}),
         "not_testable": not_testable(found.standings),
         "unexplained_at": [
             {"load_case": c.load_case, "response": c.response, "shape": c.shape, "z": z}
@@ -43,7 +54,12 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
         ],
         "gap": dict(vars(found.gap)),
         "held_out": {
-            h.load_case: {"tuned": h.tuned.rms, "with_effect": h.with_effect.rms} for h in found.held_out
+            h.load_case: {
+                "tuned": h.tuned.rms,
+                "with_effect": h.with_effect.rms,
+                "law_granted": h.law_granted.rms,
+            }
+            for h in found.held_out
         },
         "points_to": _place(found),
         "beyond_bounds": list(found.beyond),
@@ -55,7 +71,7 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
 
 
 def effect_entry(finding: Finding) -> dict[str, Any]:
-    """id, location, others that would do as well, probability and parameters of one effect."""
+    """id, location, others that would do as well, probability, odds and parameters of one effect."""
     parameters: dict[str, dict[str, Any]] = {}
     length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
     for e in finding.estimates:
@@ -72,7 +88,18 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
         "location": hypothesis.location,
         "elsewhere": list(finding.elsewhere),
         "probability": finding.probability,
+        "log10_odds": min(finding.log10_odds, CERTAIN),
+        "against": finding.against or None,
         "parameters": parameters,
+    }
+
+
+def _adequacy(holds: Adequacy) -> dict[str, Any]:
+    return {
+        "map_chance": holds.map_chance,
+        "held_out_chance": holds.held_out_chance,
+        "worst_held_out": None if holds.worst is None else holds.worst.load_case,
+        "unlisted": holds.unlisted,
     }
 
 
@@ -170,6 +197,7 @@ def discovery_lines(found: Discovery) -> list[str]:
     if found.fitted.model.members:
         steps.append(f"{gap.with_effect:.2f} with effect")
     lines.append(f"gap: {' -> '.join(steps)} (noise floor {gap.noise_floor:.2f})")
+    lines.append(adequacy_words(found.adequacy))
     if found.held_out:
         better = sum(h.gain > 0.0 for h in found.held_out)
         lines.append(f"held out: {better} of {len(found.held_out)} load cases predicted better")
@@ -180,4 +208,4 @@ def discovery_lines(found: Discovery) -> list[str]:
 
 def _line(found: Discovery, finding: Finding) -> str:
     sizes = f": {size_words(found, finding)}" if finding.hypothesis.sizes else ""
-    return f"{hypothesis_label(finding.hypothesis)}{sizes}, probability {100.0 * finding.probability:.1f} %"
+    return f"{hypothesis_label(finding.hypothesis)}{sizes}, {odds_words(finding)}"

@@ -52,6 +52,10 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "class": {"steer_arm_compliance": {"radius_mm": 9.4}},
     "unexplained": {"tie_rod_free_play": {"gap_mm": 0.2}},
     "two": {"strut_friction": {"force_N": 120.0}, "rig_channel_gain": {"toe": 1.06}},
+    "pair": {
+        "hub_compliance": {"camber_Nm_deg": 4000.0, "toe_Nm_deg": 7000.0},
+        "steering_friction": {"force_N": 200.0, "presliding_mm": 0.05},
+    },
     "steady": {"strut_friction": {"force_N": 150.0}},
     "lead": {"tie_rod_compliance": {"k_N_mm": 3000.0}},
     "progression": {"bushing_progression": {"UPB": [0.1, 0.1, 0.1]}},
@@ -151,6 +155,8 @@ def known_to(car: str) -> list[Hypothesis]:
         return [weak, *library("tie_rod_compliance", "hub_compliance", "strut_friction")]
     if car in ("two", "steady"):  # friction takes its time
         return library("strut_friction", "rig_channel_gain", "hub_compliance")
+    if car == "pair":
+        return library("hub_compliance", "steering_friction", "strut_bending", "tie_rod_compliance")
     if car == "friction":
         return library(*(e for e in LIBRARY if e != "bushing_progression"))
     return library()

@@ -10,7 +10,7 @@ import pytest
 from doe_kc.axle import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.discover import discover
+from doe_kc.discovery.discover import discover, resolved, shown_traces
 from doe_kc.discovery.ledger import Ledger
 from doe_kc.discovery.model import EffectModel
 from doe_kc.measurement import reduce_measurement
@@ -78,6 +78,27 @@ def test_an_effect_outside_the_library_is_not_given_another_name() -> None:
     assert found.unexplained
     assert found.scan is not None
     assert "tie rod" in found.scan.places[0].interface or "steer" in found.scan.places[0].interface
+
+
+def test_no_trace_of_the_rig_where_the_model_does_not_hold() -> None:
+    """Rubber beside friction looks like a wrong input of a few load cases."""
+    (strut,) = discovery("named").findings
+    gain = replace(strut, hypothesis=library("rig_input_gain")[0], relevant=False)
+    small = replace(strut, relevant=False)
+    good, bad = discovery("named").adequacy, discovery("unexplained").adequacy
+    assert shown_traces((strut, gain, small), good) == (gain, small)
+    assert shown_traces((strut, gain, small), bad) == (small,)
+
+
+def test_limits_mean_nothing_where_the_model_or_a_friction_s_law_does_not_hold() -> None:
+    good, bad = discovery("named").adequacy, discovery("unexplained").adequacy
+    hub, friction = discovery("named").search, discovery("friction").search
+    assert resolved(hub, good)
+    assert not resolved(hub, bad)
+    name = friction.final.model.members[0].name
+    assert resolved(replace(friction, shares={name: 0.0}), good)
+    assert not resolved(replace(friction, shares={name: 0.02}), good)
+    assert resolved(replace(hub, shares={hub.final.model.members[0].name: 0.02}), good)
 
 
 def test_records_of_other_load_cases_are_noticed() -> None:

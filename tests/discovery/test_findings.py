@@ -8,8 +8,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from doe_kc.discovery.findings import _alike, _mistaken, _stands_out, _trace_would_do
-from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.discovery.findings import (
+    NOTHING,
+    _alike,
+    _mistaken,
+    _stands_out,
+    _trace_would_do,
+    best_alternative,
+    log_probabilities,
+)
 from tests.discovery.cases import library
 
 
@@ -22,8 +29,9 @@ def trial(effect: str, sizes: list[float], gain: float, residual: float = 0.0) -
     return SimpleNamespace(hypothesis=hypothesis, fit=fit, gain=gain)
 
 
-def step(*trials: Any) -> Any:
-    return SimpleNamespace(trials=trials, temper=1.0)
+def place(*trials: Any, temper: float = 1.0) -> Any:
+    """An effect of the final set and its rivals."""
+    return SimpleNamespace(trials=trials, temper=temper, hypothesis=trials[0].hypothesis)
 
 
 @pytest.mark.parametrize(
@@ -35,15 +43,14 @@ def test_an_effect_is_not_named_where_a_trace_of_another_would_do(
     hub: list[float], gain: float, would_do: bool
 ) -> None:
     strut = trial("strut_bending", [0.2, 0.0], 19.0)
-    own: Hypothesis = strut.hypothesis
-    assert _trace_would_do(step(strut, trial("hub_compliance", hub, gain)), own) is would_do
+    assert _trace_would_do(place(strut, trial("hub_compliance", hub, gain))) is would_do
 
 
 def test_effects_that_predict_the_same_are_mistaken_for_each_other() -> None:
     rod = trial("tie_rod_compliance", [1.5], 100.0)
     near, far = (trial("hub_compliance", [0.5, 0.5], 99.0, apart) for apart in (1.0, 6.0))
-    assert _mistaken(step(rod, near))["hub_compliance"] == pytest.approx(0.3085, abs=1e-4)
-    assert _mistaken(step(rod, far))["hub_compliance"] < 0.002
+    assert _mistaken(place(rod, near))["hub_compliance"] == pytest.approx(0.3085, abs=1e-4)
+    assert _mistaken(place(rod, far))["hub_compliance"] < 0.002
 
 
 def test_a_free_play_without_a_gap_is_the_tie_rod_s_compliance_by_another_name() -> None:
@@ -51,9 +58,8 @@ def test_a_free_play_without_a_gap_is_the_tie_rod_s_compliance_by_another_name()
     for gap, counted in ((0.0, False), (0.005, False), (0.1, True)):
         play = trial("tie_rod_free_play", [gap, 2.0], 99.0)
         chances = {"tie_rod_free_play": 0.4}
-        assert ("tie_rod_free_play" in _mistaken(step(rod, play))) is counted
-        own = SimpleNamespace(hypothesis=rod.hypothesis)
-        assert _alike(step(rod, play), own, chances) == (("tie_rod_free_play",) if counted else ())
+        assert ("tie_rod_free_play" in _mistaken(place(rod, play))) is counted
+        assert _alike(place(rod, play), chances) == (("tie_rod_free_play",) if counted else ())
 
 
 @pytest.mark.parametrize(
@@ -65,8 +71,38 @@ def test_a_weak_effect_is_named_where_noise_does_not_explain_what_it_explains(
     loss: float, chance: float, named: bool
 ) -> None:
     own = trial("tie_rod_compliance", [0.5], 15.0)
-    here = SimpleNamespace(trials=(own,), accepted=True, map=SimpleNamespace(chance=chance))
-    found: Any = SimpleNamespace(steps=[here], losses={own.hypothesis.name: loss})
-    finding: Any = SimpleNamespace(hypothesis=own.hypothesis, gain=15.0)
-    assert _stands_out(found, finding, 0.0) is named
-    assert not _stands_out(found, finding, 16.0)
+    finding: Any = SimpleNamespace(trials=(own,), loss=loss, map=SimpleNamespace(chance=chance))
+    assert _stands_out(finding, 0.0) is named
+    assert not _stands_out(finding, 16.0)
+
+
+def test_probabilities_follow_the_evidence_and_are_no_constant() -> None:
+    known = library("hub_compliance", "strut_bending")
+
+    def hub_s(own: float, rival: float, temper: float = 1.0) -> float:
+        hub, bent = trial("hub_compliance", [1.0, 1.0], own), trial("strut_bending", [1.0, 1.0], rival)
+        return log_probabilities(place(hub, bent, temper=temper), known)["hub_compliance"]
+
+    assert np.exp(hub_s(50.0, 50.0)) == pytest.approx(0.5)
+    assert np.exp(hub_s(50.0, 48.0)) == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
+    assert np.exp(hub_s(50.0, 40.0, temper=10.0)) == pytest.approx(1.0 / (1.0 + np.exp(-1.0) + np.exp(-5.0)))
+    assert np.exp(hub_s(9.0, 1.0)) < np.exp(hub_s(20.0, 1.0)) < 1.0
+
+
+def test_odds_are_against_the_best_alternative_the_removal_among_them() -> None:
+    known = library("hub_compliance", "strut_bending", "rig_channel_gain")
+    hub, bent = trial("hub_compliance", [1.0, 1.0], 12.0), trial("strut_bending", [1.0, 1.0], 5.0)
+    logs = log_probabilities(place(hub, bent), known)
+    assert best_alternative(logs, "hub_compliance") == ("strut_bending", pytest.approx(7.0 / np.log(10.0)))
+    logs = log_probabilities(place(hub), known)
+    assert best_alternative(logs, "hub_compliance") == (NOTHING, pytest.approx(12.0 / np.log(10.0)))
+
+
+def test_the_prior_odds_of_an_effect_are_shared_between_its_places() -> None:
+    known = library("tie_rod_compliance", "bushing_progression")
+    places = sum(h.effect == "bushing_progression" for h in known)
+    (one, *_) = library("bushing_progression")
+    rod = trial("tie_rod_compliance", [1.0], 9.0)
+    rival: Any = SimpleNamespace(hypothesis=one, fit=rod.fit, gain=9.0)
+    logs = log_probabilities(place(rod, rival), known)
+    assert logs["tie_rod_compliance"] - logs["bushing_progression"] == pytest.approx(np.log(places))

@@ -81,8 +81,11 @@ def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> N
     followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
     hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(project(followed))))
     assert hidden.detectability > 10.0
-    shown, unsure = standings(tuned, project, [clear, hidden], [], 4.0)
-    assert shown.status == "excluded" and shown.limits[0] == pytest.approx(4.84 / clear.detectability)
+    shown, unsure = standings(tuned, project, [clear, hidden], [], 4.0, resolved=True)
+    least = max(4.84 / clear.detectability, abs(clear.amplitudes[0]) + 1.645 * clear.sd[0])
+    assert shown.status == "excluded" and shown.limits[0] == pytest.approx(least)
+    open_, _ = standings(tuned, project, [clear, hidden], [], 4.0, resolved=False)
+    assert open_.status == "unresolved" and open_.limits[0] == shown.limits[0]
     assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
 
 

@@ -11,6 +11,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.errors import RunError
 from doe_kc.reporting.discovery_verdict_sheet import verdict_lines
+from doe_kc.reporting.discovery_words import STATUS_WORDS
 from doe_kc.reporting.discovery_workbook import write_discovery_workbook
 from tests.discovery.cases import discovery
 from tests.reporting.correlations import EVIL
@@ -36,7 +37,9 @@ def test_sheets_and_rows(car: str, tmp_path: Path) -> None:
     book, found = written(tmp_path, car), discovery(car)
     assert book.sheetnames == SHEETS
     assert len(column(book["Disagreement"], "z re-tuned")) == len(found.raw.names)
-    assert len(column(book["Library"], "Status")) == len(found.standings)
+    status = column(book["Library"], "Status")
+    assert len(status) == len(found.standings)
+    assert set(status) <= set(STATUS_WORDS.values())
     assert len(column(book["Gap"], "Re-tuned")) == 1 + len(found.gaps)
     assert column(book["Parameters"], "Path") == list(found.fitted.model.space.paths)
     text = [row[1].value for row in book["Verdict"].iter_rows(min_row=4)]

@@ -13,9 +13,11 @@ import pytest
 
 from doe_kc.axle import read_axle
 from doe_kc.discovery.result import Estimate, Finding
+from doe_kc.discovery.sentences import odds_words
 from doe_kc.discovery.standing import Standing
 from doe_kc.effects import EFFECTS
 from doe_kc.errors import RunError
+from doe_kc.reporting.discovery_effects import effect_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
@@ -25,8 +27,8 @@ from tests.discovery.cases import AXLE, LOAD_CASES, discovery, records
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 KEYS = [
-    "verdict", "effects", "leads", "traces", "classes", "excluded", "not_testable", "unexplained_at", "gap",
-    "held_out", "points_to",
+    "verdict", "effects", "leads", "traces", "classes", "adequacy", "excluded", "unresolved",
+    "not_testable", "unexplained_at", "gap", "held_out", "points_to",
     "beyond_bounds", "next_test", "further_tests", "axle",
 ]  # fmt: skip
 
@@ -106,9 +108,53 @@ def test_an_effect_states_value_sd_and_unit() -> None:
     (entry,) = discovery_document(discovery("named"), None)["effects"]
     assert (entry["id"], entry["location"]) == ("hub_compliance", None)
     assert 0.9 < entry["probability"] <= 1.0
+    assert entry["log10_odds"] == 6.0
+    assert entry["against"] in (None, *EFFECTS)
     camber = entry["parameters"]["camber_Nm_deg"]
     assert camber["unit"] == "Nm/deg"
     assert abs(camber["value"] - 5000.0) < 4.0 * camber["sd"]
+
+
+@pytest.mark.parametrize(
+    ("log10_odds", "against", "words"),
+    [
+        (3.21, "strut_bending", "log10 odds 3.2 against strut bending at the clamp in its place"),
+        (240.0, "", "log10 odds > 6 against its removal"),
+    ],
+)
+def test_odds_are_said_alike_everywhere(log10_odds: float, against: str, words: str) -> None:
+    found = discovery("named")
+    finding = replace(found.findings[0], log10_odds=log10_odds, against=against)
+    changed = replace(found, findings=(finding,))
+    assert any(line.endswith(words) for line in discovery_lines(changed) if line.startswith("effect:"))
+    assert odds_words(finding) == words
+    entry = effect_entry(finding)
+    assert (entry["log10_odds"], entry["against"]) == (min(log10_odds, 6.0), against or None)
+    frame = effect_frame(changed)
+    assert (frame["log10_odds"] == min(log10_odds, 6.0)).all()
+    assert words.endswith(f"against {frame['against'].iloc[0]}")
+
+
+def test_the_adequacy_is_one_line_of_the_verdict() -> None:
+    found = discovery("named")
+    said = [s for s in found.sentences if s.startswith("Adequacy:")]
+    assert said == [line for line in discovery_lines(found) if line.startswith("Adequacy:")]
+    assert len(said) == 1
+    assert "2 % assumed before the records" in said[0]
+    document = discovery_document(found, None)["adequacy"]
+    assert document["map_chance"] >= 0.01
+    assert document["worst_held_out"] in LOAD_CASES
+    assert 0.0 < document["held_out_chance"] <= 1.0
+    lost = discovery("unexplained")
+    assert discovery_document(lost, None)["adequacy"]["unlisted"] is None
+    assert any("does not list, or a law of another shape, is at work" in s for s in lost.sentences)
+
+
+def test_nothing_is_excluded_where_the_records_are_not_explained() -> None:
+    document = discovery_document(discovery("unexplained"), None)
+    assert document["excluded"] == []
+    assert document["unresolved"]
+    assert discovery_document(discovery("none"), None)["unresolved"] == []
 
 
 def test_a_list_option_becomes_one_parameter() -> None:

@@ -68,6 +68,7 @@ def held_out_section(found: Discovery) -> Section:
             "case": case_label(h.load_case),
             "tuned": h.tuned.rms,
             "with_effect": h.with_effect.rms,
+            "law_granted": h.law_granted.rms,
             "gain": h.gain,
             "text": gain_words(h.gain),
         }

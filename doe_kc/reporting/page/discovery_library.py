@@ -17,10 +17,12 @@ from doe_kc.reporting.discovery_words import (
 from doe_kc.reporting.page.section import Section, render
 
 LEAD = (
-    "Excluded: it would have been found from the detectable size on, in four of five cars; for a stiffness, "
-    "a softer part would have been found. Not testable: re-tuning absorbs it or it shows too little in these "
-    "load cases; the parameters that hide it are named with the move that does so, and the parts that, "
-    "measured on a bench, would show it, with the standard deviations that its typical size would then make."
+    "Would have shown: it would have been found from the detectable size on, in four of five cars, if the "
+    "model is right but for this; for a stiffness, a softer part would have been found. Not resolved: the "
+    "same, but the model does not explain the records, so that nothing follows. Not testable: re-tuning "
+    "absorbs it or it shows too little in these load cases; the parameters that hide it are named with the "
+    "move that does so, and the parts that, measured on a bench, would show it, with the standard deviations "
+    "that its typical size would then make."
 )
 
 

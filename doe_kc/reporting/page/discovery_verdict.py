@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.sentences import against_words, odds_number
 from doe_kc.effects import EFFECTS
 from doe_kc.reporting.discovery_effects import kind_of, rival_words
 from doe_kc.reporting.discovery_sizes import found_sizes
@@ -27,6 +28,7 @@ def verdict_section(found: Discovery, notes: Mapping[str, str]) -> Section:
         headline=HEADLINES[found.verdict],
         clear=found.verdict in ("named", "none"),
         top=found.findings[0] if found.findings else None,
+        top_odds=odds_number(found.findings[0].log10_odds) if found.findings else "",
         top_label=effect_label(found.findings[0].hypothesis.effect) if found.findings else "",
         gap=found.gap,
         has_effect=bool(found.fitted.model.members),
@@ -48,7 +50,9 @@ def _effect(found: Discovery, finding: Finding) -> dict[str, Any]:
         "label": hypothesis_label(finding.hypothesis),
         "kind": "seen, too small to matter" if kind == "trace" else kind,
         "quiet": kind == "trace",
-        "probability": finding.probability,
+        "odds": odds_number(finding.log10_odds),
+        "log10_odds": finding.log10_odds,
+        "against": against_words(finding),
         "sizes": [s.sentence for s in found_sizes(found, finding)],
         "rivals": rival_words(finding) or "–",
         "physics": EFFECTS[ident].physics,

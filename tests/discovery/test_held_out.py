@@ -1,0 +1,33 @@
+"""Load cases held out, in absolute terms."""
+
+from __future__ import annotations
+
+import pytest
+
+from doe_kc.discovery.adequacy import LIMIT
+from doe_kc.discovery.held_out import Prediction, held_out
+from tests.discovery.cases import LOAD_CASES, discovery
+
+
+@pytest.mark.parametrize("car", ["named", "friction"])
+def test_a_right_model_predicts_what_it_has_not_seen(car: str) -> None:
+    for held in discovery(car).held_out:
+        assert -LIMIT < held.law_granted.excess < LIMIT
+        assert held.with_effect.size > 500
+
+
+def test_a_model_without_the_effect_does_not() -> None:
+    assert max(h.tuned.excess for h in discovery("named").held_out) > 3.0 * LIMIT
+
+
+def test_the_excess_counts_records_and_the_noise_s_own_size() -> None:
+    assert Prediction(1.23, 0.0, 1300).excess == pytest.approx(8.2, abs=0.1)
+    assert Prediction(1.23, 0.0, 10**9).excess == pytest.approx(11.5, abs=0.1)
+    assert Prediction(1.1, 0.0, 50).excess == pytest.approx(0.98, abs=0.02)
+
+
+@pytest.mark.parametrize("case", LOAD_CASES[-1:])
+def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
+    search = discovery("named").search
+    alike = held_out(search.tuned, search.plain, search.plain, case)
+    assert alike.law_granted is alike.with_effect
