@@ -151,15 +151,22 @@ class EffectModel:
 
     def curves(self, z: FloatArray) -> CurveSet:
         """What the rig would read; NotConverged when the axle has no equilibrium."""
-        axle = self._driven(self.axle_at(z), z)
-        return observed(axle, curve_set(solve(axle)))
+        return self._read(self.axle_at(z), z)
+
+    def _read(self, axle: Axle, z: FloatArray) -> CurveSet:
+        driven = self._driven(axle, z)
+        return observed(driven, curve_set(solve(driven)))
 
     def _driven(self, axle: Axle, z: FloatArray) -> Axle:
         return calibrated(axle, self.cases, z[self.calibrations])
 
     def residual(self, z: FloatArray) -> FloatArray:
         """(M,) in standard deviations of the data."""
-        plain = self.likelihood.residual(self.curves(z), NO_CHARACTERISTICS)
+        return self.residual_of(self.axle_at(z), z)
+
+    def residual_of(self, axle: Axle, z: FloatArray) -> FloatArray:
+        """(M,) of any axle, the rig's calibrations and the differences between the sides as at z."""
+        plain = self.likelihood.residual(self._read(axle, z), NO_CHARACTERISTICS)
         if self.sides is None:
             return plain
         return np.asarray(plain + self.sides @ z[self.calibrations.stop : self.dimension])

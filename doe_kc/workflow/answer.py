@@ -18,6 +18,7 @@ from doe_kc.measurement import Measurement
 from doe_kc.reporting.discovery_words import effect_label
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
 from doe_kc.workflow.handover import characteristic_entries
 
@@ -84,11 +85,11 @@ def answer_gap(
     if before is None or after is None:
         return None
     if discovery is not None:
-        fitted = discovery.fitted
-        model = fitted.model
-        nuisances = model.nuisances @ fitted.z[model.parameters : model.dimension]
-        final = model.likelihood.residual(after, NO_CHARACTERISTICS) + nuisances
-        known = discovery.gap
+        fitted, known = discovery.fitted, discovery.gap
+        if correlation.problem.exact:
+            final = fitted.model.residual_of(recorded(correlation.axle, measurement), fitted.z)
+        else:
+            final = fitted.model.likelihood.residual(after, NO_CHARACTERISTICS)
         return AnswerGap(known.nominal, known.tuned, _rms(final), known.noise_floor)
     data = record_likelihood(study.axle, measurement)
 

@@ -8,6 +8,7 @@ import pytest
 
 from doe_kc.correlation.advice import level_sentences
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+from doe_kc.variables import VariableOptions
 from tests.correlation.cases import outcome, problem
 
 
@@ -30,7 +31,7 @@ def judged(case: Problem) -> Evaluated:
 
 
 def test_levels_too_coarse_for_a_target_are_named_with_what_they_cost() -> None:
-    case = moved(problem("car_b"), sd=0.0, error=1e-4)
+    case = moved(problem("car_b", VariableOptions(levels=101)), sd=0.0, error=1e-4)
     (sentence,) = level_sentences(case, judged(case), case.linearize(case.space.start))
     row = case.linearize(case.space.start).characteristics[case.targets.rows]
     at = [t.entry.id for t in case.targets.characteristics].index("drive.anti_lift")
@@ -41,12 +42,10 @@ def test_levels_too_coarse_for_a_target_are_named_with_what_they_cost() -> None:
 
 @pytest.mark.parametrize(("sd", "error"), [(0.1, 1e-4), (0.0, 1.0)], ids=["noisy target", "far from it"])
 def test_nothing_is_said_where_levels_do_not_matter(sd: float, error: float) -> None:
-    case = moved(problem("car_b"), sd=sd, error=error)
+    case = moved(problem("car_b", VariableOptions(levels=101)), sd=sd, error=error)
     assert level_sentences(case, judged(case), case.linearize(case.space.start)) == []
 
 
 def test_nothing_is_said_of_continuous_variables() -> None:
     case = moved(problem("car_b"), sd=0.0, error=1e-4)
-    free = tuple(replace(v, levels=None) for v in case.space.variables)
-    case = replace(case, space=replace(case.space, variables=free))
     assert level_sentences(case, judged(case), case.linearize(case.space.start)) == []

@@ -10,13 +10,13 @@ import pytest
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
 from doe_kc.correlation.ego.proposal import Box, gauss_newton
-from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE, RESTARTS, Strategy
 from doe_kc.correlation.ego.trust import Trust
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, Settings
 from doe_kc.correlation.options import Gradients
+from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.problem import Candidate, Evaluated, Prediction
 from doe_kc.surrogates.models.gp import GaussianProcess
 from doe_kc.targets import Score, improvements, mean_improvement
@@ -82,7 +82,7 @@ def answer(error: float, sd: float) -> Evaluated:
     predicted = Prediction(np.zeros(4), np.full(4, sd), 0.0, 0.0)
     return Evaluated(
         1, Candidate(np.zeros(2), "x", predicted), Outcome(None, np.zeros(30), "", 0.0),
-        Score(np.full(4, error), np.zeros(0)), None, np.zeros(0),
+        Score(np.full(4, error), np.zeros(0)), None, None, 0.0, np.zeros(0),
     )  # fmt: skip
 
 

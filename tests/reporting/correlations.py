@@ -110,7 +110,9 @@ def typed() -> Correlation:
     ]
     targets = build_targets(axle, None, wanted, [], source="test")
     space = build_space(axle, VariableOptions.model_validate({"use": ["RIB.z", "ROB.z"]}), "test")
-    case = Problem(axle=axle, space=space, targets=targets, likelihood=Likelihood((), ()), windows={}, exact=False)
+    case = Problem(
+        axle=axle, space=space, targets=targets, likelihood=Likelihood((), ()), windows={}, exact=False
+    )
     bare = replace(first, curves=None)
     moved = outcome(axle, space.values(np.array([0.75, 0.5])))
     runs = (

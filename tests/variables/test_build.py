@@ -57,7 +57,7 @@ def test_bounds_by_offset_factor_and_range(axle: Axle) -> None:
     x, f, k = found.variables
     assert (x.lower - x.parameter.nominal, x.upper - x.parameter.nominal) == (-1.0, 2.0)
     assert (f.lower, f.upper, f.logarithmic) == (0.25, 4.0, True)
-    assert (k.lower, k.upper, k.levels, x.levels) == (20.0, 40.0, 21, 101)
+    assert (k.lower, k.upper, k.levels, x.levels) == (20.0, 40.0, 21, None)
 
 
 def test_later_changes_win(axle: Axle) -> None:

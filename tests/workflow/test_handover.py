@@ -17,7 +17,10 @@ from tests.correlation.cases import measured, outcome
 from tests.reference import EXAMPLE
 from tests.reporting.correlations import CAR, all_three, odd, real
 
-KEYS = {"name", "target", "baseline", "final", "improvement_percent", "low", "high"}
+KEYS = {
+    "name", "unit", "target", "sd", "baseline", "final", "improvement_percent", "low", "high", "role", "held",
+    "reachable",
+}  # fmt: skip
 FILES = {
     "axle.toml", "parameters.csv", "characteristics.csv", "curves.csv", "rating_terms.csv", "evaluations.csv",
     "correlation.xlsx", "report.html",
@@ -72,12 +75,12 @@ def test_the_document_has_the_agreed_shape(name: str, tmp_path: Path) -> None:
     document = json.loads(path.read_text(encoding="utf-8"))
     assert set(document) == {
         "method", "evaluations", "rating", "feasible", "mean_improvement_percent", "characteristics",
-        "parameters", "axle", "seconds", "stopped", "steps", "notes",
+        "parameters", "axle", "seconds", "stopped", "steps", "notes", "status", "reasons",
     }  # fmt: skip
     assert all(set(c) == KEYS for c in document["characteristics"])
     assert all(c["low"] < c["high"] for c in document["characteristics"])
     assert set(document["parameters"]) == set(found.values)
-    assert all(set(p) == {"baseline", "final", "sd"} for p in document["parameters"].values())
+    assert all(set(p) == {"baseline", "final", "sd", "inward"} for p in document["parameters"].values())
     assert document["rating"] == found.rating and document["evaluations"] == len(found.run.evaluated)
 
 

@@ -11,8 +11,11 @@ import pytest
 from doe_kc.campaign.key import design_key
 from doe_kc.campaign.record import Record, packed_outcome
 from doe_kc.campaign.store import open_store
+from doe_kc.correlation.assessment import Objection
+from doe_kc.correlation.record import run_document
 from doe_kc.correlation.result import Correlation
 from doe_kc.errors import InputError
+from doe_kc.output import write_json
 from doe_kc.reporting.correlation_characteristics import characteristic_frame
 from doe_kc.reporting.correlation_evaluations import evaluation_frame
 from doe_kc.reporting.correlation_terms import term_frame
@@ -28,9 +31,14 @@ from tests.reporting.correlations import CAR, ODD_WEIGHTS, odd, real
 REDUCED = Reduced(measured(CAR), None)
 
 
+def read_study_of(out: Path, *weights: CharacteristicOptions) -> Study:
+    """The example, written to `out`."""
+    return replace(read_study(EXAMPLE, out=out), windows={}, characteristics=weights, curves=())
+
+
 def kept(found: Correlation, out: Path, *weights: CharacteristicOptions) -> Study:
     """A study with the record and the evaluations of a correlation."""
-    plain = replace(read_study(EXAMPLE, out=out), windows={}, characteristics=weights, curves=())
+    plain = read_study_of(out, *weights)
     with open_store(plain.store, solver_for(plain.axle, plain.solver)) as store:
         for e in found.run.evaluated:
             values = found.problem.space.values(e.point)
@@ -52,12 +60,17 @@ def chosen(found: Correlation, place: int) -> Correlation:
     return replace(found, run=replace(found.run, best=place))
 
 
+def ratings(found: Correlation) -> list[float]:
+    return [e.rating.total if e.rating is not None else -np.inf for e in found.run.evaluated]
+
+
 def test_the_same_weights_give_the_same_correlation(tmp_path: Path) -> None:
-    merits = [e.merit for e in odd().run.evaluated]
-    found = chosen(odd(), int(np.argmax(merits)))
-    again = recall(kept(found, tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path)
-    assert again.run.best == found.run.best
-    assert [e.merit for e in again.run.evaluated] == pytest.approx(merits, rel=1e-12)
+    best = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation.run.best
+    found = chosen(odd(), best)
+    write_run(found, tmp_path)
+    again = recall(read_study_of(tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation
+    assert again.run.best == best
+    assert ratings(again) == pytest.approx(ratings(found), rel=1e-12)
     assert again.values == found.values
     for one, other in zip(again.run.evaluated, found.run.evaluated, strict=True):
         assert (one.candidate.predicted is None) == (other.candidate.predicted is None)
@@ -69,25 +82,36 @@ def test_the_same_weights_give_the_same_correlation(tmp_path: Path) -> None:
 
 
 def test_standard_deviations_of_another_design_are_left_out(tmp_path: Path) -> None:
-    again = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path)
-    assert again.run.best != odd().run.best and again.posterior is None
+    best = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation.run.best
+    write_run(chosen(odd(), best - 1), tmp_path)
+    again = recall(read_study_of(tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation
+    assert again.run.best == best and again.posterior is None
 
 
 def test_other_weights_need_no_evaluation(tmp_path: Path) -> None:
     study = kept(odd(), tmp_path, CharacteristicOptions(match="*", linear=3.0, constraint=False))
-    again = recall(study, REDUCED, tmp_path)
+    again = recall(study, REDUCED, tmp_path).correlation
     plain = term_frame(odd())
     objectives = plain[(plain["kind"] == "objective") & (plain["goal"] == "target")]
     now = term_frame(again)
     assert again.feasible and set(objectives["id"]) <= set(now[now["kind"] == "objective"]["id"])
-    merits = [e.merit for e in again.run.evaluated]
-    assert again.rating == max(merits) == pytest.approx(now["final_term"].sum())
+    assert again.rating == pytest.approx(now["final_term"].sum())
     assert len(evaluation_frame(again)) == 10 and not characteristic_frame(again).empty
 
 
 def test_the_fit_keeps_the_design_that_it_chose(tmp_path: Path) -> None:
-    again = recall(kept(chosen(real(), 0), tmp_path), REDUCED, tmp_path)
-    assert again.run.best == 0 and max(e.merit for e in again.run.evaluated) > again.rating
+    again = recall(kept(chosen(real(), 0), tmp_path), REDUCED, tmp_path).correlation
+    assert again.run.best == 0 and max(ratings(again)) > again.rating
+
+
+def test_what_a_discovery_objects_to_is_said_again(tmp_path: Path) -> None:
+    study = kept(real(), tmp_path)
+    document = run_document(real(), objections=[Objection("hub is the leading one of a class.")], misfit=1.7)
+    write_json(tmp_path / "run.json", document)
+    assessment = recall(study, REDUCED, tmp_path).assessment
+    assert assessment.status == "doubtful"
+    assert "hub is the leading one of a class." in assessment.reasons
+    assert any("1.7 times the noise" in r for r in assessment.reasons)
 
 
 def test_a_store_without_the_designs(tmp_path: Path) -> None:
