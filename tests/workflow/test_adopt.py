@@ -1,0 +1,85 @@
+"""Which effects of a discovery are added to the axle that is correlated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from doe_kc.discovery.options import DiscoveryOptions
+from doe_kc.errors import InputError
+from doe_kc.study import read_study
+from doe_kc.workflow.adopt import adopt, adopted
+from tests.discovery.cases import discovery
+from tests.workflow.chain_cases import study
+
+
+def test_named_effects_are_added_at_the_sizes_found(tmp_path: Path) -> None:
+    plain, found = study(tmp_path), discovery("named")
+    adoption = adopt(plain, found)
+    (effect,) = adoption.effects
+    assert effect.id == "hub_compliance" and not effect.uncertain and not effect.on_rig
+    sizes = {e.key: e.value for e in found.findings[0].estimates}
+    assert adoption.axle.effects["hub_compliance"]["camber_Nm_deg"] == pytest.approx(
+        sizes["camber_Nm_deg"], rel=1e-3
+    )
+    assert "hub_compliance" not in plain.axle.effects
+    assert adoption.axle.values["LLF.z@L"] == plain.axle.values["LLF.z@L"], "parameters stay nominal"
+    assert adoption.refit["LLF.z"] != plain.axle.values["LLF.z@L"] and not adoption.without
+    assert adoption.sentences == ("hub and wheel-bearing compliance: added to the axle",)
+
+
+def test_the_leading_one_of_a_class_is_added_and_marked(tmp_path: Path) -> None:
+    found = discovery("class")
+    assert found.verdict == "class"
+    adoption = adopt(study(tmp_path), found)
+    assert [e.id for e in adoption.effects] == [f.hypothesis.effect for f in found.findings]
+    assert any(e.uncertain for e in adoption.effects)
+    assert "the leading one of a class" in adoption.sentences[0]
+
+
+@pytest.mark.parametrize("car", ["unexplained", "lead"])
+def test_where_nothing_is_named_nothing_is_added_and_what_is_unexplained_is_left_out(
+    car: str, tmp_path: Path
+) -> None:
+    found, plain = discovery(car), study(tmp_path)
+    assert found.verdict == "unexplained"
+    adoption = adopt(plain, found)
+    assert adoption.axle is plain.axle and not adoption.effects
+    worst = {(c.load_case, c.response) for c, _ in found.tuned.worst(8)}
+    assert adoption.without <= worst
+    assert all(f"{c} {r}: left out" in " ".join(adoption.sentences) for c, r in adoption.without)
+
+
+def test_never_and_a_list(tmp_path: Path) -> None:
+    found, plain = discovery("two"), study(tmp_path)
+    ids = [f.hypothesis.effect for f in found.findings]
+    assert len(ids) == 2
+    assert adopt(study(tmp_path, "never"), found).axle is plain.axle
+    one = adopt(study(tmp_path, [ids[1]]), found)
+    assert [e.id for e in one.effects] == [ids[1]]
+
+
+def test_a_fault_of_the_rig_is_taken_into_account_but_not_in_the_axle_file(tmp_path: Path) -> None:
+    adoption = adopt(study(tmp_path), discovery("two"))
+    (fault,) = [e for e in adoption.effects if e.on_rig]
+    assert fault.id == "rig_channel_gain"
+    assert any("fault of the measurement" in s for s in adoption.sentences)
+
+
+def test_what_was_adopted_is_read_back(tmp_path: Path) -> None:
+    plain = study(tmp_path)
+    adoption = adopt(plain, discovery("two"))
+    again = adopted(plain, adoption.records, sorted(adoption.without))
+    assert again.axle.values == adoption.axle.values and again.axle.effects == adoption.axle.effects
+    assert again.effects == adoption.effects and again.without == adoption.without
+
+
+def test_an_unknown_effect_to_adopt_is_named(tmp_path: Path) -> None:
+    plain = study(tmp_path)
+    file = tmp_path / "study.toml"
+    file.write_text(file.read_text() + '[discovery]\nadopt = ["hub_complaince"]\n')
+    with pytest.raises(InputError, match=r'discovery.adopt: .hub_complaince. is no effect.*"hub_compliance"'):
+        read_study(tmp_path)
+    assert replace(plain, discovery=DiscoveryOptions()).discovery.adopt == "auto"
