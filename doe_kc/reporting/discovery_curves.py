@@ -19,6 +19,7 @@ from doe_kc.reporting.correlation_curves import BAND
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_views import ModelView, model_views, view_gaps
 from doe_kc.reporting.names import case_label, response_name
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.typing import FloatArray
 
 SHOWN = 6
@@ -87,7 +88,9 @@ def curve_figure(worst: Sequence[WorstView], study: str) -> Figure:
     """Two rows of three curves, each with its deviation from the measured one below."""
     columns, rows = 3, max(1, -(-len(worst) // 3))
     height = 0.95 + 3.65 * rows
-    fig, axes = style.figure(2 * rows, columns, size=(11.69, height), share_x=False)
+    margins = {"left": 0.065, "right": 0.985, "wspace": 0.3, "hspace": 0.3}
+    margins |= {"bottom": 0.85 / height, "top": 1.0 - 0.65 / height}
+    fig, axes = style.figure(2 * rows, columns, size=(11.69, height), share_x=False, margins=margins)
     axes[0, 0].get_gridspec().set_height_ratios([2.2, 1.0] * rows)
     for k in range(columns * rows):
         top, below = axes[2 * (k // columns), k % columns], axes[2 * (k // columns) + 1, k % columns]
@@ -97,8 +100,11 @@ def curve_figure(worst: Sequence[WorstView], study: str) -> Figure:
             continue
         _curve(top, worst[k])
         _deviation(below, worst[k])
-    fig.legend(handles=_handles(worst), loc="outside lower center", ncols=6, fontsize=7.5, frameon=False)
-    fig.suptitle(f"Curves that re-tuning explains worst: {study}", fontsize=11, parse_math=False)
+    fig.legend(handles=_handles(worst), loc="lower center", ncols=6, fontsize=7.5, frameon=False)
+    fig.suptitle(
+        f"Curves that re-tuning explains worst: {study}", fontsize=11, y=1.0 - 0.2 / height, parse_math=False
+    )
+    draw_plain_axes(fig)
     return fig
 
 
@@ -114,7 +120,7 @@ def _curve(ax: Axes, worst: WorstView) -> None:
             ax.plot(view.input, view.models[name][side], dash, color=COLOURS[name], lw=1.4)
     step = max(1, mean.size // 22)
     ax.plot(view.input[::step], mean[::step], "o", color="black", ms=2.4, mew=0.0, zorder=4)
-    ax.set_title(worst.title, fontsize=8.5)
+    ax.set_title(worst.title, fontsize=8.5, y=1.0)
     style.label(ax, None, worst.label)
     ax.tick_params(labelbottom=False)
     ax.xaxis.set_major_locator(MaxNLocator(6))

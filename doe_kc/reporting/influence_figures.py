@@ -11,10 +11,13 @@ import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedFormatter
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.influence.result import Influence
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import case_label
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
 from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.reporting.workbook_cells import NEGATIVE, NEUTRAL, POSITIVE
@@ -129,6 +132,7 @@ def influence_bars(influence: Influence, *, study: str) -> Figure:
         label(ax, "percent of the largest", None)
     title = f"Strongest parameters of each characteristic: {study}"
     fig.suptitle(title, y=1 - 0.1 / height, va="top", fontsize=11, parse_math=False)
+    draw_plain_axes(fig)
     return fig
 
 
@@ -151,14 +155,20 @@ def _bars(ax: Axes, influence: Influence, j: int) -> None:
     ax.set_xlim(-128.0, 128.0)
     ax.set_ylim(TOP - 0.4, -0.6)
     ax.set_yticks(places)
-    ax.set_yticklabels([influence.parameters[i].path for i in strongest], fontsize=6)
-    ax.set_title(f"{case_label(entry.load_case)}\n{entry.label}", fontsize=7.5)
+    ax.yaxis.set_major_formatter(FixedFormatter([influence.parameters[i].path for i in strongest]))
+    ax.tick_params(axis="y", labelsize=6)
+    ax.set_title(f"{case_label(entry.load_case)}\n{entry.label}", fontsize=7.5, y=1.0)
 
 
 def write_influence_figures(
-    influence: Influence, folder: Path, *, study: str, workers: int | None = None
+    influence: Influence,
+    folder: Path,
+    *,
+    study: str,
+    workers: int | None = None,
+    pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """`influence_heat_map` and `influence_top_ten`, each as .png and .svg; returns the four paths.
+    """Pictures `influence_heat_map` and `influence_top_ten`; returns their paths.
 
     Raises RunError when the folder cannot be written.
     """
@@ -166,4 +176,4 @@ def write_influence_figures(
         (folder / "influence_heat_map", partial(influence_heat_map, influence, study=study)),
         (folder / "influence_top_ten", partial(influence_bars, influence, study=study)),
     ]
-    return draw_series(jobs, workers, vector=True)
+    return draw_series(jobs, workers, pictures=pictures)

@@ -20,6 +20,7 @@ from doe_kc.measurement import (
     reduce_measurement,
 )
 from doe_kc.output import write_csv
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.rig_figures import write_rig_figures
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
@@ -89,7 +90,9 @@ def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
     ]
 
 
-def write_reduced(reduced: Reduced, folder: Path, *, workers: int | None = None) -> list[Path]:
+def write_reduced(
+    reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
+) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
     frames = measurement_to_frames(reduced.measurement)
     tables = {
@@ -99,7 +102,7 @@ def write_reduced(reduced: Reduced, folder: Path, *, workers: int | None = None)
         "noise.csv": frames.noise,
     }
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
-    return written + write_rig_figures(reduced.measurement, folder, workers=workers)
+    return written + write_rig_figures(reduced.measurement, folder, workers=workers, pictures=pictures)
 
 
 def reduced_document(reduced: Reduced) -> dict[str, Any]:

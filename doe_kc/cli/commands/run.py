@@ -52,9 +52,11 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
 
     reduced = reduce_records(found, solution)
     typer.echo("drawing the rig records and the comparison", err=True)
-    written += write_reduced(reduced, found.out / "reduce", workers=given.workers)
+    written += write_reduced(reduced, found.out / "reduce", workers=given.workers, pictures=found.pictures)
     comparison = compare_model(found, model, reduced.measurement)
-    written += write_comparison(comparison, found.out / "compare", workers=given.workers)
+    written += write_comparison(
+        comparison, found.out / "compare", workers=given.workers, pictures=found.pictures
+    )
 
     with progress_bar("one at a time", influence_runs(found)) as advance:
         influence = study_influence(found, reduced.measurement, workers=given.workers, progress=advance)
