@@ -24,6 +24,7 @@ from doe_kc.measurement.noise_estimation import estimate_noise
 from doe_kc.measurement.records import Record, read_record
 from doe_kc.measurement.trend import Trend, fit_trends
 from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 HALF_TRACK = 790.0
@@ -55,6 +56,7 @@ class Measurement:
     characteristics: Mapping[str, Estimate]
 
 
+@one_thread()
 def reduce_measurement(
     manifest_path: Path, *, windows: Windows | None = None, half_track: float = HALF_TRACK
 ) -> Measurement:

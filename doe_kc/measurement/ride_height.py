@@ -13,6 +13,7 @@ from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.production_scatter import KINEMATIC_SCATTER
 from doe_kc.measurement.shift_problem import LOAD, Scatter, ShiftProblem
 from doe_kc.measurement.shifted_curves import ShiftedCurves, both_sides
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 CASE = "vertical"
@@ -52,6 +53,7 @@ class RideHeight:
     contributions: tuple[Contribution, ...]
 
 
+@one_thread()
 def infer_ride_height(
     measured: CurveSet,
     model: CurveSet,

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import Comparison, same_input
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
@@ -38,8 +37,8 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
         _draw(ax, model, measured, response)
         style.label(ax, None, response_axis(response))
         ax.set_title(RESPONSE_LABELS[response], fontsize=9, y=1.0)
-        ax.xaxis.set_major_locator(MaxNLocator(5))
-        ax.yaxis.set_major_locator(MaxNLocator(7))
+        ax.xaxis.set_major_locator(style.ticks(5))
+        ax.yaxis.set_major_locator(style.ticks(7))
         ax.set_xlabel(input_label(load_case, measured.input_unit))
     _table(panels[7], comparison, load_case)
     _legend(panels[8])

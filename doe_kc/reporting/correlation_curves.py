@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import same_input
 from doe_kc.correlation.result import Correlation
@@ -83,8 +82,8 @@ def curve_figure(view: CaseView, study: str) -> Figure:
         _panel(ax, view, response)
         style.label(ax, None, response_axis(response))
         ax.set_title(RESPONSE_LABELS[response], fontsize=9, y=1.0)
-        ax.xaxis.set_major_locator(MaxNLocator(6))
-        ax.yaxis.set_major_locator(MaxNLocator(7))
+        ax.xaxis.set_major_locator(style.ticks(6))
+        ax.yaxis.set_major_locator(style.ticks(7))
     for ax in axes[-1]:
         ax.set_xlabel(view.input_label)
     handles = _handles(view)

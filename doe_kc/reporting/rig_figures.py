@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.measurement import Gradient, Measurement
@@ -19,7 +18,7 @@ from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import input_label, response_axis
 from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
-from doe_kc.reporting.style import A4, PALETTE, figure, label
+from doe_kc.reporting.style import A4, PALETTE, figure, label, ticks
 from doe_kc.typing import FloatArray
 
 SIDE_TITLES = ("Left wheel", "Right wheel")
@@ -51,7 +50,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
         label(row[0], None, response_axis(response))
         label(row[2], None, f"residual [{RESPONSE_UNITS[response]}]")
     for ax in axes.flat:
-        ax.yaxis.set_major_locator(MaxNLocator(5))
+        ax.yaxis.set_major_locator(ticks(5))
     for ax in axes[-1]:
         label(ax, _without_remark(input_label(load_case, case.input_unit)), None)
     for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):

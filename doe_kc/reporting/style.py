@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from doe_kc.output import write_whole
@@ -89,6 +90,12 @@ def label(ax: Axes, x: str | None, y: str | None) -> None:
         ax.set_xlabel(x)
     if y is not None:
         ax.set_ylabel(y)
+
+
+def ticks(count: int) -> MaxNLocator:
+    """At most `count` intervals between round numbers, where Matplotlib's own choice would need the size of
+    text on the paper."""
+    return MaxNLocator(count, steps=(1.0, 2.0, 2.5, 5.0, 10.0))
 
 
 def picture_path(path_without_suffix: Path, pictures: PictureFormat) -> Path:

@@ -20,6 +20,7 @@ from doe_kc.measurement import Measurement
 from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
 from doe_kc.targets import build_targets
+from doe_kc.threads import one_thread
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import Space, build_space
@@ -31,6 +32,7 @@ from doe_kc.workflow.set_first import set_first
 Watch = Callable[[Sequence[Evaluated]], None]
 
 
+@one_thread()
 def correlate(
     study: Study,
     reduced: Reduced | None,
@@ -103,6 +105,7 @@ def _method(study: Study, name: str | None) -> type[Method]:
     return chosen
 
 
+@one_thread()
 def study_problem(study: Study, reduced: Reduced | None, *, space: Space | None = None) -> Problem:
     """The correlation problem of a study, with its own variables or others."""
     measurement = reduced.measurement if reduced is not None else None
@@ -170,6 +173,7 @@ def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
         return None
 
 
+@one_thread()
 def posterior_at(problem: Problem, expansion: Linearization | None) -> Posterior | None:
     """What the data say of each variable; None without exact sensitivities."""
     if expansion is None:
@@ -178,6 +182,7 @@ def posterior_at(problem: Problem, expansion: Linearization | None) -> Posterior
     return posterior(jacobian, problem.space.prior_sd)
 
 
+@one_thread()
 def notes_on(problem: Problem, run: Run, at_best: Linearization | None) -> tuple[str, ...]:
     """Targets out of reach, constraints in conflict and levels too coarse, in sentences."""
     best, at_start = run.evaluated[run.best], expansion_at(problem, run.evaluated[0])

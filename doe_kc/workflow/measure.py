@@ -21,7 +21,6 @@ from doe_kc.measurement import (
 )
 from doe_kc.output import write_csv
 from doe_kc.pictures import PNG, PictureFormat
-from doe_kc.reporting.rig_figures import write_rig_figures
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
@@ -94,6 +93,8 @@ def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
+    from doe_kc.reporting.rig_figures import write_rig_figures
+
     frames = measurement_to_frames(reduced.measurement)
     tables = {
         "curves.csv": frames.curves,

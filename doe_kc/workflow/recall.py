@@ -12,6 +12,7 @@ from doe_kc.errors import InputError
 from doe_kc.files import read_bytes
 from doe_kc.output import write_json
 from doe_kc.study import Study
+from doe_kc.threads import one_thread
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.correlate import study_problem
 from doe_kc.workflow.measure import Reduced
@@ -24,6 +25,7 @@ def write_run(found: Correlation, folder: Path) -> Path:
     return write_json(folder / RUN_FILE, run_document(found))
 
 
+@one_thread()
 def recall(study: Study, reduced: Reduced | None, folder: Path) -> Correlation:
     """The last correlation in `folder`, rated by the study's present targets and weights; nothing is run.
 

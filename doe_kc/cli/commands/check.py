@@ -6,12 +6,12 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.options import MeasurementOption, OutOption, StudyArgument
-from doe_kc.correlation.methods import method_class
+from doe_kc.correlation.methods import check_method
 from doe_kc.study import read_study
 from doe_kc.workflow.measure import check_measurement
 
 
-@app.command()
+@app.command("check")
 def check(study: StudyArgument, measurement: MeasurementOption = None, out: OutOption = None) -> None:
     """Validate the study, its axle and its rig records; run nothing."""
     found = read_study(study, measurement=measurement, out=out)
@@ -22,7 +22,7 @@ def check(study: StudyArgument, measurement: MeasurementOption = None, out: OutO
     typer.echo(f"effects      {', '.join(axle.effects) or 'none'}")
     typer.echo(f"parameters   {len(found.parameters)} selected")
     typer.echo(f"variables    {found.space.dimension}, method {found.correlation.method}")
-    method_class(found.correlation.method, source=f"{found.source}: correlation.method")
+    check_method(found.correlation.method, source=f"{found.source}: correlation.method")
     if found.measurement is None:
         typer.echo("measurement  none named")
     else:

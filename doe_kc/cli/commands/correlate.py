@@ -19,7 +19,7 @@ from doe_kc.workflow.measure import Reduced, study_records
 from doe_kc.workflow.recall import write_run
 
 
-@app.command()
+@app.command("correlate")
 @takes_study
 def correlate(
     given: Given,

@@ -20,7 +20,7 @@ from doe_kc.workflow.discovery_handover import AXLE, write_discovery
 from doe_kc.workflow.measure import study_measurement
 
 
-@app.command()
+@app.command("discover")
 @takes_study
 def discover(
     given: Given,

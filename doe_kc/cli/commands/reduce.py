@@ -14,7 +14,7 @@ from doe_kc.workflow.compare import compare_model, comparison_lines, write_compa
 from doe_kc.workflow.measure import reduce_records, reduced_document, write_reduced
 
 
-@app.command()
+@app.command("reduce")
 @takes_study
 def reduce(given: Given) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""

@@ -12,7 +12,7 @@ from doe_kc.workflow.measure import study_records
 from doe_kc.workflow.recall import recall
 
 
-@app.command()
+@app.command("report")
 @takes_study
 def report(given: Given) -> None:
     """Rebuild the results of the last correlation with the study's present weights; nothing is solved."""

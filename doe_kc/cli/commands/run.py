@@ -37,7 +37,7 @@ from doe_kc.workflow.measure import reduce_records, reduced_document, write_redu
 from doe_kc.workflow.recall import write_run
 
 
-@app.command()
+@app.command("run")
 @takes_study
 def run(given: Given, scheduler: SchedulerOption = None) -> None:
     """The whole chain: simulate, reduce, compare, influence matrix, correlate, discover; all under out."""

@@ -21,7 +21,7 @@ from doe_kc.solver.load_cases.roll import TECHNIQUES
 from doe_kc.solver.suite import solve
 
 
-@app.command()
+@app.command("simulate")
 def simulate(
     axle: Annotated[Path, typer.Argument(metavar="AXLE", help="Axle file (TOML).")],
     settings: Annotated[
