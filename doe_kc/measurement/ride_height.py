@@ -131,7 +131,7 @@ def _problem(
     stop_clearance_sd: float,
     scatter: Scatter | None,
 ) -> ShiftProblem:
-    case, reference = _vertical(measured), _vertical(model)
+    case, reference = vertical_curves(measured), vertical_curves(model)
     near = np.abs(case.input) <= KINEMATIC_WINDOW * (1.0 + 1e-9)
     wide = (case.input >= LOAD_RANGE[0]) & (case.input <= LOAD_RANGE[1])
     masks = dict.fromkeys(KINEMATIC_SCATTER, near) | {LOAD: wide}
@@ -146,7 +146,8 @@ def _problem(
     )
 
 
-def _vertical(curves: CurveSet) -> CaseCurves:
+def vertical_curves(curves: CurveSet) -> CaseCurves:
+    """Those of vertical motion; InputError when there are none, or they are too short to tell ride height."""
     case = curves.cases.get(CASE)
     if case is None:
         raise InputError(

@@ -49,7 +49,7 @@ def correlate(
     an unknown method, or sensitivities asked of a solver that gives none.
     """
     started = time.perf_counter()
-    options, chosen = study.correlation, _method(study, method)
+    options, chosen = study.correlation, study_method(study, method)
     solver = solver_for(study.axle, study.solver, study.windows, study.folder)
     with Campaign(solver, study.store, workers=workers, scheduler=scheduler) as campaign:
 
@@ -87,7 +87,9 @@ def correlate(
     )
 
 
-def _method(study: Study, name: str | None) -> type[Method]:
+def study_method(study: Study, name: str | None = None) -> type[Method]:
+    """The method of that id, by default the study's; InputError where there is none or the solver cannot
+    serve it."""
     options = study.correlation
     chosen = method_class(
         name or options.method, source="--method" if name else f"{study.source}: correlation.method"
