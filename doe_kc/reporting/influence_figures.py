@@ -7,7 +7,6 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
@@ -63,30 +62,27 @@ def influence_heat_map(influence: Influence, *, study: str) -> Figure:
 
 def draw_matrix(ax: Axes, values: FloatArray, *, bar: bool = True) -> None:
     """A percent matrix on `ax` with fixed colours and numbers from 5 % on; nan is grey."""
-    text = np.array([[_number(v) for v in row] for row in values], dtype=object)
-    sns.heatmap(
-        values,
-        ax=ax,
+    mesh = ax.pcolormesh(
+        np.ma.masked_invalid(values),
         vmin=-100.0,
         vmax=100.0,
         cmap=diverging(),
-        annot=text,
-        fmt="",
-        annot_kws={"size": 5.5, "color": LINE},
         linewidths=0.3,
-        linecolor="#E3E6E9",
-        cbar=bar,
-        cbar_kws={"label": "percent of the column's largest", "shrink": 0.4, "pad": 0.01} if bar else None,
-        xticklabels=False,
-        yticklabels=False,
+        edgecolors="#E3E6E9",
     )
+    rows, columns = values.shape
+    ax.set(xlim=(0.0, columns), ylim=(rows, 0.0), xticks=[], yticks=[])
+    for i, j in np.argwhere(np.abs(np.nan_to_num(values)) >= ANNOTATE):
+        ax.text(j + 0.5, i + 0.5, f"{values[i, j]:.0f}", fontsize=5.5, color=LINE, ha="center", va="center")
+    if bar and ax.figure is not None:
+        scale = ax.figure.colorbar(mesh, ax=ax, shrink=0.4, pad=0.01)
+        scale.set_label("percent of the column's largest")
+        scale.outline.set_linewidth(0.0)  # type: ignore[operator]
+    for spine in ax.spines.values():
+        spine.set_visible(False)
     ax.set_facecolor("#D9DCDF")
     ax.grid(visible=False)
     ax.tick_params(length=0)
-
-
-def _number(value: float) -> str:
-    return f"{value:.0f}" if np.isfinite(value) and abs(value) >= ANNOTATE else ""
 
 
 def _name(entry: Characteristic) -> str:
