@@ -73,11 +73,14 @@ def draw_matrix(ax: Axes, values: FloatArray, *, bar: bool = True) -> None:
     rows, columns = values.shape
     ax.set(xlim=(0.0, columns), ylim=(rows, 0.0), xticks=[], yticks=[])
     for i, j in np.argwhere(np.abs(np.nan_to_num(values)) >= ANNOTATE):
-        ax.text(j + 0.5, i + 0.5, f"{values[i, j]:.0f}", fontsize=5.5, color=LINE, ha="center", va="center")
+        number = ax.text(
+            j + 0.5, i + 0.5, f"{values[i, j]:.0f}", fontsize=5.5, color=LINE, ha="center", va="center"
+        )
+        number.set_in_layout(False)  # it lies within its cell; the layout would measure it with the rest
     if bar and ax.figure is not None:
         scale = ax.figure.colorbar(mesh, ax=ax, shrink=0.4, pad=0.01)
         scale.set_label("percent of the column's largest")
-        scale.outline.set_linewidth(0.0)  # type: ignore[operator]
+        scale.outline.set_linewidth(0.0)
     for spine in ax.spines.values():
         spine.set_visible(False)
     ax.set_facecolor("#D9DCDF")

@@ -23,27 +23,36 @@ class CellFont(Font):  # type: ignore[misc]
     """With `CellAlignment`, `CellBorder`, `CellFill`: looks made once and known by identity.
 
     A workbook finds the number of a look by its hash, which openpyxl computes anew of thirty fields for
-    every cell: half of the time that a sheet takes.
+    every cell: half of the time that a sheet takes. What is written of a look, openpyxl lists for each class
+    anew, so that it is repeated here.
     """
 
+    __attrs__, __nested__, __elements__ = Font.__attrs__, Font.__nested__, Font.__elements__
     __hash__, __eq__ = object.__hash__, object.__eq__
 
 
 class CellAlignment(Alignment):  # type: ignore[misc]
     """See `CellFont`."""
 
+    __attrs__, __nested__, __elements__ = Alignment.__attrs__, Alignment.__nested__, Alignment.__elements__
     __hash__, __eq__ = object.__hash__, object.__eq__
 
 
 class CellBorder(Border):  # type: ignore[misc]
     """See `CellFont`."""
 
+    __attrs__, __nested__, __elements__ = Border.__attrs__, Border.__nested__, Border.__elements__
     __hash__, __eq__ = object.__hash__, object.__eq__
 
 
 class CellFill(PatternFill):  # type: ignore[misc]
     """See `CellFont`."""
 
+    __attrs__, __nested__, __elements__ = (
+        PatternFill.__attrs__,
+        PatternFill.__nested__,
+        PatternFill.__elements__,
+    )
     __hash__, __eq__ = object.__hash__, object.__eq__
 
 
