@@ -79,7 +79,8 @@ def draw_matrix(ax: Axes, values: FloatArray, *, bar: bool = True) -> None:
         number.set_in_layout(False)  # it lies within its cell; the layout would measure it with the rest
     if bar and ax.figure is not None:
         scale = ax.figure.colorbar(mesh, ax=ax, shrink=0.4, pad=0.01)
-        scale.set_label("percent of the column's largest")
+        scale.set_label("percent of the column's largest", fontsize=8)
+        scale.ax.tick_params(labelsize=7)
         scale.outline.set_linewidth(0.0)
     for spine in ax.spines.values():
         spine.set_visible(False)
