@@ -30,6 +30,11 @@ def _controller() -> Any:
     return import_module("threadpoolctl").ThreadpoolController()
 
 
+def find_libraries() -> None:
+    """Look for the BLAS of this process now, so that its forks need not."""
+    _controller()
+
+
 def limit_process() -> None:
     """One BLAS thread for the rest of this process, such as a worker."""
     set_thread_variables()

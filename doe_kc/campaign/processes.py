@@ -16,7 +16,7 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Any, ParamSpec, TypeVar
 
-from doe_kc.threads import limit_process
+from doe_kc.threads import find_libraries, limit_process
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -48,6 +48,7 @@ class Processes(Executor):
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Raises BrokenProcessPool after a worker was lost: see `renew`."""
         if self._pool is None:
+            find_libraries()
             self._pool = ProcessPoolExecutor(self.workers, mp_context=start_context(), initializer=_begin)
         with warnings.catch_warnings():
             # Python 3.12 and later warn of a fork beside threads; a progress bar's holds nothing a task needs

@@ -125,6 +125,7 @@ def _widest(texts: Sequence[Text]) -> float:
 
 def _label(axis: Axis, ax: Axes, x: float, y: float, rotation: float) -> None:
     own = axis.get_label()
+    own.set_visible(False)  # neither drawn nor placed any more, yet what `get_xlabel` tells
     if own.get_text():
         along = "bottom" if rotation else "top"
         ax.text(
