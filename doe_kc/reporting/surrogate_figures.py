@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
-from doe_kc.reporting.style import CYCLE, PALETTE, figure, label
+from doe_kc.reporting.style import CYCLE, PALETTE, figure, label, ticks
 from doe_kc.reporting.surrogate_tables import left_out_predictions, left_out_sd
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
@@ -68,7 +67,7 @@ def _panel(ax: Axes, report: SurrogateReport, j: int, predicted: FloatArray, sd:
     ax.set_xlim(*limits)
     ax.set_ylim(*limits)
     for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator(3))
+        axis.set_major_locator(ticks(4))
     q2 = report.fitted.models[name].quality.q2[j]
     how = f"{name}, Q² {q2:.4f}" if np.isfinite(q2) else "never changes"
     heads = f"{case_label(entry.load_case)}\n{entry.label} [{entry.unit}]\n{how}"
