@@ -15,9 +15,14 @@ from pathlib import Path
 import typer
 
 
+def command_names() -> list[str]:
+    """Every command; none is imported."""
+    return sorted(info.name for info in pkgutil.iter_modules(__path__))
+
+
 def register(app: typer.Typer, arguments: Sequence[str]) -> None:
     """Import the command that `arguments` call; when it is none, list all of them."""
-    names = sorted(info.name for info in pkgutil.iter_modules(__path__))
+    names = command_names()
     called = next((word for word in arguments if not word.startswith("-")), None)
     if called in names:
         importlib.import_module(f"{__name__}.{called}")
