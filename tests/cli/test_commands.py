@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc import __version__
 
-HEAVY = {"casadi", "matplotlib", "numpy", "openpyxl", "pandas", "pydantic", "scipy", "sklearn", "smt"}
+HEAVY = {"casadi", "matplotlib", "numpy", "openpyxl", "pandas", "scipy", "sklearn", "smt"}
 LOADED = """
 import sys
 sys.argv = ["doe-kc", *sys.argv[1:]]
