@@ -7,11 +7,12 @@ import math
 import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
-
-import pandas as pd
+from typing import TYPE_CHECKING, Any
 
 from doe_kc.errors import RunError
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def make_folder(path: Path) -> Path:

@@ -16,6 +16,7 @@ from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.discovery.options import DiscoveryOptions
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.sampling.options import SamplingOptions
 from doe_kc.solver.load_cases import LOAD_CASES
 from doe_kc.surrogates.options import SurrogateOptions
@@ -44,6 +45,7 @@ class StudyFile(Strict):
     measurement: str | None = None
     out: str = "out"
     seed: Annotated[int, Field(ge=0)] = 1
+    pictures: PictureFormat = PNG
     windows: dict[str, Positive] = Field(default={})
     influence: InfluenceOptions = InfluenceOptions()
     solver: SolverOptions = SolverOptions()
@@ -71,6 +73,7 @@ class Study:
     measurement: Path | None
     out: Path
     seed: int
+    pictures: PictureFormat
     windows: dict[str, float]
     parameters: tuple[Parameter, ...]
     space: Space
@@ -113,11 +116,17 @@ class Study:
 
 
 def read_study(
-    path: Path, *, measurement: Path | None = None, out: Path | None = None, seed: int | None = None
+    path: Path,
+    *,
+    measurement: Path | None = None,
+    out: Path | None = None,
+    seed: int | None = None,
+    pictures: PictureFormat | None = None,
 ) -> Study:
     """Study from its file, or from the folder that holds `study.toml`.
 
-    measurement, out, seed: in place of the study's own. InputError naming file and key for anything wrong.
+    measurement, out, seed, pictures: in place of the study's own. InputError naming file and key for
+    anything wrong.
     """
     source = path / "study.toml" if path.is_dir() else path
     file = validate(StudyFile, read_toml(source), str(source))
@@ -141,6 +150,7 @@ def read_study(
         measurement=measurement or own,
         out=out or folder / file.out,
         seed=file.seed if seed is None else seed,
+        pictures=pictures or file.pictures,
         windows=dict(file.windows),
         parameters=select(axle, file.influence.parameters, str(source)),
         space=build_space(axle, file.variables, str(source)),

@@ -18,7 +18,7 @@ from configurations_text import file_name, markdown
 from correlation_runs import Trace, arguments, cached_trace
 
 from doe_kc.correlation.posterior import AT_BOUND
-from doe_kc.reporting.style import save_png
+from doe_kc.reporting.style import save
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ def main() -> None:
         if shown:
             standard = next((k for k, traces in shown.items() if traces is runs[STANDARD]), "")
             picture = convergence_figure(shown, what, plan.budget, standard)
-            save_png(picture, given.out / file_name(number, what))
+            save(picture, given.out / file_name(number, what))
     table = run_table(runs)
     table.to_csv(given.out / "configurations.csv", index=False, float_format="%.4f")
     constraints = sum(t.constraint is not None for t in problem_of(STANDARD).targets.characteristics)

@@ -20,7 +20,7 @@ from recovery import Fit, far_off, fitted
 from synthetic_cars import record, scattered
 
 from doe_kc.correlation.options import Gradients
-from doe_kc.reporting.style import save_png
+from doe_kc.reporting.style import save
 
 CARS = ("car_b", "car_e")
 SLOPES: Mapping[str, Gradients] = {"exact": "auto", "learnt": False}
@@ -177,7 +177,7 @@ def main() -> None:
         given.out / "correlated_cars_parameters.csv", index=False, float_format="%.4f"
     )
     run_table(found).to_csv(given.out / "correlated_cars_runs.csv", index=False, float_format="%.4f")
-    save_png(recovery_figure(found.fits, found.synthetic), given.out / "correlated_cars")
+    save(recovery_figure(found.fits, found.synthetic), given.out / "correlated_cars")
     print(text)
     check(found)
 

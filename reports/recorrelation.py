@@ -22,7 +22,7 @@ from synthetic_cars import quieter, record, scattered
 
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Problem
-from doe_kc.reporting.style import save_png
+from doe_kc.reporting.style import save
 from doe_kc.targets import Targets
 from doe_kc.variables import Space, VariableOptions, build_space
 
@@ -175,8 +175,8 @@ def main() -> None:
     (given.out / "recorrelation.md").write_text(text, encoding="utf-8")
     parameters.to_csv(given.out / "recorrelation_parameters.csv", index=False, float_format="%.4f")
     run_table(cases).to_csv(given.out / "recorrelation_runs.csv", index=False, float_format="%.4f")
-    save_png(recorrelation_figure(cases, SHARE), given.out / "recorrelation")
-    save_png(parameter_figure(parameters), given.out / "recorrelation_parameters")
+    save(recorrelation_figure(cases, SHARE), given.out / "recorrelation")
+    save(parameter_figure(parameters), given.out / "recorrelation_parameters")
     print(text)
     check(cases, plan)
 

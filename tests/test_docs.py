@@ -79,7 +79,8 @@ def test_links_lead_somewhere(page: Path) -> None:
 
 def known_commands() -> dict[str, set[str]]:
     """Command -> its options."""
-    commands.register([])
+    for name in commands.command_names():
+        commands.register(app, [name])
     group = typer.main.get_command(app)
     found = group.commands  # type: ignore[attr-defined]
     return {name: {o for p in c.params for o in p.opts} | {"--help"} for name, c in found.items()}

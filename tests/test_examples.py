@@ -11,8 +11,7 @@ import pytest
 from doe_kc import examples
 from doe_kc.errors import InputError, RunError
 from doe_kc.examples import copy_example, example_folder
-from doe_kc.study import read_study
-from doe_kc.workflow.measure import check_measurement
+from doe_kc.workflow.check import check_study
 from tests.reference import EXAMPLE
 
 
@@ -24,9 +23,10 @@ def test_a_copy_is_a_sound_study(tmp_path: Path) -> None:
     files = copy_example(tmp_path / "new")
     assert files == sorted(files) and all(f.is_file() for f in files)
     assert {"study.toml", "axle.toml", "test.toml", "vertical.csv"} <= {f.name for f in files}
-    study = read_study(tmp_path / "new")
-    manifest, count = check_measurement(study.measured())
-    assert manifest.name == "car_a" and count == 24
+    checked = check_study(tmp_path / "new")
+    manifest = checked.manifest
+    assert manifest is not None and not checked.errors and not checked.warnings
+    assert manifest.name == "car_a" and sum(map(len, manifest.records.values())) == 24
     named = {entry for entries in manifest.records.values() for entry in entries}
     assert named == {f.name for f in files if f.suffix == ".csv"}
 

@@ -16,11 +16,14 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Any, ParamSpec, TypeVar
 
+from doe_kc.threads import find_libraries, limit_process
+
 P = ParamSpec("P")
 T = TypeVar("T")
 GRACE = 2.0
 """Seconds that a worker without parent has to end what it started."""
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+LOOK = 1.0
+"""Seconds between looks at the parent's id, where its end is not told otherwise."""
 
 
 def available_cores() -> int:
@@ -45,6 +48,7 @@ class Processes(Executor):
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Raises BrokenProcessPool after a worker was lost: see `renew`."""
         if self._pool is None:
+            find_libraries()
             self._pool = ProcessPoolExecutor(self.workers, mp_context=start_context(), initializer=_begin)
         with warnings.catch_warnings():
             # Python 3.12 and later warn of a fork beside threads; a progress bar's holds nothing a task needs
@@ -74,8 +78,7 @@ def _begin() -> None:
     """In a new worker: Ctrl-C is the parent's business, SIGTERM ends it, one thread is enough."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
+    limit_process()
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
@@ -98,11 +101,17 @@ def _leave(_signal: int, _frame: object) -> None:
 
 
 def _end_with_parent() -> None:
-    """A killed parent would leave its workers waiting for ever."""
+    """A killed parent would leave its workers waiting for ever.
+
+    Its sentinel tells its end at once on every system, yet not while a process that it started holds the
+    other end open; a process without parent is given to another, so that its parent's id changes.
+    """
     parent = multiprocessing.parent_process()
     if parent is None:
         return
-    wait([parent.sentinel])
+    while not wait([parent.sentinel], LOOK):
+        if os.name == "posix" and os.getppid() != parent.pid:
+            break
     os.kill(os.getpid(), signal.SIGTERM)
     time.sleep(GRACE)
     os._exit(1)

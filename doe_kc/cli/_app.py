@@ -8,11 +8,13 @@ import signal
 import sys
 from collections.abc import Callable
 from types import FrameType
-from typing import NoReturn
+from typing import Annotated, NoReturn
 
 import typer
 
+from doe_kc import __version__
 from doe_kc.errors import DoeKcError, RunError
+from doe_kc.threads import set_thread_variables
 
 INTERRUPTED = "interrupted; results written so far are kept, the same command starts again."
 
@@ -26,24 +28,29 @@ app = typer.Typer(
 )
 
 
+def _version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"doe-kc {__version__}")
+        raise typer.Exit
+
+
 @app.callback(help=app.info.help)
-def _group() -> None:
+def _group(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version and exit.")
+    ] = False,
+) -> None:
     # Without a callback Typer makes a lone registered command the whole application.
     pass
 
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""One thread for linear algebra, unless the user says otherwise: matrices are small, cores run solvers."""
-
-
 def main() -> NoReturn:
     """Run a command; exit code 0, 2 for bad input, 1 for a failed run, without a traceback."""
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
+    set_thread_variables()
     _on_interrupt(_leave)
     from doe_kc.cli import commands
 
-    commands.register(sys.argv[1:])
+    commands.register(app, sys.argv[1:])
     logging.basicConfig(format="doe-kc: %(message)s", level=logging.WARNING, stream=sys.stderr)
     _on_interrupt(_interrupted)
     try:

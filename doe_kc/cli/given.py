@@ -12,6 +12,7 @@ from doe_kc.cli.options import (
     JsonOption,
     MeasurementOption,
     OutOption,
+    PicturesOption,
     SeedOption,
     StudyArgument,
     WorkersOption,
@@ -23,7 +24,7 @@ P = ParamSpec("P")
 
 @dataclass(frozen=True)
 class Given:
-    """measurement, out, seed: in place of the study's own. json: file for the figures."""
+    """measurement, out, seed, pictures: in place of the study's own. json: file for the figures."""
 
     study: StudyArgument
     measurement: MeasurementOption = None
@@ -31,10 +32,17 @@ class Given:
     json: JsonOption = None
     seed: SeedOption = None
     workers: WorkersOption = None
+    pictures: PicturesOption = None
 
     def read(self) -> Study:
         """The study; InputError as `read_study`."""
-        return read_study(self.study, measurement=self.measurement, out=self.out, seed=self.seed)
+        return read_study(
+            self.study,
+            measurement=self.measurement,
+            out=self.out,
+            seed=self.seed,
+            pictures=self.pictures.value if self.pictures is not None else None,
+        )
 
 
 def takes_study(command: Callable[Concatenate[Given, P], None]) -> Callable[..., None]:

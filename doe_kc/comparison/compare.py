@@ -5,15 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.comparison.deviation import rms_deviation
 from doe_kc.comparison.interval import constraint_interval
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES, CaseCurves, CurveSet
 from doe_kc.typing import FloatArray
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,8 @@ class Comparison:
 
     def characteristics_frame(self) -> pd.DataFrame:
         """One row a characteristic: name, load_case, unit, model, target, target_sd, difference, low, ..."""
+        import pandas as pd
+
         return pd.DataFrame(
             [
                 {
@@ -83,6 +88,8 @@ class Comparison:
 
     def curves_frame(self) -> pd.DataFrame:
         """One row a curve: load_case, response, unit, side, rms, rms_half_width, span."""
+        import pandas as pd
+
         return pd.DataFrame(
             [
                 {

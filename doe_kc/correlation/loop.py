@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from doe_kc.correlation.methods._base import Method
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.errors import RunError
+from doe_kc.threads import one_thread
 from doe_kc.true_solver.outcome import Outcome
 
 Evaluate = Callable[[Sequence[Mapping[str, float]]], Sequence[Outcome]]
@@ -23,6 +24,7 @@ class Run:
     stopped: str
 
 
+@one_thread()
 def run_method(
     problem: Problem,
     method: Method,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 import pandas as pd
@@ -36,22 +37,22 @@ class Influence:
     seconds: float
     failures: dict[str, str] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def absolute(self) -> FloatArray:
         """Change for a positive step, (plus - minus) / 2."""
         return (self.plus - self.minus) / 2.0
 
-    @property
+    @cached_property
     def percent(self) -> FloatArray:
         """Percent of the largest magnitude of each column; + = positive change for a positive input."""
         return percent_of_column(self.absolute)
 
-    @property
+    @cached_property
     def exact_percent(self) -> FloatArray:
         """The exact changes in percent of the column's largest one-at-a-time magnitude."""
         return 100.0 * self.exact / column_peaks(self.absolute)
 
-    @property
+    @cached_property
     def nonlinear(self) -> np.ndarray:
         """bool: one-at-a-time and exact change differ by more than 5 %."""
         gap = np.abs(self.percent - self.exact_percent)

@@ -27,6 +27,7 @@ from doe_kc.influence.identifiability import (
 )
 from doe_kc.influence.result import Influence
 from doe_kc.influence.selection_result import Outcome, Selection, Variable
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 AT_BOUND = 1e-6
@@ -42,6 +43,7 @@ FIX_NO_INFLUENCE = "fix (no influence)"
 FIX_FAILED = "fix (axle fails at its step)"
 
 
+@one_thread()
 def select_variables(
     influence: Influence,
     targets: Mapping[str, float],

@@ -16,11 +16,13 @@ from doe_kc.influence.result import Influence
 from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
+from doe_kc.threads import one_thread
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.typing import FloatArray
 
 
+@one_thread()
 def influence_study(
     axle: Axle,
     parameters: Sequence[Parameter] | None = None,

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.measurement.reduction import Measurement
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 CURVE_COLUMNS = (
     "load_case", "input", "input_unit", "side", "response", "unit", "mean", "half_width", "sd",
@@ -46,6 +48,8 @@ def measurement_to_frames(measurement: Measurement) -> MeasurementFrames:
 
 
 def _curves(measurement: Measurement) -> pd.DataFrame:
+    import pandas as pd
+
     parts = []
     for name, case in measurement.curves.cases.items():
         for response, curve in case.mean.items():
@@ -93,4 +97,6 @@ def _noise(measurement: Measurement) -> pd.DataFrame:
 
 
 def _frame(rows: list[Any], columns: tuple[str, ...]) -> pd.DataFrame:
+    import pandas as pd
+
     return pd.DataFrame(rows, columns=list(columns))

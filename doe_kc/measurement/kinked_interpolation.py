@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from doe_kc.typing import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
 
 _STENCIL = 3
 
@@ -48,6 +51,8 @@ class KinkedCurve:
 
     @cached_property
     def _pchip(self) -> PchipInterpolator:
+        from scipy.interpolate import PchipInterpolator
+
         return PchipInterpolator(self.grid, self.values)
 
     def _gap_left(self, i: int) -> float:

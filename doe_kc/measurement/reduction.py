@@ -24,6 +24,7 @@ from doe_kc.measurement.noise_estimation import estimate_noise
 from doe_kc.measurement.records import Record, read_record
 from doe_kc.measurement.trend import Trend, fit_trends
 from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 HALF_TRACK = 790.0
@@ -55,6 +56,7 @@ class Measurement:
     characteristics: Mapping[str, Estimate]
 
 
+@one_thread()
 def reduce_measurement(
     manifest_path: Path, *, windows: Windows | None = None, half_track: float = HALF_TRACK
 ) -> Measurement:
@@ -66,14 +68,20 @@ def reduce_measurement(
     path = manifest_path / "test.toml" if manifest_path.is_dir() else manifest_path
     manifest = load_manifest(path)
     _check_windows(windows or {})
-    runs = {case: reduce_case(_records(path, manifest, case)) for case in _ordered(manifest)}
-    curves = CurveSet(
+    runs = {case: reduce_case(case_records(path, manifest, case)) for case in measured_cases(manifest)}
+    return _assembled(manifest, measured_curves(manifest, runs, half_track), runs, windows or {})
+
+
+def measured_curves(
+    manifest: Manifest, runs: Mapping[str, tuple[RunCurves, ...]], half_track: float
+) -> CurveSet:
+    """Mean curves and half widths of the reduced runs of each load case."""
+    return CurveSet(
         source=manifest.name,
         cases={case: case_curves(case, members) for case, members in runs.items()},
         static=static_angles(manifest.alignment),
         half_track=half_track,
     )
-    return _assembled(manifest, curves, runs, windows or {})
 
 
 def _assembled(
@@ -82,7 +90,7 @@ def _assembled(
     runs: Mapping[str, tuple[RunCurves, ...]],
     windows: Windows,
 ) -> Measurement:
-    _check_window_points(curves, windows)
+    check_window_points(curves, windows)
     noise = estimate_noise(runs, _resolution(manifest))
     angle_sd = static_sd(manifest.alignment)
     gradients = [case_gradients(curves.cases[case], noise[case], windows) for case in runs]
@@ -115,11 +123,13 @@ def static_sd(alignment: Alignment | None) -> dict[str, float]:
     return {response: getattr(sd, key) for response, key in _ALIGNMENT_KEYS.items()}
 
 
-def _ordered(manifest: Manifest) -> list[str]:
+def measured_cases(manifest: Manifest) -> list[str]:
+    """Load cases that have records, in the order of the package."""
     return [case for case in CASE_ORDER if case in manifest.records]
 
 
-def _records(path: Path, manifest: Manifest, load_case: str) -> list[Record]:
+def case_records(path: Path, manifest: Manifest, load_case: str) -> list[Record]:
+    """Main run and repeats of a load case. path: of the manifest. InputError for a bad one, or a copy."""
     records = [_read(path.parent, entry, load_case) for entry in manifest.records[load_case]]
     main = records[0]
     for record in records[1:]:
@@ -186,7 +196,8 @@ def _check_windows(windows: Windows) -> None:
             )
 
 
-def _check_window_points(curves: CurveSet, windows: Windows) -> None:
+def check_window_points(curves: CurveSet, windows: Windows) -> None:
+    """InputError when a fit window holds too few points of a measured curve."""
     for name, case in curves.cases.items():
         limit = windows.get(name)
         inside = case.input.size if limit is None else int(np.sum(np.abs(case.input) <= limit * (1 + 1e-9)))

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize
 
 from doe_kc.measurement.noise import ErrorComponents
 from doe_kc.typing import FloatArray
@@ -59,6 +58,8 @@ def error_components(curves: Sequence[Repeats], resolution: float) -> ErrorCompo
         weight=np.array([c.runs.shape[0] - 1.0 for c in curves]),
         resolution=resolution,
     )
+    from scipy.optimize import minimize
+
     best = minimize(stack.deviance, _START, method="L-BFGS-B", bounds=_BOUNDS)
     offset, gain, smooth, length = np.exp(best.x)
     return ErrorComponents(

@@ -13,6 +13,7 @@ from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.production_scatter import KINEMATIC_SCATTER
 from doe_kc.measurement.shift_problem import LOAD, Scatter, ShiftProblem
 from doe_kc.measurement.shifted_curves import ShiftedCurves, both_sides
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 CASE = "vertical"
@@ -52,6 +53,7 @@ class RideHeight:
     contributions: tuple[Contribution, ...]
 
 
+@one_thread()
 def infer_ride_height(
     measured: CurveSet,
     model: CurveSet,
@@ -129,7 +131,7 @@ def _problem(
     stop_clearance_sd: float,
     scatter: Scatter | None,
 ) -> ShiftProblem:
-    case, reference = _vertical(measured), _vertical(model)
+    case, reference = vertical_curves(measured), vertical_curves(model)
     near = np.abs(case.input) <= KINEMATIC_WINDOW * (1.0 + 1e-9)
     wide = (case.input >= LOAD_RANGE[0]) & (case.input <= LOAD_RANGE[1])
     masks = dict.fromkeys(KINEMATIC_SCATTER, near) | {LOAD: wide}
@@ -144,7 +146,8 @@ def _problem(
     )
 
 
-def _vertical(curves: CurveSet) -> CaseCurves:
+def vertical_curves(curves: CurveSet) -> CaseCurves:
+    """Those of vertical motion; InputError when there are none, or they are too short to tell ride height."""
     case = curves.cases.get(CASE)
     if case is None:
         raise InputError(

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import block_diag, cho_factor, cho_solve
 
 from doe_kc.measurement.production_scatter import LOAD_OFFSET, kinematic_modes, load_modes
 from doe_kc.measurement.shifted_curves import ShiftedCurves
@@ -63,6 +62,8 @@ class ShiftProblem:
         """Step a'C^-1 r / a'C^-1 a at h for `responses`; a = d(prediction)/dh."""
         residual = np.concatenate([self.values[r] - self.predict(r, h) for r in responses])
         derivative = np.concatenate([self.derivative(r, h) for r in responses])
+        from scipy.linalg import cho_factor, cho_solve
+
         factor = cho_factor(self.total_covariance(responses, h))
         solved = cho_solve(factor, np.stack([residual, derivative], axis=1))
         information = float(derivative @ solved[:, 1])
@@ -73,6 +74,8 @@ class ShiftProblem:
         """Noise plus production scatter, stacked over `responses`."""
         modes = [self.modes(r, h) for r in responses]
         # A model's parameters move all responses together, the built-in scatter each by itself.
+        from scipy.linalg import block_diag
+
         stacked = block_diag(*modes) if self.scatter is None else np.concatenate(modes)
         out: FloatArray = block_diag(*[self.noise(r, h) for r in responses]) + stacked @ stacked.T
         return out

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from doe_kc.curves import CaseCurves
 from doe_kc.measurement.kinked_interpolation import KinkedCurve
 from doe_kc.typing import FloatArray
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline, PchipInterpolator
 
 SIDE_SIGN: Mapping[str, float] = {"wc_y": -1.0}
 """Factor that maps the right wheel's curve on the left's."""
@@ -85,6 +88,8 @@ class ShiftedCurves:
 
     @cached_property
     def _travel(self) -> PchipInterpolator:
+        from scipy.interpolate import PchipInterpolator
+
         return PchipInterpolator(self.pad, self.curves["wc_z"])
 
     @cached_property
@@ -98,8 +103,12 @@ class ShiftedCurves:
 
     @cached_property
     def _over_travel(self) -> dict[str, CubicSpline]:
+        from scipy.interpolate import CubicSpline
+
         return {r: CubicSpline(self.curves["wc_z"], c) for r, c in self.curves.items()}
 
     @cached_property
     def _over_travel_pchip(self) -> dict[str, PchipInterpolator]:
+        from scipy.interpolate import PchipInterpolator
+
         return {r: PchipInterpolator(self.curves["wc_z"], c) for r, c in self.curves.items()}

@@ -7,8 +7,6 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-import openpyxl
-
 from doe_kc.errors import InputError, nearest
 from doe_kc.measurement.tables import ZIP_MAGIC, Cell, Table, read_bytes
 
@@ -29,6 +27,8 @@ def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> Table:
 
 
 def _read(path: Path, data: bytes, sheet: str | None, load_case: str) -> tuple[list[tuple[Any, ...]], str]:
+    import openpyxl
+
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # openpyxl warns of extensions that hold no values

@@ -8,17 +8,19 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import Comparison, same_input
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting import style
 from doe_kc.reporting.names import RESPONSE_NAMES, input_label, response_axis, response_name
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
 from doe_kc.solver.load_cases import LOAD_CASES
 
 SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
 SIDE_NAMES = ("left", "right")
+MARGINS = {"left": 0.06, "right": 0.988, "top": 0.92, "bottom": 0.062, "wspace": 0.27, "hspace": 0.36}
 
 
 def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
@@ -29,29 +31,31 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
     model = comparison.model.cases[load_case]
     measured = comparison.measured.cases[load_case]
     case = LOAD_CASES[load_case]
-    fig, axes = style.figure(3, 3, size=style.A4_LANDSCAPE, share_x=False)
+    fig, axes = style.figure(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=MARGINS)
     panels = list(axes.flat)
     for ax, response in zip(panels, RIG_RESPONSES, strict=False):
         _draw(ax, model, measured, response)
         style.label(ax, None, response_axis(response))
-        ax.set_title(RESPONSE_LABELS[response], fontsize=9)
-        ax.xaxis.set_major_locator(MaxNLocator(5))
+        ax.set_title(RESPONSE_LABELS[response], fontsize=9, y=1.0)
+        ax.xaxis.set_major_locator(style.ticks(5))
+        ax.yaxis.set_major_locator(style.ticks(7))
         ax.set_xlabel(input_label(load_case, measured.input_unit))
     _table(panels[7], comparison, load_case)
     _legend(panels[8])
-    fig.set_layout_engine("constrained", w_pad=0.12, h_pad=0.08)
     fig.suptitle(
         f"{case.label}: {comparison.model.source} against {comparison.measured.source}",
         fontsize=11,
+        y=0.985,
         parse_math=False,
     )
+    draw_plain_axes(fig)
     return fig
 
 
 def write_comparison_figures(
-    comparison: Comparison, folder: Path, *, workers: int | None = None
+    comparison: Comparison, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
-    """PNG of every load case that both have; returns the paths. Raises RunError as `style.save`."""
+    """A picture of every load case that both have; returns the paths. Raises RunError as `style.save`."""
     return draw_series(
         [
             (folder / f"compare_{case}", partial(comparison_figure, comparison, case))
@@ -59,6 +63,7 @@ def write_comparison_figures(
             if case in comparison.model.cases and same_input(comparison.model.cases[case], measured)
         ],
         workers,
+        pictures=pictures,
     )
 
 

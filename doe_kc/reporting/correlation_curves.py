@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
 
 from doe_kc.comparison.compare import same_input
 from doe_kc.correlation.result import Correlation
@@ -19,6 +18,7 @@ from doe_kc.curves import RESPONSE_LABELS, CaseCurves
 from doe_kc.measurement import Measurement
 from doe_kc.reporting import style
 from doe_kc.reporting.names import case_label, input_label, response_axis
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.solver.load_cases import CASE_ORDER
 from doe_kc.typing import FloatArray
 
@@ -81,13 +81,15 @@ def curve_figure(view: CaseView, study: str) -> Figure:
     for ax, response in zip(axes.flat, PANELS, strict=True):
         _panel(ax, view, response)
         style.label(ax, None, response_axis(response))
-        ax.set_title(RESPONSE_LABELS[response], fontsize=9)
-        ax.xaxis.set_major_locator(MaxNLocator(6))
+        ax.set_title(RESPONSE_LABELS[response], fontsize=9, y=1.0)
+        ax.xaxis.set_major_locator(style.ticks(6))
+        ax.yaxis.set_major_locator(style.ticks(7))
     for ax in axes[-1]:
         ax.set_xlabel(view.input_label)
     handles = _handles(view)
     fig.legend(handles=handles, loc="lower center", ncols=4, fontsize=7.5, frameon=False)
     fig.suptitle(f"{case_label(view.load_case)}: {study}", fontsize=11, y=0.965, parse_math=False)
+    draw_plain_axes(fig)
     return fig
 
 

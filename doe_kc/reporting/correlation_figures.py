@@ -7,6 +7,7 @@ from pathlib import Path
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.correlation_bars import parameter_figure
 from doe_kc.reporting.correlation_convergence import convergence_figure
 from doe_kc.reporting.correlation_curves import case_views, curve_figure
@@ -21,8 +22,9 @@ def write_correlation_figures(
     *,
     study: str,
     workers: int | None = None,
+    pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """`correlation_dna`, `_parameters`, `_convergence` and one `curves_<load case>` each, as .png and .svg.
+    """Pictures `correlation_dna`, `_parameters`, `_convergence` and one `curves_<load case>` each.
 
     Raises RunError when the folder cannot be written.
     """
@@ -35,4 +37,4 @@ def write_correlation_figures(
         (folder / f"curves_{view.load_case}", partial(curve_figure, view, study))
         for view in case_views(found, measurement)
     ]
-    return draw_series(jobs, workers, vector=True)
+    return draw_series(jobs, workers, pictures=pictures)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-from openpyxl.styles import PatternFill
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.correlation_terms import TermRow, term_rows
-from doe_kc.reporting.workbook_cells import A3, HEADER, MUTED, frame, page, put, title, widths
+from doe_kc.reporting.workbook_cells import A3, HEADER, MUTED, CellFill, frame, page, put, title, widths
 
 HEADS = (
     "Kind", "Term", "Id", "Unit", "Goal", "Target", "Low", "High", "LinWt", "QuadWt", "S", "Norm",
@@ -18,7 +17,7 @@ HEADS = (
 )  # fmt: skip
 HEAD, FIRST = 7, 8
 FINAL_RATING = "R5"
-INPUT = PatternFill("solid", fgColor="FFF7D6")
+INPUT = CellFill("solid", fgColor="FFF7D6")
 EDITED = "FGHIJL"
 """Columns to edit: target, interval, weights, Norm."""
 VALUE = "0.00000"

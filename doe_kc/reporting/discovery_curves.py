@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
 
 from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
 from doe_kc.discovery.result import Discovery
@@ -19,10 +20,15 @@ from doe_kc.reporting.correlation_curves import BAND
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_views import ModelView, model_views, view_gaps
 from doe_kc.reporting.names import case_label, response_name
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.typing import FloatArray
 
 SHOWN = 6
 PER_CASE = 2
+HEAD, FOOT, PAIR = 0.45, 0.5, 3.65
+"""Inches of the title of all, of the legend, and of a curve with its deviation."""
+TITLE, CURVE, GAP, DEVIATION = 0.42, 1.72, 0.13, 0.8
+"""Inches of the parts of a pair from above; numbers and name of the input have the rest."""
 DASHES = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
 WORDS = {
     "tuned": "re-tuned without an effect",
@@ -86,9 +92,10 @@ def worst_views(found: Discovery) -> list[WorstView]:
 def curve_figure(worst: Sequence[WorstView], study: str) -> Figure:
     """Two rows of three curves, each with its deviation from the measured one below."""
     columns, rows = 3, max(1, -(-len(worst) // 3))
-    height = 0.95 + 3.65 * rows
-    fig, axes = style.figure(2 * rows, columns, size=(11.69, height), share_x=False)
-    axes[0, 0].get_gridspec().set_height_ratios([2.2, 1.0] * rows)
+    height = HEAD + PAIR * rows + FOOT
+    margins = {"left": 0.065, "right": 0.985, "wspace": 0.3}
+    fig, axes = style.figure(2 * rows, columns, size=(11.69, height), share_x=False, margins=margins)
+    _place(axes, height)
     for k in range(columns * rows):
         top, below = axes[2 * (k // columns), k % columns], axes[2 * (k // columns) + 1, k % columns]
         if k >= len(worst):
@@ -97,9 +104,23 @@ def curve_figure(worst: Sequence[WorstView], study: str) -> Figure:
             continue
         _curve(top, worst[k])
         _deviation(below, worst[k])
-    fig.legend(handles=_handles(worst), loc="outside lower center", ncols=6, fontsize=7.5, frameon=False)
-    fig.suptitle(f"Curves that re-tuning explains worst: {study}", fontsize=11, parse_math=False)
+    fig.legend(handles=_handles(worst), loc="lower center", ncols=6, fontsize=7.5, frameon=False)
+    title = f"Curves that re-tuning explains worst: {study}"
+    fig.suptitle(title, fontsize=11, y=1.0 - 0.12 / height, va="top", parse_math=False)
+    draw_plain_axes(fig)
     return fig
+
+
+def _place(axes: NDArray[Any], height: float) -> None:
+    """A deviation close below its curve, room for a title above the curve and for the input's name between
+    the pairs; height: of the page, inches."""
+    for row, panels in enumerate(axes):
+        pair, below = divmod(row, 2)
+        tall, low = (DEVIATION, CURVE + GAP + DEVIATION) if below else (CURVE, CURVE)
+        bottom = height - HEAD - PAIR * pair - TITLE - low
+        for ax in panels:
+            box = ax.get_position()
+            ax.set_position((box.x0, bottom / height, box.width, tall / height))
 
 
 def _curve(ax: Axes, worst: WorstView) -> None:
@@ -114,10 +135,11 @@ def _curve(ax: Axes, worst: WorstView) -> None:
             ax.plot(view.input, view.models[name][side], dash, color=COLOURS[name], lw=1.4)
     step = max(1, mean.size // 22)
     ax.plot(view.input[::step], mean[::step], "o", color="black", ms=2.4, mew=0.0, zorder=4)
-    ax.set_title(worst.title, fontsize=8.5)
+    ax.set_title(worst.title, fontsize=8.5, y=1.0)
     style.label(ax, None, worst.label)
     ax.tick_params(labelbottom=False)
-    ax.xaxis.set_major_locator(MaxNLocator(6))
+    ax.xaxis.set_major_locator(style.ticks(6))
+    ax.yaxis.set_major_locator(style.ticks(6))
 
 
 def _deviation(ax: Axes, worst: WorstView) -> None:
@@ -128,7 +150,8 @@ def _deviation(ax: Axes, worst: WorstView) -> None:
         if name in view.models:
             ax.plot(view.input, view.deviation(name)[worst.side], dash, color=COLOURS[name], lw=1.2)
     style.label(ax, view.input_label, "model − measured\n[sd of the noise]")
-    ax.xaxis.set_major_locator(MaxNLocator(6))
+    ax.xaxis.set_major_locator(style.ticks(6))
+    ax.yaxis.set_major_locator(style.ticks(4))
 
 
 def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:

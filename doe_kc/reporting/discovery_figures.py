@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from doe_kc.discovery.result import Discovery
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.discovery_curves import curve_figure, worst_views
 from doe_kc.reporting.discovery_evidence import evidence_figure, evidence_steps
 from doe_kc.reporting.discovery_gaps import gap_figure, gap_rows
@@ -34,8 +35,13 @@ def discovery_jobs(found: Discovery, folder: Path, study: str) -> list[Job]:
 
 
 def write_discovery_figures(
-    found: Discovery, folder: Path, *, study: str, workers: int | None = None
+    found: Discovery,
+    folder: Path,
+    *,
+    study: str,
+    workers: int | None = None,
+    pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """`disagreement`, `gap`, `evidence`, `worst_curves`, `isolability`, `parameters` and, where effects were
-    found, `held_out`, as .png and .svg. RunError when the folder cannot be written."""
-    return draw_series(discovery_jobs(found, folder, study), workers, vector=True)
+    """Pictures `disagreement`, `gap`, `evidence`, `worst_curves`, `isolability`, `parameters` and, where
+    effects were found, `held_out`. RunError when the folder cannot be written."""
+    return draw_series(discovery_jobs(found, folder, study), workers, pictures=pictures)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from openpyxl.formatting.rule import ColorScaleRule
-from openpyxl.styles import Alignment
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
@@ -31,6 +30,7 @@ from doe_kc.reporting.workbook_cells import (
     NEGATIVE,
     NEUTRAL,
     POSITIVE,
+    cell_alignment,
     page,
     put,
     title,
@@ -202,9 +202,9 @@ def wrapped(ws: Worksheet, wide: Sequence[float], rows: range) -> None:
             cell = ws.cell(r, c)
             if isinstance(cell.value, str):
                 lines = max(lines, -(-len(cell.value) // max(1, int(width) - 3)))
-                cell.alignment = Alignment(horizontal="left", vertical="top", wrap_text=True, indent=1)
+                cell.alignment = cell_alignment(horizontal="left", vertical="top", wrap_text=True, indent=1)
             else:
-                cell.alignment = Alignment(vertical="top")
+                cell.alignment = cell_alignment(vertical="top")
         ws.row_dimensions[r].height = 14.0 * lines + 1.0
 
 

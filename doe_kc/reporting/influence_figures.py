@@ -7,14 +7,16 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-import seaborn as sns
 from matplotlib.axes import Axes
 from matplotlib.colors import Colormap, LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedFormatter
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.influence.result import Influence
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import case_label
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
 from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.reporting.workbook_cells import NEGATIVE, NEUTRAL, POSITIVE
@@ -60,30 +62,31 @@ def influence_heat_map(influence: Influence, *, study: str) -> Figure:
 
 def draw_matrix(ax: Axes, values: FloatArray, *, bar: bool = True) -> None:
     """A percent matrix on `ax` with fixed colours and numbers from 5 % on; nan is grey."""
-    text = np.array([[_number(v) for v in row] for row in values], dtype=object)
-    sns.heatmap(
-        values,
-        ax=ax,
+    mesh = ax.pcolormesh(
+        np.ma.masked_invalid(values),
         vmin=-100.0,
         vmax=100.0,
         cmap=diverging(),
-        annot=text,
-        fmt="",
-        annot_kws={"size": 5.5, "color": LINE},
         linewidths=0.3,
-        linecolor="#E3E6E9",
-        cbar=bar,
-        cbar_kws={"label": "percent of the column's largest", "shrink": 0.4, "pad": 0.01} if bar else None,
-        xticklabels=False,
-        yticklabels=False,
+        edgecolors="#E3E6E9",
     )
+    rows, columns = values.shape
+    ax.set(xlim=(0.0, columns), ylim=(rows, 0.0), xticks=[], yticks=[])
+    for i, j in np.argwhere(np.abs(np.nan_to_num(values)) >= ANNOTATE):
+        number = ax.text(
+            j + 0.5, i + 0.5, f"{values[i, j]:.0f}", fontsize=5.5, color=LINE, ha="center", va="center"
+        )
+        number.set_in_layout(False)  # it lies within its cell; the layout would measure it with the rest
+    if bar and ax.figure is not None:
+        scale = ax.figure.colorbar(mesh, ax=ax, shrink=0.4, pad=0.01)
+        scale.set_label("percent of the column's largest", fontsize=8)
+        scale.ax.tick_params(labelsize=7)
+        scale.outline.set_linewidth(0.0)
+    for spine in ax.spines.values():
+        spine.set_visible(False)
     ax.set_facecolor("#D9DCDF")
     ax.grid(visible=False)
     ax.tick_params(length=0)
-
-
-def _number(value: float) -> str:
-    return f"{value:.0f}" if np.isfinite(value) and abs(value) >= ANNOTATE else ""
 
 
 def _name(entry: Characteristic) -> str:
@@ -129,6 +132,7 @@ def influence_bars(influence: Influence, *, study: str) -> Figure:
         label(ax, "percent of the largest", None)
     title = f"Strongest parameters of each characteristic: {study}"
     fig.suptitle(title, y=1 - 0.1 / height, va="top", fontsize=11, parse_math=False)
+    draw_plain_axes(fig)
     return fig
 
 
@@ -151,14 +155,20 @@ def _bars(ax: Axes, influence: Influence, j: int) -> None:
     ax.set_xlim(-128.0, 128.0)
     ax.set_ylim(TOP - 0.4, -0.6)
     ax.set_yticks(places)
-    ax.set_yticklabels([influence.parameters[i].path for i in strongest], fontsize=6)
-    ax.set_title(f"{case_label(entry.load_case)}\n{entry.label}", fontsize=7.5)
+    ax.yaxis.set_major_formatter(FixedFormatter([influence.parameters[i].path for i in strongest]))
+    ax.tick_params(axis="y", labelsize=6)
+    ax.set_title(f"{case_label(entry.load_case)}\n{entry.label}", fontsize=7.5, y=1.0)
 
 
 def write_influence_figures(
-    influence: Influence, folder: Path, *, study: str, workers: int | None = None
+    influence: Influence,
+    folder: Path,
+    *,
+    study: str,
+    workers: int | None = None,
+    pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """`influence_heat_map` and `influence_top_ten`, each as .png and .svg; returns the four paths.
+    """Pictures `influence_heat_map` and `influence_top_ten`; returns their paths.
 
     Raises RunError when the folder cannot be written.
     """
@@ -166,4 +176,4 @@ def write_influence_figures(
         (folder / "influence_heat_map", partial(influence_heat_map, influence, study=study)),
         (folder / "influence_top_ten", partial(influence_bars, influence, study=study)),
     ]
-    return draw_series(jobs, workers, vector=True)
+    return draw_series(jobs, workers, pictures=pictures)

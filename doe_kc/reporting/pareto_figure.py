@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,10 @@ from scipy.stats import rankdata
 
 from doe_kc.correlation.pareto.front import VIOLATION, Front
 from doe_kc.errors import InputError
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import case_label
-from doe_kc.reporting.style import PALETTE, figure, label, save
+from doe_kc.reporting.series import draw_series
+from doe_kc.reporting.style import PALETTE, figure, label
 from doe_kc.typing import FloatArray
 
 SIZE = (11.69, 5.4)
@@ -104,6 +107,9 @@ def _name(name: str) -> str:
     return "Constraint violation" if name == VIOLATION else case_label(name)
 
 
-def write_pareto_figure(front: Front, folder: Path, *, study: str) -> tuple[Path, Path]:
-    """`pareto_front.png` and `.svg` in `folder`; RunError when they cannot be written."""
-    return save(pareto_figure(front, study=study), folder / "pareto_front")
+def write_pareto_figure(
+    front: Front, folder: Path, *, study: str, pictures: PictureFormat = PNG
+) -> list[Path]:
+    """The picture `pareto_front` in `folder`; RunError when it cannot be written."""
+    job = (folder / "pareto_front", partial(pareto_figure, front, study=study))
+    return draw_series([job], 1, pictures=pictures)

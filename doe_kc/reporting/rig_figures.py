@@ -14,9 +14,11 @@ from matplotlib.patches import Patch
 
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.measurement import Gradient, Measurement
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import input_label, response_axis
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
-from doe_kc.reporting.style import A4, PALETTE, figure, label
+from doe_kc.reporting.style import A4, PALETTE, figure, label, ticks
 from doe_kc.typing import FloatArray
 
 SIDE_TITLES = ("Left wheel", "Right wheel")
@@ -27,6 +29,7 @@ TREND = PALETTE["black"]
 GRADIENT = PALETTE["vermillion"]
 RESIDUAL = (PALETTE["blue"], PALETTE["vermillion"])
 WINDOW = "#EAF3EA"
+MARGINS = {"left": 0.09, "right": 0.988, "top": 0.948, "bottom": 0.078, "wspace": 0.355, "hspace": 0.12}
 
 
 def rig_figure(measurement: Measurement, load_case: str) -> Figure:
@@ -36,8 +39,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
     """
     case = measurement.curves.cases[load_case]
     run = measurement.runs[load_case][0]
-    fig, axes = figure(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9))
-    fig.set_layout_engine("constrained", w_pad=0.12)  # room for tick labels that grow when panels shrink
+    fig, axes = figure(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=MARGINS)
     gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
     for row, response in zip(axes, RIG_RESPONSES, strict=True):
         for side, name in enumerate(SIDES):
@@ -47,17 +49,24 @@ def rig_figure(measurement: Measurement, load_case: str) -> Figure:
         _same_scale(row[0], row[1])
         label(row[0], None, response_axis(response))
         label(row[2], None, f"residual [{RESPONSE_UNITS[response]}]")
+    for ax in axes.flat:
+        ax.yaxis.set_major_locator(ticks(5))
     for ax in axes[-1]:
         label(ax, _without_remark(input_label(load_case, case.input_unit)), None)
     for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
-        ax.set_title(title, fontsize=9)
-    fig.suptitle(f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11, parse_math=False)
+        ax.set_title(title, fontsize=9, y=1.0)
+    fig.suptitle(
+        f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11, y=0.985, parse_math=False
+    )
     _legend(fig, len(measurement.runs[load_case]))
+    draw_plain_axes(fig)
     return fig
 
 
-def write_rig_figures(measurement: Measurement, folder: Path, *, workers: int | None = None) -> list[Path]:
-    """`rig_<load case>.png` of every measured load case; returns the paths.
+def write_rig_figures(
+    measurement: Measurement, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
+) -> list[Path]:
+    """`rig_<load case>`, a picture of every measured load case; returns the paths.
 
     Raises RunError when the folder cannot be written.
     """
@@ -67,6 +76,7 @@ def write_rig_figures(measurement: Measurement, folder: Path, *, workers: int | 
             for case in measurement.curves.cases
         ],
         workers,
+        pictures=pictures,
     )
 
 
@@ -158,7 +168,7 @@ def _legend(fig: Figure, runs: int) -> None:
         Line2D([], [], color=RESIDUAL[0], ls="", marker=".", label="residual left"),
         Line2D([], [], color=RESIDUAL[1], ls="", marker=".", label="residual right"),
     ]
-    fig.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, frameon=False)
+    fig.legend(handles=handles, loc="lower center", ncols=4, fontsize=7, frameon=False)
 
 
 def _runs(runs: int) -> str:

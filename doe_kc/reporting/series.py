@@ -1,35 +1,53 @@
-"""Draws a series of figures over all cores: a sheet takes a second or two."""
+"""Draws a series of figures over all cores, those that the disk does not have already."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from doe_kc.campaign.processes import available_cores, start_context
+from doe_kc.campaign.executors import processes
+from doe_kc.campaign.processes import available_cores
+from doe_kc.errors import RunError
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting import style
+from doe_kc.reporting.picture_digest import PictureDigests, shows
 
 Job = tuple[Path, Callable[[], Figure]]
 
 
-def draw_series(jobs: Sequence[Job], workers: int | None = None, *, vector: bool = False) -> list[Path]:
-    """PNG, and SVG when `vector`, of every (path without suffix, picklable maker); the paths in order.
+def draw_series(
+    jobs: Sequence[Job], workers: int | None = None, *, pictures: PictureFormat = PNG
+) -> list[Path]:
+    """A picture of every (path without suffix, picklable maker); the paths in order, none with "none".
 
-    workers: processes, default one per core. Raises RunError when one cannot be written.
+    A file that shows the same numbers already is left as it is. workers: processes, default one per core.
+    Raises RunError when one cannot be written.
     """
-    count = min(workers or available_cores(), len(jobs))
-    draw = partial(_draw, vector)
-    if count <= 1:
-        drawn = [draw(job) for job in jobs]
-    else:
-        with ProcessPoolExecutor(count, mp_context=start_context()) as pool:
-            drawn = list(pool.map(draw, jobs))
-    return [path for paths in drawn for path in paths]
+    if pictures == "none":
+        return []
+    digests = PictureDigests()
+    paths = [style.picture_path(path, pictures) for path, _ in jobs]
+    marks = [digests.of(make) for _, make in jobs]
+    missing = [
+        (*job, pictures, mark or "")
+        for job, path, mark in zip(jobs, paths, marks, strict=True)
+        if mark is None or not shows(path, mark)
+    ]
+    if missing:
+        count = min(workers or available_cores(), len(missing))
+        with processes(count) as executor:
+            try:
+                for done in [executor.submit(_draw, *job) for job in missing]:
+                    done.result()
+            except BrokenExecutor:
+                raise RunError(
+                    "a process that drew pictures was ended from outside; use fewer --workers."
+                ) from None
+    return paths
 
 
-def _draw(vector: bool, job: Job) -> tuple[Path, ...]:
-    path, make = job
-    return style.save(make(), path) if vector else (style.save_png(make(), path),)
+def _draw(path: Path, make: Callable[[], Figure], pictures: PictureFormat, mark: str) -> None:
+    style.save(make(), path, pictures, mark=mark)

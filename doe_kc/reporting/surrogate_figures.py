@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import case_label
+from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
-from doe_kc.reporting.style import CYCLE, PALETTE, figure, label
+from doe_kc.reporting.style import CYCLE, PALETTE, figure, label, ticks
 from doe_kc.reporting.surrogate_tables import left_out_predictions, left_out_sd
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
@@ -47,6 +48,7 @@ def predicted_against_true(report: SurrogateReport, *, study: str) -> Figure:
     if report.targets:
         title += "\n(dashed, or arrow where the designs do not reach it: measured)"
     fig.suptitle(title, y=1.0 - 0.1 / height, va="top", fontsize=11, parse_math=False)
+    draw_plain_axes(fig)
     return fig
 
 
@@ -65,11 +67,11 @@ def _panel(ax: Axes, report: SurrogateReport, j: int, predicted: FloatArray, sd:
     ax.set_xlim(*limits)
     ax.set_ylim(*limits)
     for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator(3))
+        axis.set_major_locator(ticks(4))
     q2 = report.fitted.models[name].quality.q2[j]
     how = f"{name}, Q² {q2:.4f}" if np.isfinite(q2) else "never changes"
     heads = f"{case_label(entry.load_case)}\n{entry.label} [{entry.unit}]\n{how}"
-    ax.set_title(heads, fontsize=6.5, parse_math=False)
+    ax.set_title(heads, fontsize=6.5, y=1.0, parse_math=False)
 
 
 def _target(ax: Axes, value: float, limits: tuple[float, float]) -> None:
@@ -143,9 +145,14 @@ def _coverage(ax: Axes, report: SurrogateReport, places: FloatArray) -> None:
 
 
 def write_surrogate_figures(
-    report: SurrogateReport, folder: Path, *, study: str, workers: int | None = None
+    report: SurrogateReport,
+    folder: Path,
+    *,
+    study: str,
+    workers: int | None = None,
+    pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """`predicted_against_true` and `model_quality`, each as .png and .svg; returns the four paths.
+    """Pictures `predicted_against_true` and `model_quality`; returns their paths.
 
     Raises RunError when the folder cannot be written.
     """
@@ -153,4 +160,4 @@ def write_surrogate_figures(
         (folder / "predicted_against_true", partial(predicted_against_true, report, study=study)),
         (folder / "model_quality", partial(model_quality, report, study=study)),
     ]
-    return draw_series(jobs, workers, vector=True)
+    return draw_series(jobs, workers, pictures=pictures)

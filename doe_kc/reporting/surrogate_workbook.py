@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from openpyxl.styles import Alignment
 from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
@@ -14,7 +13,16 @@ from openpyxl.worksheet.worksheet import Worksheet
 from doe_kc.influence.result import percent_of_column
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.surrogate_tables import judged_document
-from doe_kc.reporting.workbook_cells import A3, colour_scale, page, put, three_digits, title, widths
+from doe_kc.reporting.workbook_cells import (
+    A3,
+    cell_alignment,
+    colour_scale,
+    page,
+    put,
+    three_digits,
+    title,
+    widths,
+)
 from doe_kc.reporting.workbook_file import new_book, write_book
 from doe_kc.reporting.workbook_table import FIRST, Value, table
 from doe_kc.surrogates.models import SURROGATES
@@ -95,7 +103,9 @@ def _matrix(
         rows.append([variable.path, step, *(_finite(v) for v in values[i])])
     last = table(ws, heads, rows, formats="0", filtered=False)
     for c in range(3, len(heads) + 1):
-        ws.cell(FIRST - 1, c).alignment = Alignment(textRotation=90, horizontal="center", vertical="bottom")
+        ws.cell(FIRST - 1, c).alignment = cell_alignment(
+            textRotation=90, horizontal="center", vertical="bottom"
+        )
     ws.row_dimensions[FIRST - 1].height = 6.0 * max(map(len, heads))
     colour_scale(ws, f"C{FIRST}:{get_column_letter(2 + len(entries))}{last}")
     if agreement:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 
 import numpy as np
 from openpyxl.cell.cell import Cell
@@ -17,8 +18,48 @@ from openpyxl.worksheet.worksheet import Worksheet
 NEGATIVE, NEUTRAL, POSITIVE = "5AA5DC", "FFFFFF", "F2A23C"
 """Blue, white, orange: told apart by the colour-blind, black text readable on each."""
 
-HEADER = PatternFill("solid", fgColor="E4E8EC")
-FLAGGED = PatternFill("solid", fgColor="FBE3F0")
+
+class CellFont(Font):  # type: ignore[misc]
+    """With `CellAlignment`, `CellBorder`, `CellFill`: looks made once and known by identity.
+
+    A workbook finds the number of a look by its hash, which openpyxl computes anew of thirty fields for
+    every cell: half of the time that a sheet takes. What is written of a look, openpyxl lists for each class
+    anew, so that it is repeated here.
+    """
+
+    __attrs__, __nested__, __elements__ = Font.__attrs__, Font.__nested__, Font.__elements__
+    __hash__, __eq__ = object.__hash__, object.__eq__
+
+
+class CellAlignment(Alignment):  # type: ignore[misc]
+    """See `CellFont`."""
+
+    __attrs__, __nested__, __elements__ = Alignment.__attrs__, Alignment.__nested__, Alignment.__elements__
+    __hash__, __eq__ = object.__hash__, object.__eq__
+
+
+class CellBorder(Border):  # type: ignore[misc]
+    """See `CellFont`."""
+
+    __attrs__, __nested__, __elements__ = Border.__attrs__, Border.__nested__, Border.__elements__
+    __hash__, __eq__ = object.__hash__, object.__eq__
+
+
+class CellFill(PatternFill):  # type: ignore[misc]
+    """See `CellFont`."""
+
+    __attrs__, __nested__, __elements__ = (
+        PatternFill.__attrs__,
+        PatternFill.__nested__,
+        PatternFill.__elements__,
+    )
+    __hash__, __eq__ = object.__hash__, object.__eq__
+
+
+cell_font, cell_alignment = lru_cache(CellFont), lru_cache(CellAlignment)
+
+HEADER = CellFill("solid", fgColor="E4E8EC")
+FLAGGED = CellFill("solid", fgColor="FBE3F0")
 MUTED = "8A9199"
 THIN, THICK = Side(style="thin", color="C3C9CF"), Side(style="medium", color="3C4650")
 A3, A4 = 8, 9
@@ -56,8 +97,8 @@ def put(
         put_text(cell, value)
     elif value is not None and np.isfinite(value):
         cell.value = value
-    cell.font = Font(name="Calibri", size=10, bold=bold, italic=italic, color=color)
-    cell.alignment = Alignment(
+    cell.font = cell_font(name="Calibri", size=10, bold=bold, italic=italic, color=color)
+    cell.alignment = cell_alignment(
         horizontal=horizontal,
         vertical=vertical,
         textRotation=rotation,
@@ -121,6 +162,13 @@ def widths(ws: Worksheet, values: Sequence[float]) -> None:
         ws.column_dimensions[get_column_letter(i)].width = width
 
 
+@lru_cache
+def _border(left: bool, right: bool, top: bool, bottom: bool) -> CellBorder:
+    """Which lines are thick."""
+    sides = {"left": left, "right": right, "top": top, "bottom": bottom}
+    return CellBorder(**{name: THICK if thick else THIN for name, thick in sides.items()})
+
+
 def frame(
     ws: Worksheet,
     rows: range,
@@ -133,12 +181,7 @@ def frame(
     above, left = set(thick_above), set(thick_left)
     for r in rows:
         for c in columns:
-            ws.cell(r, c).border = Border(
-                left=THICK if c in left else THIN,
-                right=THICK if c + 1 in left else THIN,
-                top=THICK if r in above else THIN,
-                bottom=THICK if r + 1 in above else THIN,
-            )
+            ws.cell(r, c).border = _border(c in left, c + 1 in left, r in above, r + 1 in above)
 
 
 def page(

@@ -10,7 +10,6 @@ import numpy as np
 from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
-from scipy.stats import rankdata
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.influence.result import Influence
@@ -275,7 +274,8 @@ def _sums(ws: Worksheet, percent: FloatArray, at: Layout) -> None:
 
 def _ranks(sums: FloatArray) -> FloatArray:
     """1 for the largest; equal sums share the better rank."""
-    return np.asarray(rankdata(-np.round(sums, 6), method="min"), dtype=float)
+    falling = -np.round(sums, 6)
+    return np.asarray(np.searchsorted(np.sort(falling), falling) + 1.0)
 
 
 def _values(

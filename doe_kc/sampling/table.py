@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_bytes
@@ -15,6 +14,9 @@ from doe_kc.sampling._base import Request, Sampler, design_of, sampler
 from doe_kc.sampling.design import Design
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space, Variable
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LABEL = "label"
 EXCEL = (".xlsx", ".xlsm")
@@ -51,6 +53,8 @@ class Table(Sampler):
 def read_frame(file: Path) -> pd.DataFrame:
     """All cells of a CSV or Excel file as text; InputError when it is neither, or empty."""
     header = read_bytes(file, "table").partition(b"\n")[0]
+    import pandas as pd
+
     try:
         if file.suffix.lower() in EXCEL:
             frame = pd.read_excel(file, dtype=str, engine="openpyxl")

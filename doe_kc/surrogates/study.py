@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from doe_kc.campaign.processes import available_cores, start_context
+from doe_kc.campaign.executors import processes
+from doe_kc.campaign.processes import available_cores
 from doe_kc.errors import DoeKcError, InputError, RunError
 from doe_kc.surrogates.calibration import Calibrated, calibration_factors, coverage_after
 from doe_kc.surrogates.folds import fold, fold_rows
@@ -20,6 +20,7 @@ from doe_kc.surrogates.models import SURROGATES, make
 from doe_kc.surrogates.selection import choose, join
 from doe_kc.surrogates.validation import Quality, quality
 from doe_kc.surrogates.varying import fit_varying
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
 FEWEST = 10
@@ -73,6 +74,7 @@ def number_of_tasks(names: Sequence[str], designs: int, folds: int) -> int:
     return sum(1 + (min(folds, designs) if SURROGATES[n].flatters else 0) for n in names if n in SURROGATES)
 
 
+@one_thread()
 def fit_study(
     x: FloatArray,
     y: FloatArray,
@@ -157,16 +159,16 @@ def _all(tasks: list[tuple[str, _Task]], workers: int | None, progress: Progress
             results[name].append(task())
             progress(1)
         return results
-    with ProcessPoolExecutor(count, mp_context=start_context()) as pool:
-        futures = [(name, pool.submit(task)) for name, task in tasks]
+    with processes(count) as executor:
         try:
+            futures = [(name, executor.submit(task)) for name, task in tasks]
             for name, future in futures:
                 results[name].append(future.result())
                 progress(1)
-        except BrokenProcessPool:
+        except BrokenExecutor:
             raise RunError("a worker process was ended from outside; use fewer --workers.") from None
         except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
+            executor.shutdown(wait=False, cancel_futures=True)
             raise
     return results
 

@@ -46,7 +46,12 @@ def build_targets(
     objective at all.
     """
     check_names(characteristics, curves, source)
-    targets = [_taken_out(t, without) for t in _targets(measurement, characteristics, source)]
+    swept = {STATIC, *axle.load_cases}
+    targets = [
+        _taken_out(t, without)
+        for t in _targets(measurement, characteristics, source)
+        if t.entry.load_case in swept
+    ]
     _check_constraints(targets, characteristics, source)
     dropped = frozenset((*_dropped(targets, characteristics, curves), *without))
     rated = {(t.entry.load_case, t.entry.response) for t in targets if t.objective is not None}

@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtr, ndtri
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.typing import FloatArray
@@ -98,5 +97,7 @@ class Variable:
         if self.distribution == "uniform":
             return probability
         centre, sd = self.place(self.start), self.prior_sd
+        from scipy.special import ndtr, ndtri
+
         low, high = ndtr(-centre / sd), ndtr((1.0 - centre) / sd)
         return np.clip(centre + sd * ndtri(low + (high - low) * probability), 0.0, 1.0)

@@ -9,7 +9,7 @@ from doe_kc.comparison import Comparison, compare
 from doe_kc.curves import CurveSet
 from doe_kc.measurement import Measurement
 from doe_kc.output import write_csv
-from doe_kc.reporting.comparison_figures import write_comparison_figures
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.study import Study
 
 
@@ -19,12 +19,16 @@ def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Co
     return compare(model, measurement.curves, target_sd=spread, windows=study.windows)
 
 
-def write_comparison(comparison: Comparison, folder: Path, *, workers: int | None = None) -> list[Path]:
+def write_comparison(
+    comparison: Comparison, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
+) -> list[Path]:
     """characteristics.csv, curves.csv (RMS) and one figure a load case."""
+    from doe_kc.reporting.comparison_figures import write_comparison_figures
+
     return [
         write_csv(folder / "characteristics.csv", comparison.characteristics_frame()),
         write_csv(folder / "curves.csv", comparison.curves_frame()),
-        *write_comparison_figures(comparison, folder, workers=workers),
+        *write_comparison_figures(comparison, folder, workers=workers, pictures=pictures),
     ]
 
 

@@ -41,6 +41,7 @@ from doe_kc.workflow.set_first import set_first
 Watch = Callable[[Sequence[Evaluated]], None]
 
 
+@one_thread()
 def correlate(
     study: Study,
     reduced: Reduced | None,
@@ -59,11 +60,11 @@ def correlate(
     sensitivities asked of a solver that gives none.
     """
     started = time.perf_counter()
-    options, chosen = study.correlation, _method(study, method)
+    options, chosen = study.correlation, study_method(study, method)
     axle = study.axle if adoption is None else adoption.axle
     solver = solver_for(axle, study.solver, study.windows, study.folder)
     store = study.store if axle is study.axle else study.extended_store(solver.fingerprint())
-    with one_thread(), Campaign(solver, store, workers=workers, scheduler=scheduler) as campaign:
+    with Campaign(solver, store, workers=workers, scheduler=scheduler) as campaign:
 
         def ask(origin: str) -> Evaluate:
             return partial(campaign.evaluate, origin=origin)
@@ -181,7 +182,9 @@ def refit_proposal(problem: Problem, adoption: Adoption | None) -> list[Candidat
     return [Candidate(space.snapped(point), "discovery refit")]
 
 
-def _method(study: Study, name: str | None) -> type[Method]:
+def study_method(study: Study, name: str | None = None) -> type[Method]:
+    """The method of that id, by default the study's; InputError where there is none or the solver cannot
+    serve it."""
     options = study.correlation
     chosen = method_class(
         name or options.method, source="--method" if name else f"{study.source}: correlation.method"
@@ -199,6 +202,7 @@ def _method(study: Study, name: str | None) -> type[Method]:
     return chosen
 
 
+@one_thread()
 def study_problem(
     study: Study,
     reduced: Reduced | None,
@@ -291,6 +295,7 @@ def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
         return None
 
 
+@one_thread()
 def posterior_at(problem: Problem, expansion: Linearization | None, best: Evaluated) -> Posterior | None:
     """What the data say of each variable; None without exact sensitivities."""
     if expansion is None or best.outcome.failed or not problem.likelihood.size:
@@ -300,6 +305,7 @@ def posterior_at(problem: Problem, expansion: Linearization | None, best: Evalua
     return posterior(jacobian, problem.space.prior_sd, residual=residual, point=best.point)
 
 
+@one_thread()
 def notes_on(
     problem: Problem, run: Run, at_best: Linearization | None, relaxed: Relaxation | None
 ) -> tuple[str, ...]:

@@ -66,7 +66,7 @@ def write_discovery(
         *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
         write_discovery_workbook(folder / "discovery.xlsx", found, notes=known, **words),
         write_discovery_page(folder / "report.html", found, measurement, notes=notes, **words),
-        *write_discovery_figures(found, folder, study=study.name, workers=workers),
+        *write_discovery_figures(found, folder, study=study.name, workers=workers, pictures=study.pictures),
     ]
 
 

@@ -66,8 +66,10 @@ def write_correlation(
         *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
         write_correlation_workbook(folder / "correlation.xlsx", found, **words),
         write_correlation_page(folder / "report.html", found, measurement, **words),
-        *write_correlation_figures(found, measurement, folder, study=study.name, workers=workers),
-        *(_write_front(found, folder, study.name) if found.method == "pareto" else ()),
+        *write_correlation_figures(
+            found, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
+        ),
+        *(_write_front(found, folder, study) if found.method == "pareto" else ()),
     ]
 
 
@@ -77,11 +79,11 @@ def axle_note(found: Correlation, assessment: Assessment) -> str:
     return f"{assessment.line} Effects: {effects}. Rating {found.rating:.6g}, correlated by {found.method}."
 
 
-def _write_front(found: Correlation, folder: Path, study: str) -> list[Path]:
+def _write_front(found: Correlation, folder: Path, study: Study) -> list[Path]:
     """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
     front = front_of(found.problem.search, found.run.evaluated)
     table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
-    return [table, *write_pareto_figure(front, folder, study=study)]
+    return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
 
 
 def characteristic_entries(found: Correlation) -> list[dict[str, Any]]:

@@ -78,7 +78,7 @@ def influence_runs(study: Study) -> int:
 def write_influence(
     study: Study, found: StudyInfluence, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
-    """influence.xlsx, heat map and top-ten bars (PNG, SVG), and the three matrices as CSV."""
+    """influence.xlsx, heat map and top-ten bars, and the three matrices as CSV."""
     matrix = found.matrix
     book = write_influence_workbook(
         folder / "influence.xlsx",
@@ -99,7 +99,10 @@ def write_influence(
         write_csv(folder / f"influence_{name}.csv", matrix.frame(values).reset_index(names="parameter"))
         for name, values in tables.items()
     ]
-    return [book, *write_influence_figures(matrix, folder, study=study.name, workers=workers), *csv]
+    pictures = write_influence_figures(
+        matrix, folder, study=study.name, workers=workers, pictures=study.pictures
+    )
+    return [book, *pictures, *csv]
 
 
 def influence_document(influence: Influence) -> dict[str, Any]:

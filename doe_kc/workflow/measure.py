@@ -7,25 +7,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from doe_kc.axle import Axle
-from doe_kc.errors import InputError
 from doe_kc.measurement import (
-    Manifest,
     Measurement,
     RideHeight,
     infer_ride_height,
-    load_manifest,
     measurement_to_frames,
-    read_record,
     reduce_measurement,
 )
 from doe_kc.output import write_csv
-from doe_kc.reporting.rig_figures import write_rig_figures
+from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
 from doe_kc.workflow.scatter import vertical_scatter
+from doe_kc.workflow.setup import setup_differences
 
 log = logging.getLogger("doe_kc")
 
@@ -69,28 +65,12 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
     return Reduced(measurement, height)
 
 
-def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
-    """Where the rig's set-up is not the model's, in sentences."""
-    setup, offset = manifest.setup, getattr(axle.load_cases.get("lateral_offset"), "offset", None)
-    pairs = [
-        ("rack_mm_per_rev", setup.rack_mm_per_rev, axle.rack_mm_per_rev, "[steering] rack_mm_per_rev"),
-        ("lateral_offset_mm", setup.lateral_offset_mm, offset, "[load_cases.lateral_offset] offset"),
-        (
-            "reference_wheel_load_N",
-            setup.reference_wheel_load_N,
-            axle.values["tyre.static_load"],
-            "[tyre] static_load",
-        ),
-    ]
-    return [
-        f"{manifest.name}: the rig's {key} is {rig:g}, the model's {ours:g}; set {where} of the axle file."
-        for key, rig, ours, where in pairs
-        if rig is not None and ours is not None and abs(rig - ours) > 1e-6 * abs(ours)
-    ]
-
-
-def write_reduced(reduced: Reduced, folder: Path, *, workers: int | None = None) -> list[Path]:
+def write_reduced(
+    reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
+) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
+    from doe_kc.reporting.rig_figures import write_rig_figures
+
     frames = measurement_to_frames(reduced.measurement)
     tables = {
         "curves.csv": frames.curves,
@@ -99,7 +79,7 @@ def write_reduced(reduced: Reduced, folder: Path, *, workers: int | None = None)
         "noise.csv": frames.noise,
     }
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
-    return written + write_rig_figures(reduced.measurement, folder, workers=workers)
+    return written + write_rig_figures(reduced.measurement, folder, workers=workers, pictures=pictures)
 
 
 def reduced_document(reduced: Reduced) -> dict[str, Any]:
@@ -124,18 +104,3 @@ def reduced_document(reduced: Reduced) -> dict[str, Any]:
         },
         "noise": frames.noise.to_dict("records"),
     }
-
-
-def check_measurement(path: Path) -> tuple[Manifest, int]:
-    """The manifest and how many records it names, every one of them read; InputError if one is bad."""
-    file = path / "test.toml" if path.is_dir() else path
-    manifest = load_manifest(file)
-    count = 0
-    for case, entries in manifest.records.items():
-        for entry in entries:
-            name, _, sheet = entry.partition("#")
-            read_record(file.parent / name, case, sheet=sheet or None)
-            count += 1
-    if not count:
-        raise InputError(f"{file}: names no record; list the files of each load case under [records].")
-    return manifest, count

@@ -21,6 +21,7 @@ from doe_kc.errors import InputError
 from doe_kc.files import read_bytes
 from doe_kc.output import write_json
 from doe_kc.study import Study
+from doe_kc.threads import one_thread
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.adopt import adopted
 from doe_kc.workflow.answer import Answer
@@ -53,6 +54,7 @@ def write_run(found: Correlation, folder: Path, answer: Answer | None = None) ->
     return write_json(folder / RUN_FILE, document)
 
 
+@one_thread()
 def recall(study: Study, reduced: Reduced | None, folder: Path) -> Recalled:
     """The last correlation in `folder`, rated by the study's present targets and weights; nothing is run.
 

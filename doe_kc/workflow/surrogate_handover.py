@@ -32,7 +32,10 @@ def write_surrogates(
         "shares": tables.matrix_frame(report, report.shares),
     }
     csv = [write_csv(folder / f"{name}.csv", frame) for name, frame in frames.items()]
-    return [book, *csv, *write_surrogate_figures(report, folder, study=study.name, workers=workers)]
+    pictures = write_surrogate_figures(
+        report, folder, study=study.name, workers=workers, pictures=study.pictures
+    )
+    return [book, *csv, *pictures]
 
 
 def surrogates_document(report: SurrogateReport) -> dict[str, Any]:

@@ -13,12 +13,14 @@ from doe_kc.surrogates.influence import agreement, free_variables, surrogate_cha
 from doe_kc.surrogates.report import SurrogateReport
 from doe_kc.surrogates.shares import total_shares
 from doe_kc.surrogates.study import fit_study
+from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 from doe_kc.workflow.surrogate_plan import Plan
 
 Progress = Callable[[int], None]
 
 
+@one_thread()
 def run_surrogates(
     study: Study,
     plan: Plan,

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.workflow import compare, discovery_handover, handover, influence, measure
+from doe_kc.reporting import comparison_figures, rig_figures
+from doe_kc.workflow import discovery_handover, handover, influence
 
 
 @pytest.fixture(autouse=True)
@@ -20,8 +21,8 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     def nothing(*_args: object, **_options: object) -> list[Path]:
         return []
 
-    monkeypatch.setattr(measure, "write_rig_figures", nothing)
-    monkeypatch.setattr(compare, "write_comparison_figures", nothing)
+    monkeypatch.setattr(rig_figures, "write_rig_figures", nothing)
+    monkeypatch.setattr(comparison_figures, "write_comparison_figures", nothing)
     monkeypatch.setattr(influence, "write_influence_figures", nothing)
     monkeypatch.setattr(handover, "write_correlation_figures", nothing)
     monkeypatch.setattr(discovery_handover, "write_discovery_figures", nothing)

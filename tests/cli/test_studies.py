@@ -92,8 +92,8 @@ def reduced(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     study = write_study(folder, records={"vertical": ("vertical.csv",)} | LATERAL)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DOE_KC_COMPILE", "0")
-        for module in ("measure.write_rig_figures", "compare.write_comparison_figures"):
-            patch.setattr(f"doe_kc.workflow.{module}", lambda *_, **__: [])
+        for module in ("rig_figures.write_rig_figures", "comparison_figures.write_comparison_figures"):
+            patch.setattr(f"doe_kc.reporting.{module}", lambda *_, **__: [])
         outcome = succeeds("reduce", study, "--out", folder / "results", "--json", folder / "r.json")
     return folder, outcome.out
 

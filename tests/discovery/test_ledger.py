@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.discovery.ledger import Ledger, fingerprint, key_of
+from doe_kc.discovery.ledger import Ledger, fingerprint, key_of, packed, unpacked
 from doe_kc.errors import InputError
 from tests.discovery.cases import library, model
 
@@ -22,6 +22,18 @@ def test_arrays_come_back_exactly(tmp_path: Path) -> None:
         found = ledger.get("k")
     assert found is not None
     assert all(np.array_equal(found[k], v) and found[k].shape == v.shape for k, v in arrays.items())
+
+
+def test_a_jacobian_takes_less_than_half_of_its_bytes() -> None:
+    """Columns of one magnitude each that do nothing in half of the load cases, digits at random."""
+    rng = np.random.default_rng(1)
+    jacobian = rng.normal(size=(2000, 40)) * 10.0 ** rng.uniform(-2, 2, 40)
+    jacobian[:1000] = 0.0
+    data = packed({"jacobian": jacobian, "shape": np.zeros((0, 3)), "number": np.array(2.0)})
+    assert len(data) < 0.47 * jacobian.nbytes
+    found = unpacked(data)
+    assert found["jacobian"].tobytes() == jacobian.tobytes() and found["jacobian"].flags.c_contiguous
+    assert found["shape"].shape == (0, 3) and float(found["number"]) == 2.0
 
 
 def test_a_file_that_is_none_is_refused_with_a_remedy(tmp_path: Path) -> None:

@@ -9,8 +9,9 @@ import pytest
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.errors import RunError
 from doe_kc.measurement import Measurement
+from doe_kc.pictures import PictureFormat
 from doe_kc.reporting.rig_figures import rig_figure
-from doe_kc.reporting.style import PALETTE, figure, save, save_png
+from doe_kc.reporting.style import PALETTE, figure, save
 
 
 def test_every_panel_has_its_unit(car_a: Measurement) -> None:
@@ -25,13 +26,16 @@ def test_every_panel_has_its_unit(car_a: Measurement) -> None:
     assert any("26.26 ± 0.04 N/mm" in t.get_text() for t in axes[18].texts)
 
 
+FORMATS: tuple[PictureFormat, ...] = ("png", "svg")
+
+
 def test_a_figure_is_saved_twice_the_same(tmp_path: Path) -> None:
     before = dict(matplotlib.rcParams)
     contents = []
     for name in ("a.1", "b.1"):
         fig, axes = figure(1, 2, size=(4.0, 2.0))
         axes[0, 0].plot([0.0, 1.0], color=PALETTE["blue"])
-        png, svg = save(fig, tmp_path / "new" / name)
+        png, svg = (save(fig, tmp_path / "new" / name, form) for form in FORMATS)
         assert (png.name, svg.name) == (f"{name}.png", f"{name}.svg")
         assert png.read_bytes().startswith(b"\x89PNG")
         contents.append((png.read_bytes(), svg.read_bytes()))
@@ -48,4 +52,4 @@ def test_an_unwritable_folder_is_a_run_error(tmp_path: Path) -> None:
 
 def test_a_name_with_dollars_is_no_formula(car_a: Measurement, tmp_path: Path) -> None:
     named = replace(car_a, manifest=car_a.manifest.model_copy(update={"name": "Car $\\frac$"}))
-    assert save_png(rig_figure(named, "lateral"), tmp_path / "x").stat().st_size > 10_000
+    assert save(rig_figure(named, "lateral"), tmp_path / "x").stat().st_size > 10_000

@@ -60,7 +60,7 @@ def test_one_panel_a_characteristic_with_its_unit_and_model() -> None:
         assert f"[{entry.unit}]" in ax.get_title()
     assert "gp, Q² 1.0000" in panels[1].get_title()
     assert "never changes" in panels[3].get_title()
-    assert [t.get_text() for t in panels[1].texts] == ["99 →"]
+    assert [t.get_text() for t in panels[1].texts if "→" in t.get_text()] == ["99 →"]
     assert outside(fig) == []
 
 
@@ -79,7 +79,7 @@ def test_equal_studies_give_equal_files(tmp_path: Path) -> None:
     one = write_surrogate_figures(report(), tmp_path / "a", study="small", workers=1)
     two = write_surrogate_figures(replace(report()), tmp_path / "b", study="small", workers=1)
     assert [p.name for p in one] == [p.name for p in two]
-    assert len(one) == 4
+    assert len(one) == 2
     for a, b in zip(one, two, strict=True):
         assert a.read_bytes() == b.read_bytes()
     assert one[0].stat().st_size > 10_000

@@ -7,7 +7,11 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
+from doe_kc.characteristics import reduce_all
 from doe_kc.discovery.options import DiscoveryOptions
+from doe_kc.measurement.reduction import Estimate
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.answer import Answer
 from doe_kc.workflow.chain import Steps, follow_chain
@@ -38,4 +42,17 @@ def answer(car: str, adopt: str = "auto") -> Answer:
             discover=lambda *_: discovery(car),
             correlate=lambda s, r, a: correlate(s, r, adoption=a, workers=1),
         )
-        return follow_chain(study(Path(folder), adopt), Reduced(records(car), None), steps)
+        return follow_chain(study(Path(folder), adopt), reduced(car), steps)
+
+
+def reduced(car: str) -> Reduced:
+    """The car's records, their characteristics read off their own curves."""
+    like = records(car)
+    values = reduce_all(like.curves)
+    estimates = {
+        name: Estimate(values[name], e.sd)
+        for name, e in like.characteristics.items()
+        if np.isfinite(values[name])
+    }
+    nothing = {name: Estimate(np.nan, np.nan) for name in like.characteristics}
+    return Reduced(replace(like, characteristics={**nothing, **estimates}), None)

@@ -16,9 +16,8 @@ from doe_kc.workflow.answer import answer_lines, answered, summary_document
 from doe_kc.workflow.answer_handover import write_answer
 from doe_kc.workflow.chain import ADVICE, DIFFERENT, Steps, describes_the_same, follow_chain
 from doe_kc.workflow.correlate import correlate
-from doe_kc.workflow.measure import Reduced
-from tests.discovery.cases import discovery, nominal, records
-from tests.workflow.chain_cases import answer, study
+from tests.discovery.cases import discovery, nominal
+from tests.workflow.chain_cases import answer, reduced, study
 
 ENTRY = {
     "name", "unit", "target", "sd", "baseline", "final", "low", "high", "held", "reachable", "role",
@@ -79,7 +78,7 @@ def test_effects_that_came_with_the_axle_and_the_baseline_that_was_handed_in() -
 def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
     plain, found = study(tmp_path), answer("named")
     plain = replace(plain, out=tmp_path / "out")
-    paths = write_answer(plain, found, records("named"), 12.0)
+    paths = write_answer(plain, found, reduced("named").measurement, 12.0)
     assert [p.relative_to(tmp_path / "out").name for p in paths] == [
         "axle.toml",
         "summary.json",
@@ -89,9 +88,7 @@ def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
     assert first.startswith("# Written by doe_kc") and "Sound: " in first
     assert "hub_compliance" in first and "Rating " in first
     again = read_axle(paths[0])
-    assert again.values == pytest.approx(dict(found.correlation.axle.values)) or all(
-        again.values[k] == v for k, v in found.correlation.axle.values.items()
-    )
+    assert dict(again.values) == dict(found.correlation.axle.values)
     summary = json.loads(paths[1].read_text())
     assert summary["status"] == "sound" and summary["effects"][0]["adopted"] is True
     assert all(set(c) == ENTRY for c in summary["characteristics"])
@@ -106,7 +103,7 @@ def test_the_gap_of_the_answer_is_that_of_its_axle(tmp_path: Path) -> None:
     assert gap["nominal"] > gap["tuned"] > gap["final"]
     assert gap["final"] == pytest.approx(discovery("named").gap.with_effect, rel=0.1)
     worse = replace(found.correlation, run=replace(found.correlation.run, best=0))
-    other = answered(study(tmp_path), records("named"), worse, found.discovery, found.adoption)
+    other = answered(study(tmp_path), reduced("named").measurement, worse, found.discovery, found.adoption)
     assert other.gap is not None and other.gap.final > gap["final"]
 
 
@@ -127,7 +124,7 @@ def with_outside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, alike: bool
         made.append(f"correlate with {adoption}")
         return answer("named", "never").correlation
 
-    found = follow_chain(outside, Reduced(records("named"), None), Steps(discover, correlated))
+    found = follow_chain(outside, reduced("named"), Steps(discover, correlated))
     return made, found.assessment.reasons
 
 
@@ -147,14 +144,14 @@ def test_an_outside_model_of_another_car_is_not_discovered(
 
 
 def test_whether_two_solvers_describe_the_same_axle(tmp_path: Path) -> None:
-    plain, reduced = study(tmp_path), Reduced(records("named"), None)
+    plain, reduced = study(tmp_path), reduced("named")
     assert describes_the_same(plain, reduced)
 
 
 def test_the_thesis_objective_works_on_its_own_terms(tmp_path: Path) -> None:
     plain = study(tmp_path)
     options = plain.correlation.model_copy(update={"objective": "thesis", "budget": 12})
-    found = correlate(replace(plain, correlation=options), Reduced(records("none"), None), workers=1)
+    found = correlate(replace(plain, correlation=options), reduced("none"), workers=1)
     assert found.problem.search.misfit is None
     counted = [c.objective is not None for c in found.problem.search.characteristics]
     assert counted == [c.objective is not None for c in found.problem.targets.characteristics]

@@ -12,7 +12,6 @@ import pytest
 from doe_kc.axle import design_parameters, read_axle
 from doe_kc.comparison import Comparison
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.errors import InputError
 from doe_kc.output import write_json
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
@@ -20,9 +19,9 @@ from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.compare import compare_model, comparison_document, comparison_lines
 from doe_kc.workflow.influence import influence_runs, study_influence
-from doe_kc.workflow.measure import Reduced, check_measurement, reduce_records, reduced_document
+from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document
 from doe_kc.workflow.scatter import LEFT_OUT, one_sigma, vertical_scatter
-from tests.cli.runner import write_rig, write_study
+from tests.cli.runner import write_study
 from tests.reference import nominal
 
 
@@ -122,16 +121,6 @@ def test_scatter_moves_curves_that_start_at_static(solution: Solution, study: St
     for response, curve in curves.items():
         assert curve.shape == (n, count) and np.isfinite(curve).all()
         assert response == "tyre_load" or not curve[n // 2].any()
-
-
-def test_every_record_is_checked(tmp_path: Path) -> None:
-    write_rig(tmp_path / "rig", {"lateral": ("lateral.csv",), "brake": ("brake.csv", "brake_repeat1.csv")})
-    manifest, count = check_measurement(tmp_path / "rig")
-    assert count == 3 and set(manifest.records) == {"lateral", "brake"}
-    assert check_measurement(tmp_path / "rig" / "test.toml")[1] == 3
-    (tmp_path / "rig" / "brake_repeat1.csv").write_text("")
-    with pytest.raises(InputError, match=r"brake_repeat1\.csv"):
-        check_measurement(tmp_path / "rig")
 
 
 def test_the_studys_axle_is_the_file(study: Study) -> None:

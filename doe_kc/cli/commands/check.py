@@ -2,38 +2,54 @@
 
 from __future__ import annotations
 
-import logging
-
 import typer
 
-from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.cli._app import app
-from doe_kc.cli.options import MeasurementOption, OutOption, StudyArgument
-from doe_kc.correlation.methods import method_class
-from doe_kc.study import read_study
-from doe_kc.workflow.measure import check_measurement
-
-log = logging.getLogger("doe_kc")
+from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument
+from doe_kc.errors import InputError
+from doe_kc.output import write_json
+from doe_kc.workflow.check import StudyCheck, check_study
 
 
-@app.command()
-def check(study: StudyArgument, measurement: MeasurementOption = None, out: OutOption = None) -> None:
-    """Validate the study, its axle and its rig records; run nothing."""
-    found = read_study(study, measurement=measurement, out=out)
-    axle = found.axle
-    for sentence in axle_warnings(axle):
-        log.warning(sentence)
-    typer.echo(f"study        {found.name} ({found.source})")
-    typer.echo(f"axle         {axle.name} ({found.axle_path})")
-    typer.echo(f"load cases   {', '.join(axle.load_cases)}")
-    typer.echo(f"effects      {', '.join(axle.effects) or 'none'}")
-    typer.echo(f"parameters   {len(found.parameters)} selected")
-    typer.echo(f"variables    {found.space.dimension}, method {found.correlation.method}")
-    method_class(found.correlation.method, source=f"{found.source}: correlation.method")
-    if found.measurement is None:
-        typer.echo("measurement  none named")
-    else:
-        manifest, count = check_measurement(found.measurement)
-        typer.echo(f"measurement  {manifest.name}: {count} records, {len(manifest.records)} load cases")
-    typer.echo(f"results      {found.out}")
+@app.command("check")
+def check(
+    study: StudyArgument,
+    measurement: MeasurementOption = None,
+    out: OutOption = None,
+    json: JsonOption = None,
+) -> None:
+    """Find what any command would refuse of the study, its axle and its rig records; run nothing."""
+    checked = check_study(study, measurement=measurement, out=out)
+    if json is not None:
+        write_json(json, checked.document)
+    for line in check_lines(checked):
+        typer.echo(line)
+    for fault in checked.warnings:
+        typer.echo(f"warning: {fault.message}", err=True)
+    for fault in checked.errors:
+        typer.echo(f"doe-kc: {fault.message}", err=True)
+    if checked.errors:
+        raise typer.Exit(InputError.exit_code)
     typer.echo("all sound")
+
+
+def check_lines(checked: StudyCheck) -> list[str]:
+    """What the study names; nothing of one that cannot be read."""
+    study, manifest = checked.study, checked.manifest
+    if study is None:
+        return []
+    if manifest is not None:
+        count = sum(len(files) for files in manifest.records.values())
+        records = f"{manifest.name}: {count} records, {len(manifest.records)} load cases"
+    else:
+        records = "none named" if study.measurement is None else f"{study.measurement}: cannot be read"
+    return [
+        f"study        {study.name} ({study.source})",
+        f"axle         {study.axle.name} ({study.axle_path})",
+        f"load cases   {', '.join(study.axle.load_cases)}",
+        f"effects      {', '.join(study.axle.effects) or 'none'}",
+        f"parameters   {len(study.parameters)} selected",
+        f"variables    {study.space.dimension}, method {study.correlation.method}",
+        f"measurement  {records}",
+        f"results      {study.out}",
+    ]

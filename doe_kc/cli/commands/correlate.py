@@ -25,7 +25,7 @@ ALONE = (
 )
 
 
-@app.command()
+@app.command("correlate")
 @takes_study
 def correlate(
     given: Given,

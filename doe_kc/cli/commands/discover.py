@@ -25,7 +25,7 @@ ALONE = (
 )
 
 
-@app.command()
+@app.command("discover")
 @takes_study
 def discover(
     given: Given,

@@ -19,7 +19,7 @@ from doe_kc.workflow.influence import (
 )
 
 
-@app.command()
+@app.command("influence")
 @takes_study
 def influence(given: Given) -> None:
     """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""

@@ -11,7 +11,7 @@ from doe_kc.cli._app import app
 from doe_kc.examples import copy_example
 
 
-@app.command()
+@app.command("init")
 def init(folder: Annotated[Path, typer.Argument(metavar="DIR", help="New or empty folder.")]) -> None:
     """Write the example study (axle, rig records, study file) to edit."""
     files = copy_example(folder)

@@ -5,33 +5,29 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument, WorkersOption
+from doe_kc.cli.given import Given, takes_study
 from doe_kc.measurement import RideHeight
 from doe_kc.output import write_json
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.study import read_study
 from doe_kc.workflow.compare import compare_model, comparison_lines, write_comparison
 from doe_kc.workflow.measure import reduce_records, reduced_document, write_reduced
 
 
-@app.command()
-def reduce(
-    study: StudyArgument,
-    measurement: MeasurementOption = None,
-    out: OutOption = None,
-    json: JsonOption = None,
-    workers: WorkersOption = None,
-) -> None:
+@app.command("reduce")
+@takes_study
+def reduce(given: Given) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
-    found = read_study(study, measurement=measurement, out=out)
+    found = given.read()
     solution = solve(found.axle)
     reduced = reduce_records(found, solution)
-    if json is not None:
-        write_json(json, reduced_document(reduced))
+    if given.json is not None:
+        write_json(given.json, reduced_document(reduced))
     comparison = compare_model(found, curve_set(solution), reduced.measurement)
-    written = write_reduced(reduced, found.out / "reduce", workers=workers)
-    written += write_comparison(comparison, found.out / "compare", workers=workers)
+    written = write_reduced(reduced, found.out / "reduce", workers=given.workers, pictures=found.pictures)
+    written += write_comparison(
+        comparison, found.out / "compare", workers=given.workers, pictures=found.pictures
+    )
     for line in comparison_lines(comparison):
         typer.echo(line)
     if reduced.ride_height is not None:

@@ -34,7 +34,7 @@ from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document, w
 from doe_kc.workflow.recall import write_run
 
 
-@app.command()
+@app.command("run")
 @takes_study
 def run(given: Given, scheduler: SchedulerOption = None) -> None:
     """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle under out."""
@@ -49,7 +49,7 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
     reduced = reduce_records(study, solution)
     measurement = reduced.measurement
     typer.echo("drawing the rig records", err=True)
-    written += write_reduced(reduced, study.out / "reduce", workers=workers)
+    written += write_reduced(reduced, study.out / "reduce", workers=workers, pictures=study.pictures)
 
     with progress_bar("one at a time", influence_runs(study)) as advance:
         influence = study_influence(study, measurement, workers=workers, progress=advance)
@@ -70,7 +70,7 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
     )
     model = correlation.best.outcome.curves or curve_set(solution)
     comparison = compare_model(study, model, measurement)
-    written += write_comparison(comparison, study.out / "compare", workers=workers)
+    written += write_comparison(comparison, study.out / "compare", workers=workers, pictures=study.pictures)
     written += write_answer(study, answer, measurement, time.perf_counter() - started)
 
     total = time.perf_counter() - started

@@ -15,7 +15,7 @@ from doe_kc.output import write_json
 from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, study_design, write_sample
 
 
-@app.command()
+@app.command("sample")
 @takes_study
 def sample(
     given: Given,

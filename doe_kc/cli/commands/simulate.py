@@ -25,7 +25,7 @@ from doe_kc.solver.suite import solve
 log = logging.getLogger("doe_kc")
 
 
-@app.command()
+@app.command("simulate")
 def simulate(
     axle: Annotated[Path, typer.Argument(metavar="AXLE", help="Axle file (TOML).")],
     settings: Annotated[

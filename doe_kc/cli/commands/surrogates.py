@@ -18,7 +18,7 @@ from doe_kc.workflow.surrogate_plan import plan_surrogates
 from doe_kc.workflow.surrogates import run_surrogates
 
 
-@app.command()
+@app.command("surrogates")
 @takes_study
 def surrogates(
     given: Given,

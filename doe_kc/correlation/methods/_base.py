@@ -5,11 +5,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from doe_kc.correlation.options import Gradients
-from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.errors import InputError, nearest
+from doe_kc.registry import Members
+
+if TYPE_CHECKING:
+    from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 
 
 @dataclass(frozen=True)
@@ -60,22 +63,25 @@ def best_design(history: Sequence[Evaluated]) -> int:
     )
 
 
-METHODS: dict[str, type[Method]] = {}
+METHODS: Members[type[Method]] = Members(__package__)
 
 
 def register(kind: type[Method]) -> type[Method]:
     """Register a method; ValueError when the id is taken."""
-    if kind.id in METHODS:
-        raise ValueError(f"method {kind.id} is registered twice")
-    METHODS[kind.id] = kind
+    METHODS.add(kind.id, kind)
     return kind
 
 
 def method_class(name: str, *, source: str) -> type[Method]:
     """The method of that id; InputError naming `source` when there is none."""
+    check_method(name, source=source)
+    return METHODS[name]
+
+
+def check_method(name: str, *, source: str) -> None:
+    """InputError naming `source` when there is no method of that id; imports none."""
     if name not in METHODS:
         raise InputError(
             f"{source}: {name!r} is no correlation method; known are {', '.join(METHODS)}."
             f"{nearest(name, METHODS)}"
         )
-    return METHODS[name]
