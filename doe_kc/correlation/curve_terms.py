@@ -40,7 +40,7 @@ class CurveTerms:
             np.array([off[p] @ off[p] for p in parts]),
             np.array([c.objective.linear for c in targets.curves] + [0.0 for _ in more]),
             np.array([c.objective.quadratic for c in targets.curves] + more),
-            np.array([c.limit / c.objective.norm for c in targets.curves] + [np.inf for _ in more]),
+            np.array([c.threshold / c.objective.norm for c in targets.curves] + [np.inf for _ in more]),
         )
 
     def squares(self, s: FloatArray) -> FloatArray:

@@ -117,8 +117,8 @@ class ConstraintTerms:
         norm = np.array([t.scale for t in targets])
         weight = np.array([LIMIT_WEIGHT if np.isfinite(t.limit) else 0.0 for t in targets])
         return cls(
-            np.array([t.value - t.limit for t in targets]),
-            np.array([t.value + t.limit for t in targets]),
+            np.array([t.value - t.threshold for t in targets]),
+            np.array([t.value + t.threshold for t in targets]),
             np.zeros(norm.size),
             weight / norm**2,
             norm,

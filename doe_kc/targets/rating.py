@@ -68,14 +68,15 @@ def rate(targets: Targets, found: Score) -> Rating:
         constraints=np.array(
             [
                 (0.0 if t.constraint is None else constraint_term(t.constraint, x))
-                - LIMIT_WEIGHT * (b / t.scale) ** 2
-                for (t, _), x, b in zip(pairs, violation, beyond, strict=True)
+                - LIMIT_WEIGHT * (max(0.0, abs(v - t.value) - t.threshold) / t.scale) ** 2
+                for (t, v), x in zip(pairs, violation, strict=True)
             ]
         ),
         curves=np.array(
             [
-                objective_term(t.objective, rms, 0.0) - LIMIT_WEIGHT * (x / t.objective.norm) ** 2
-                for (t, rms), x in zip(lines, excess, strict=True)
+                objective_term(t.objective, rms, 0.0)
+                - LIMIT_WEIGHT * (max(0.0, rms - t.threshold) / t.objective.norm) ** 2
+                for t, rms in lines
             ]
         ),
         violation=violation,

@@ -15,6 +15,10 @@ from doe_kc.curves import CurveSet
 from doe_kc.targets.options import Goal
 from doe_kc.typing import FloatArray
 
+LIMIT_MARGIN = 3e-4
+"""Share of the measure within which a limit is charged for already: a design that leans on it, steep as the
+price is, still meets it, and one that lies at it, as the baseline may, pays a hundredth."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Objective:
@@ -71,6 +75,11 @@ class Target:
         return math.sqrt(self.value**2 + FLOOR)
 
     @property
+    def threshold(self) -> float:
+        """Distance from which the limit is charged for, in the characteristic's unit."""
+        return max(0.0, self.limit - LIMIT_MARGIN * self.scale)
+
+    @property
     def active(self) -> bool:
         """Whether the correlation works on it; the others are followed only."""
         return self.objective is not None or self.constraint is not None
@@ -95,6 +104,11 @@ class CurveTarget:
     limit: float = math.inf
     excluded: bool = False
     hold: bool = True
+
+    @property
+    def threshold(self) -> float:
+        """RMS from which the limit is charged for, in the response's unit."""
+        return max(0.0, self.limit - LIMIT_MARGIN * self.objective.norm)
 
     @property
     def id(self) -> str:

@@ -191,8 +191,8 @@ def _aimless_constraints(study: Study, manifest: Manifest | None) -> Iterator[st
         if stated and not typed and not any(e.load_case in cases for e in matched):
             yield (
                 f"{study.source}: characteristics: match = {option.match!r} states a constraint, but no "
-                "record is of its load case and no target is given; add target = VALUE or the record, or drop "
-                "the entry."
+                "record is of its load case and no target is given; add target = VALUE or the record, or "
+                "drop the entry."
             )
 
 

@@ -144,8 +144,7 @@ def test_an_outside_model_of_another_car_is_not_discovered(
 
 
 def test_whether_two_solvers_describe_the_same_axle(tmp_path: Path) -> None:
-    plain, reduced = study(tmp_path), reduced("named")
-    assert describes_the_same(plain, reduced)
+    assert describes_the_same(study(tmp_path), reduced("named"))
 
 
 def test_the_thesis_objective_works_on_its_own_terms(tmp_path: Path) -> None:
