@@ -15,9 +15,10 @@ from doe_kc.curves import CurveSet
 from doe_kc.discovery.model import NO_CHARACTERISTICS
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
+from doe_kc.reporting.discovery_sizes import size_words
 from doe_kc.reporting.discovery_words import effect_label
 from doe_kc.study import Study
-from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
 from doe_kc.workflow.handover import characteristic_entries
@@ -156,11 +157,21 @@ def summary_document(answer: Answer, axle_path: str, seconds: float) -> dict[str
     }
 
 
+def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
+    """Name, place and sizes with their standard deviations."""
+    found = answer.discovery
+    place = (effect.id, effect.location)
+    for finding in (*found.findings, *found.traces) if found is not None else ():
+        if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
+            return f"{effect.label}: {size_words(found, finding)}"
+    return effect.label
+
+
 def answer_lines(answer: Answer) -> list[str]:
     """The first lines of a terminal: status, effects, gap."""
     lines = [answer.assessment.line]
     if answer.adoption is not None and answer.adoption.effects:
-        lines.append(f"Effects added: {', '.join(e.label for e in answer.adoption.effects)}")
+        lines += [f"Added: {_effect_line(answer, e)}" for e in answer.adoption.effects]
     gap = answer.gap
     if gap is not None:
         steps = [f"{gap.nominal:.2f} as handed in"]

@@ -11,6 +11,7 @@ from typing import Any
 
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.comparison.interval import constraint_interval
+from doe_kc.correlation.options import ObjectiveKind
 from doe_kc.influence.relations import relations
 from doe_kc.influence.result import Influence
 from doe_kc.influence.selection import select_variables
@@ -21,6 +22,7 @@ from doe_kc.output import write_csv
 from doe_kc.reporting.influence_figures import write_influence_figures
 from doe_kc.reporting.workbook import write_influence_workbook
 from doe_kc.study import Study
+from doe_kc.targets import Target, build_targets
 
 FORECAST_SHARE = 0.2
 """Of the constraint interval's half width: the error granted to a linear forecast of a target."""
@@ -44,7 +46,8 @@ def study_influence(
 ) -> StudyInfluence:
     """One-at-a-time and exact influence of the study's parameters, and the variables to use.
 
-    measurement: its characteristics are the targets of the selection.
+    The selection is made for the targets that a correlation of the study would work on: those measured or
+    typed, but those that it takes out.
     """
     everything = influence_study(
         study.axle,
@@ -56,18 +59,27 @@ def study_influence(
     )
     selection = None
     if measurement is not None:
-        targets = {name: e.value for name, e in measurement.characteristics.items()}
-        selection = select_variables(everything, targets, sd=_target_sd(measurement))
+        targets = build_targets(
+            study.axle, measurement, study.characteristics, study.curves, source=str(study.source)
+        )
+        chosen = [t for t in targets.characteristics if _sought(t, study.correlation.objective)]
+        values = {t.entry.id: t.value for t in chosen}
+        if values:
+            selection = select_variables(everything, values, sd={t.entry.id: _sd(t) for t in chosen})
     return StudyInfluence(everything.only(appendix_c()), everything, selection)
 
 
-def _target_sd(measurement: Measurement) -> dict[str, float]:
+def _sought(target: Target, objective: ObjectiveKind) -> bool:
+    """Whether a correlation tries to reach the target."""
+    if target.objective is not None and target.objective.goal != "target":
+        return False
+    return target.active or (objective == "measured" and not target.excluded)
+
+
+def _sd(target: Target) -> float:
     """Standard error of a target, and beside it what a linear forecast may miss: 3 % of the target."""
-    out = {}
-    for name, estimate in measurement.characteristics.items():
-        low, high = constraint_interval(estimate.value)
-        out[name] = math.hypot(estimate.sd, (high - low) / 2.0 * FORECAST_SHARE)
-    return {name: sd for name, sd in out.items() if math.isfinite(sd)}
+    low, high = constraint_interval(target.value)
+    return math.hypot(target.sd, (high - low) / 2.0 * FORECAST_SHARE)
 
 
 def influence_runs(study: Study) -> int:

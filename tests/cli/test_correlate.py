@@ -305,7 +305,7 @@ def test_a_full_disk_keeps_what_was_evaluated(tmp_path: Path, monkeypatch: pytes
 
 
 def stored(study: Path) -> int:
-    with sqlite3.connect(study / "out" / "evaluations.sqlite") as connection:
+    with sqlite3.connect(study / "out" / "store" / "evaluations.sqlite") as connection:
         return int(connection.execute("SELECT count(*) FROM evaluations").fetchone()[0])
 
 
@@ -323,7 +323,7 @@ def started(study: Path) -> subprocess.Popen[str]:
 def test_ended_in_mid_run_it_resumes_to_the_same_result(tmp_path: Path, number: signal.Signals) -> None:
     study = study_in(tmp_path / "study", budget=14)
     process = started(study)
-    store = study / "out" / "evaluations.sqlite"
+    store = study / "out" / "store" / "evaluations.sqlite"
     deadline = time.monotonic() + 60.0
     while time.monotonic() < deadline and not (store.exists() and _rows(store) >= 6):
         time.sleep(0.05)

@@ -47,7 +47,7 @@ def study_in(folder: Path, extra: str = TABLES) -> Path:
 
 def content(study: Path) -> dict[str, object]:
     """What a store holds but for clocks: key -> (parameters, status, reason, characteristics)."""
-    with read_store(study / "out" / "evaluations.sqlite") as store:
+    with read_store(study / "out" / "store" / "evaluations.sqlite") as store:
         return {
             r.key: (r.parameters, r.status, r.packed.reason, r.packed.characteristics, r.origin)
             for r in store.records()
@@ -143,7 +143,7 @@ def started(study: Path, n: int) -> subprocess.Popen[str]:
     limit = time.monotonic() + 30.0
     while time.monotonic() < limit and process.poll() is None:
         time.sleep(0.02)
-        if (study / "out" / "evaluations.sqlite").exists() and stored(study) >= 4:
+        if (study / "out" / "store" / "evaluations.sqlite").exists() and stored(study) >= 4:
             break
     return process
 
@@ -172,7 +172,7 @@ def test_a_killed_sample_resumes_to_the_same_store(tmp_path: Path) -> None:
     whole = study_in(tmp_path / "whole")
     assert "16 run, 0 already there" in succeeds("sample", whole, "--n", 16, "--workers", 1).out
     assert content(study) == content(whole)
-    files = [s / "out" / "evaluations.sqlite" for s in (study, whole)]
+    files = [s / "out" / "store" / "evaluations.sqlite" for s in (study, whole)]
     with read_store(files[0]) as one, read_store(files[1]) as two:
         for key in kept:
             pair = [s.outcome(key, {}).curves for s in (one, two)]

@@ -185,10 +185,17 @@ def test_run_does_the_whole_chain(tmp_path: Path) -> None:
     study = write_study(tmp_path, records=LATERAL, tables=SHORT)
     outcome = succeeds("run", study, "--json", tmp_path / "r.json", "--workers", 1, "--seed", 3)
     document = json.loads((tmp_path / "r.json").read_text())
-    assert set(document) == {"simulate", "reduce", "compare", "influence", "correlate", "discover", "seconds"}
+    steps = {"simulate", "reduce", "compare", "influence", "correlate", "discover"}
+    head = {
+        "status", "reasons", "axle", "verdict", "effects", "characteristics", "gap", "rating",
+        "mean_improvement_percent", "seconds",
+    }  # fmt: skip
+    assert set(document) == steps | head
     check_influence(document["influence"], outcome.out)
     assert len(document["simulate"]["characteristics"]) == 30
-    files = {str(p.relative_to(study / "out")) for p in (study / "out").rglob("*") if p.is_file()}
+    out = study / "out"
+    assert {p.name for p in out.iterdir() if p.is_file()} == {"axle.toml", "index.html", "summary.json"}
+    files = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert {
         "simulate/curves.csv",
         "simulate/characteristics.csv",
@@ -200,11 +207,17 @@ def test_run_does_the_whole_chain(tmp_path: Path) -> None:
         "discover/axle.toml",
         "discover/discovery.xlsx",
         "discover/report.html",
-        "evaluations.sqlite",
+        "store/evaluations.sqlite",
+        "store/discovery.sqlite",
     } <= files
-    assert "outside their constraint interval" in outcome.out and "lateral.toe_change" in outcome.out
-    assert document["discover"]["verdict"] in {"named", "class", "none", "unexplained"}
-    unlisted = {"correlate/run.json", "evaluations.sqlite", "evaluations.sqlite.lock", "discovery.sqlite"}
+    assert document["discover"]["verdict"] == document["verdict"] in {"named", "class", "none", "unexplained"}
+    line = outcome.out.splitlines()[0]
+    labels = {"sound": "Sound: ", "doubtful": "Doubtful: ", "not_usable": "Not usable: "}
+    assert line == labels[document["status"]] + " ".join(document["reasons"])
+    assert (out / "axle.toml").read_text().splitlines()[0].count(line) == 1
+    summary = json.loads((out / "summary.json").read_text())
+    assert set(summary) == head and summary["reasons"] == document["reasons"]
+    unlisted = {f for f in files if f.startswith("store/")} | {"correlate/run.json"}
     assert f"{len(files - unlisted)} files under" in outcome.out and not leftovers(tmp_path)
 
 
