@@ -160,8 +160,10 @@ def summary_document(answer: Answer, axle_path: str, seconds: float) -> dict[str
 def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     """Name, place and sizes with their standard deviations."""
     found = answer.discovery
+    if found is None:
+        return effect.label
     place = (effect.id, effect.location)
-    for finding in (*found.findings, *found.traces) if found is not None else ():
+    for finding in (*found.findings, *found.traces):
         if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
             return f"{effect.label}: {size_words(found, finding)}"
     return effect.label
