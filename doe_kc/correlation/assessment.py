@@ -73,7 +73,7 @@ def assess(
     if not objections:
         count = len(correlation.improvements)
         return Assessment(
-            "sound", (f"all {count} characteristics lie inside their interval or their noise.",)
+            "sound", (f"All {count} characteristics lie inside their interval or their noise.",)
         )
     fatal = any(o.fatal for o in objections)
     return Assessment(
@@ -100,7 +100,7 @@ def harmed(entry: Improvement) -> bool:
 def _harmed_characteristics(correlation: Correlation) -> list[Objection]:
     return [
         Objection(
-            f"{e.target.entry.id} is worse than before: {e.final:.4g} {e.target.entry.unit} for "
+            f"Worse than before: {e.target.entry.id} {e.final:.4g} {e.target.entry.unit} for "
             f"{e.target.value:.4g}, was {e.baseline:.4g}.",
             fatal=True,
         )
@@ -115,7 +115,7 @@ def _harmed_curves(correlation: Correlation) -> list[Objection]:
         if curve.hold and after > hold_rms(curve, before) * (1.0 + 1e-9):
             out.append(
                 Objection(
-                    f"the curve {curve.id} is worse than before: RMS {after:.3g}, was {before:.3g}.",
+                    f"Worse than before: the curve {curve.id}, RMS {after:.3g}, was {before:.3g}.",
                     fatal=True,
                 )
             )
@@ -127,7 +127,7 @@ def _no_fit(correlation: Correlation) -> list[Objection]:
     settled = all(inside(e) for e in correlation.improvements)
     if settled or correlation.best.merit > correlation.baseline.merit:
         return []
-    return [Objection("no design was better than the axle that was handed in.", fatal=True)]
+    return [Objection("No design was better than the axle that was handed in.", fatal=True)]
 
 
 def _outside(correlation: Correlation) -> list[Objection]:
@@ -139,13 +139,13 @@ def _outside(correlation: Correlation) -> list[Objection]:
         and e.target.entry.id not in relaxed
         and (e.target.objective is None or e.target.objective.goal == "target")
     ]
-    return [Objection(f"outside interval and noise: {_values(out)}.")] if out else []
+    return [Objection(f"Outside interval and noise: {_values(out)}.")] if out else []
 
 
 def _relaxed(correlation: Correlation) -> list[Objection]:
     relaxed = correlation.relaxation.distances if correlation.relaxation is not None else {}
     out = [e for e in correlation.improvements if e.target.entry.id in relaxed and not inside(e)]
-    return [Objection(f"out of reach within the bounds: {_values(out)}.")] if out else []
+    return [Objection(f"Out of reach within the bounds: {_values(out)}.")] if out else []
 
 
 def _values(entries: Sequence[Improvement]) -> str:
@@ -157,7 +157,7 @@ def _values(entries: Sequence[Improvement]) -> str:
 def _left(misfit: float | None) -> list[Objection]:
     if misfit is None or not misfit > MISFIT:
         return []
-    return [Objection(f"the deviations that are left are {misfit:.1f} times the noise of the records.")]
+    return [Objection(f"The deviations that are left are {misfit:.1f} times the noise of the records.")]
 
 
 def _at_bounds(correlation: Correlation) -> list[Objection]:
@@ -175,7 +175,7 @@ def _freed(correlation: Correlation) -> list[Objection]:
     freed = [
         e for e in correlation.improvements if not e.target.hold and _aimed(e) and harmed(e) and not inside(e)
     ]
-    return [Objection(f"let go by the study and worse than before: {_values(freed)}.")] if freed else []
+    return [Objection(f"Let go by the study and worse than before: {_values(freed)}.")] if freed else []
 
 
 def _aimed(entry: Improvement) -> bool:

@@ -68,7 +68,7 @@ def answered(
     if gap is not None and gap.final > gap.nominal * 1.001 and gap.final > MISFIT:
         further.append(
             Objection(
-                f"the deviations from the records grew from {gap.nominal:.2f} to {gap.final:.2f} times "
+                f"The deviations from the records grew from {gap.nominal:.2f} to {gap.final:.2f} times "
                 "their noise.",
                 fatal=True,
             )
@@ -116,7 +116,7 @@ def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | 
                 [],
             )
             yield Objection(
-                f"{effect.label} is the leading one of a class; it could be "
+                f"The leading one of a class was added, {effect.label}; it could be "
                 f"{' or '.join(effect_label(e).lower() for e in others)}."
             )
     left = [f for f in discovery.findings if f.hypothesis.effect not in taken]
@@ -125,11 +125,11 @@ def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | 
         where = f": {', '.join(places)}" if places else ""
         leads = ", ".join(effect_label(f.hypothesis.effect).lower() for f in left)
         hint = f"; the best lead, not adopted, is {leads}" if leads else ""
-        yield Objection(f"the records show something that nothing explains{where}{hint}.")
+        yield Objection(f"The records show something that nothing explains{where}{hint}.")
     elif left:
         names = ", ".join(effect_label(f.hypothesis.effect).lower() for f in left)
         how = "as the study says" if study.discovery.adopt != "auto" else "the outside model does not have it"
-        yield Objection(f"the records ask for {names}, which was not adopted, {how}.")
+        yield Objection(f"The records ask for {names}, which was not adopted, {how}.")
 
 
 def summary_document(answer: Answer, axle_path: str, seconds: float) -> dict[str, Any]:

@@ -23,11 +23,11 @@ Discover = Callable[[Study, Measurement], Discovery]
 Correlate = Callable[[Study, Reduced, Adoption | None], Correlation]
 
 DIFFERENT = (
-    "what the model lacks was not looked for: the study's axle file does not describe the car of the outside "
+    "What the model lacks was not looked for: the study's axle file does not describe the car of the outside "
     "model, whose characteristics differ."
 )
 ADVICE = (
-    "what the model lacks was looked for on the package's own model of the study's axle file, as advice: the "
+    "What the model lacks was looked for on the package's own model of the study's axle file, as advice: the "
     "outside model was correlated as it is."
 )
 

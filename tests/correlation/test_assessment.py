@@ -35,26 +35,26 @@ def case() -> Synthetic:
 
 def test_at_the_targets_it_is_sound(case: Synthetic) -> None:
     found = assess(correlation(case, case.truth), misfit=1.0)
-    assert found.status == "sound" and found.line.startswith("Sound: all ")
+    assert found.status == "sound" and found.line.startswith("Sound: All ")
 
 
 def test_worse_than_before_is_not_usable(case: Synthetic) -> None:
     away = np.clip(2.0 * case.space.start - case.truth, 0.0, 1.0)
     found = assess(correlation(case, away), misfit=1.0)
     assert found.status == "not_usable" and found.line.startswith("Not usable: ")
-    assert any(" is worse than before: " in r for r in found.reasons)
+    assert any(r.startswith("Worse than before: ") for r in found.reasons)
 
 
 def test_no_better_design_is_not_usable(case: Synthetic) -> None:
     found = assess(correlation(case, case.space.start), misfit=1.0)
     assert found.status == "not_usable"
-    assert "no design was better than the axle that was handed in." in found.reasons
+    assert "No design was better than the axle that was handed in." in found.reasons
 
 
 def test_what_is_left_beside_noise_is_doubtful(case: Synthetic) -> None:
     found = assess(correlation(case, case.truth), misfit=1.7)
     assert found.status == "doubtful"
-    assert found.reasons == ("the deviations that are left are 1.7 times the noise of the records.",)
+    assert found.reasons == ("The deviations that are left are 1.7 times the noise of the records.",)
 
 
 def test_targets_out_of_reach_are_doubtful_and_named(case: Synthetic) -> None:
@@ -64,7 +64,7 @@ def test_targets_out_of_reach_are_doubtful_and_named(case: Synthetic) -> None:
     relaxed = replace(half, relaxation=Relaxation(dict.fromkeys(outside, 1.0), {}))
     found = assess(relaxed, misfit=1.0)
     assert found.status == "doubtful"
-    (sentence,) = [r for r in found.reasons if r.startswith("out of reach within the bounds: ")]
+    (sentence,) = [r for r in found.reasons if r.startswith("Out of reach within the bounds: ")]
     assert all(name in sentence for name in outside)
 
 
