@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -23,7 +23,14 @@ CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 FIRST = ["Verdict", "Where they disagree", "Candidates"]
 LAST = ["Parameters with and without the effect", "Library of effects", "What to test next"]
 LEGIBLE = 9.0
-browsed = pytest.mark.skipif(BROWSER is None, reason="Chromium is not installed, so no page can be opened")
+without_browser = pytest.mark.skipif(
+    BROWSER is None, reason="Chromium is not installed, so no page can be opened"
+)
+
+
+def browsed(test: Callable[..., None]) -> Callable[..., None]:
+    """Mark of a test that opens a page."""
+    return pytest.mark.browser(without_browser(test))
 
 
 @pytest.fixture(scope="module")

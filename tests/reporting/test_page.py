@@ -13,7 +13,10 @@ from tests.correlation.cases import measured
 from tests.reporting.chromium import BROWSER, Page
 from tests.reporting.correlations import CAR, EVIL, all_three, odd, real
 
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="Chromium is not installed, so no page can be opened")
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(BROWSER is None, reason="Chromium is not installed, so no page can be opened"),
+]
 
 TITLES = ["Summary", "Characteristics", "Curves", "Convergence", "Parameters"]
 LEGIBLE = 9.0
