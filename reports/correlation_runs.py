@@ -37,6 +37,8 @@ from doe_kc.variables import VariableOptions, build_space
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "front_axle"
 RIG = ROOT / "tests" / "data" / "rig"
+LEVELS = 101
+"""Of every variable, as in the thesis; the rating alone is the objective, as there."""
 BUSHING_AXES = ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz")
 POINTS = {"WC": "WLC", "SAL": "LWD"}
 """Names of the cars' keys that differ from the axle's."""
@@ -89,7 +91,7 @@ def problem_of(measurement: Measurement, options: VariableOptions | None = None)
     targets = build_targets(axle, measurement, [], [], source="report")
     return Problem(
         axle=axle,
-        space=build_space(axle, options or VariableOptions(), "report"),
+        space=build_space(axle, options or VariableOptions(levels=LEVELS), "report"),
         targets=targets,
         likelihood=build_likelihood(axle, measurement, targets),
         windows={},

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from correlation_runs import arguments, cached, cached_trace, nominal, problem_of
+from correlation_runs import LEVELS, arguments, cached, cached_trace, nominal, problem_of
 from recorrelation_case import Case
 from recorrelation_figure import parameter_figure, recorrelation_figure
 from recorrelation_text import markdown
@@ -45,7 +45,7 @@ QUICK = Plan(times=(1.0,), cars=1, seeds=1, budget=12)
 
 def space() -> Space:
     """All default variables of the nominal axle."""
-    return build_space(nominal(), VariableOptions(), "report")
+    return build_space(nominal(), VariableOptions(levels=LEVELS), "report")
 
 
 def disturbed(times: float, car: int) -> tuple[Problem, dict[str, float]]:
