@@ -17,7 +17,7 @@ from scipy.optimize import lsq_linear
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
-from doe_kc.correlation.methods._base import Method, Settings, register
+from doe_kc.correlation.methods._base import Method, Settings, best_design, register
 from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
 from doe_kc.correlation.walls import Walls
 from doe_kc.solver.result import NotConverged
@@ -94,8 +94,11 @@ class GaussNewton(Method):
             self._stopped = "the trust region shrank to nothing without a better design"
 
     def best(self, history: Sequence[Evaluated]) -> int:
-        """The most probable axle, which need not have the best rating."""
-        return self._incumbent.index if self._incumbent is not None else 0
+        """The most probable axle, which need not have the best rating; the best one that harms nothing where
+        that one harms a curve, which has no wall."""
+        if self._incumbent is not None and self._incumbent.harmless:
+            return self._incumbent.index
+        return best_design(history)
 
     def _step(self, incumbent: Evaluated, lower: FloatArray, upper: FloatArray) -> FloatArray:
         """The step of the linearized problem; sets what it promises.
