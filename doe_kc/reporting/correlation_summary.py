@@ -31,7 +31,7 @@ def summary(found: Correlation, assessment: Assessment | None = None) -> dict[st
         "Stopped": found.run.stopped,
         "Time": f"{found.seconds:.1f} s",
     }
-    return lines | {f"Set first{_number(i, len(found.steps))}": s for i, s in enumerate(found.steps)}
+    return lines | {f"Beforehand{_number(i, len(found.steps))}": s for i, s in enumerate(found.steps)}
 
 
 def _evaluations(found: Correlation, failed: int) -> str:

@@ -124,6 +124,6 @@ def test_evaluations_tell_failures_predictions_and_the_best_so_far() -> None:
 def test_summary_says_what_is_violated() -> None:
     lines = summary(odd())
     assert "vertical.bump_steer" in lines["Constraints"] and "2 had no equilibrium" in lines["Evaluations"]
-    assert summary(real())["Constraints"] == "all met" and summary(real())["Set first"].startswith(
+    assert summary(real())["Constraints"] == "all met" and summary(real())["Beforehand"].startswith(
         "ride_height"
     )

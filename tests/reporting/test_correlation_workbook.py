@@ -132,6 +132,6 @@ def test_the_rating_recalculates_with_edited_weights(tmp_path: Path) -> None:
 
 def test_the_summary_names_bounds_and_what_was_set_first(tmp_path: Path) -> None:
     text = {r[0].value: r[1].value for r in written(tmp_path, "real")["Summary"].iter_rows(min_row=4)}
-    assert text["Set first"] == real().steps[0]
+    assert text["Beforehand"] == real().steps[0]
     assert "not visible" in str(text["Note 1"])
     assert text["Axle"] == EVIL

@@ -16,7 +16,7 @@ PLACES: Mapping[str, str] = {
     "correlate/report.html": "the correlation: curves, convergence, parameters with their uncertainty",
     "correlate/correlation.xlsx": "the same as a workbook, with the rating as live formulas",
     "influence/influence.xlsx": "parameter-influence matrix of the axle as it was handed in",
-    "influence/influence_heatmap.png": "the same as a picture",
+    "influence/influence_heat_map.png": "the same as a picture",
     "compare/characteristics.csv": "the axle handed over beside the records",
     "reduce/characteristics.csv": "targets from the records, with their standard deviations",
 }
