@@ -26,4 +26,4 @@ def live_rating(budget: int) -> Iterator[Callable[[Sequence[Evaluated]], None]]:
 
 
 def _words(best: Evaluated) -> str:
-    return f"rating {best.merit:.4g} ({'feasible' if best.feasible else 'not feasible'})"
+    return f"merit {best.merit:.4g} ({'feasible' if best.feasible else 'not feasible'})"

@@ -109,7 +109,7 @@ class RunRecord(Strict):
     posterior: PosteriorRecord | None
     discovered: bool
     effects: list[EffectRecord]
-    without: list[tuple[str, str]]
+    without: list[list[str]]
     objections: list[ObjectionRecord]
     misfit: float | None
     evaluations: list[EvaluationRecord]
@@ -142,7 +142,7 @@ def run_document(
         posterior=None if after is None else _posterior(after),
         discovered=discovered,
         effects=list(effects),
-        without=sorted(without),
+        without=[list(place) for place in sorted(without)],
         objections=[ObjectionRecord(sentence=o.sentence, fatal=o.fatal) for o in objections],
         misfit=misfit,
         evaluations=[_evaluation(e.candidate) for e in found.run.evaluated],

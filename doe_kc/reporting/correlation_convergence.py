@@ -1,4 +1,4 @@
-"""How the rating rose over the true-solver evaluations."""
+"""How the merit of the search rose over the true-solver evaluations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,8 @@ BEYOND = 3.0
 
 
 def convergence_figure(found: Correlation, study: str) -> Figure:
-    """Minus the rating, symmetric logarithmic, over the evaluations: 0 = every target met exactly."""
+    """Minus what the search maximizes, symmetric logarithmic, over the evaluations: 0 = every target met
+    exactly. With the objective "thesis" it is the rating."""
     past = history(found)
     fig, axes = style.figure(1, 1, size=(8.27, 4.6))
     ax = axes[0, 0]
@@ -31,7 +32,7 @@ def convergence_figure(found: Correlation, study: str) -> Figure:
     _predicted(ax, past)
     _failed(ax, past)
     _feasible(ax, past)
-    style.label(ax, "true-solver evaluation (1 = baseline)", "minus rating [-], symmetric log")
+    style.label(ax, "true-solver evaluation (1 = baseline)", "minus merit of the search [-], symmetric log")
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlim(0.4, past.number[-1] + 0.9)
     ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, fontsize=7, frameon=False)

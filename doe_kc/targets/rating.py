@@ -16,8 +16,9 @@ from doe_kc.targets.score import Score
 from doe_kc.targets.target import Constraint, Objective, Targets
 from doe_kc.typing import FloatArray
 
-LIMIT_WEIGHT = 1e5
-"""QuadWt of a limit: ten times that of a constraint, which is not to be met at the cost of what was right."""
+LIMIT_WEIGHT = 1e6
+"""QuadWt of a limit: a hundred times that of a constraint, which is not to be met at the cost of what was
+right; what pulls at it, up to some hundreds a measure, is stopped within a few ten-thousandths of it."""
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from doe_kc.curves import CurveSet
 from doe_kc.targets.options import Goal
 from doe_kc.typing import FloatArray
 
-LIMIT_MARGIN = 3e-4
+LIMIT_MARGIN = 5e-4
 """Share of the measure within which a limit is charged for already: a design that leans on it, steep as the
-price is, still meets it, and one that lies at it, as the baseline may, pays a hundredth."""
+price is, still meets it, and one that lies at it, as the baseline may, pays a quarter."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -89,10 +89,11 @@ def adopt(study: Study, discovery: Discovery) -> Adoption:
     )
 
 
-def adopted(study: Study, records: Sequence[EffectRecord], without: Sequence[tuple[str, str]]) -> Adoption:
+def adopted(study: Study, records: Sequence[EffectRecord], without: Sequence[Sequence[str]]) -> Adoption:
     """The adoption of a run that is read back."""
     effects = tuple(AdoptedEffect(r.id, r.location, r.options, r.uncertain) for r in records)
-    return Adoption(with_effects(study.axle, effects), effects, {}, frozenset(without))
+    places = frozenset((case, response) for case, response in without)
+    return Adoption(with_effects(study.axle, effects), effects, {}, places)
 
 
 def with_effects(axle: Axle, effects: Sequence[AdoptedEffect]) -> Axle:

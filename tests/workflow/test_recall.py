@@ -114,6 +114,16 @@ def test_what_a_discovery_objects_to_is_said_again(tmp_path: Path) -> None:
     assert any("1.7 times the noise" in r for r in assessment.reasons)
 
 
+def test_what_a_chain_began_with_is_read_back(tmp_path: Path) -> None:
+    study = kept(real(), tmp_path)
+    document = run_document(real(), discovered=True, without={("lateral", "camber"), ("steer", "toe")})
+    write_json(tmp_path / "run.json", document)
+    again = recall(study, REDUCED, tmp_path).correlation
+    out = {t.entry.id for t in again.problem.targets.characteristics if t.excluded}
+    assert out == {"lateral.camber_change", "steer.steering_ratio"}
+    assert {("lateral", "camber"), ("steer", "toe")} <= again.problem.targets.dropped
+
+
 def test_a_store_without_the_designs(tmp_path: Path) -> None:
     study = kept(odd(), tmp_path / "one", *ODD_WEIGHTS)
     empty = replace(study, out=tmp_path / "other")

@@ -25,7 +25,7 @@
   }
   const failed = data.number.filter((n, i) => data.failed[i]);
   layers.push({ kind: "cross", free: true, x: failed, colour: "#d55e00", width: 2 });
-  chart.show(layers, { x: "true-solver evaluation (1 = baseline)", y: "minus rating [-], symmetric log" });
+  chart.show(layers, { x: "true-solver evaluation (1 = baseline)", y: "minus merit of the search [-], symmetric log" });
   function entry(text, colour, sign) {
     const item = document.createElement("span"), mark = document.createElement("b");
     mark.style.color = colour;
@@ -43,7 +43,7 @@
     const i = n - 1;
     const parts = ["Evaluation " + n + " (" + data.origin[i] + ")"];
     if (data.failed[i]) parts.push("no equilibrium: " + data.reason[i]);
-    else parts.push("rating " + format(data.rating[i]), data.feasible[i] ? "feasible" : "constraints violated");
+    else parts.push("merit " + format(data.rating[i]), data.feasible[i] ? "feasible" : "constraints violated");
     if (data.predicted[i] !== null) parts.push("predicted " + format(data.predicted[i]) + " ± " + format(data.sd[i]));
     if (n === data.chosen) parts.push("handed over");
     readout.textContent = parts.join(", ");
