@@ -9,8 +9,8 @@ from doe_kc.reporting.correlation_evaluations import history
 from doe_kc.reporting.page.section import Section, embedded, render
 
 LEAD = (
-    "Minus what the search maximizes on a symmetric logarithmic axis: 0 = every target met exactly. Open marks "
-    "violate a constraint; crosses on top had no equilibrium."
+    "Minus what the search maximizes on a symmetric logarithmic axis: 0 = every target met exactly. Open "
+    "marks violate a constraint; crosses on top had no equilibrium."
 )
 
 
