@@ -1,16 +1,16 @@
 """What `doe-kc run` hands over for rig records whose answer is known or not: one axle a car, and its status.
 
-Run: python reports/answers.py [FOLDER ...], each a folder of test.toml and records, by default the four cars
-of the tests and the customer's one of the example. Writes answers.md beside itself. Stops with an error when
-an axle is handed over that is worse than the nominal one in anything measured.
+Run: python reports/answers.py [--work DIR] [FOLDER ...], each a folder of test.toml and records, by default
+the four cars of the tests and the customer's one of the example. Writes answers.md beside itself. DIR keeps
+what is computed, so that an interrupted report goes on. Stops with an error when an axle is handed over that is
+worse than the nominal one in anything measured.
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
-import time
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -20,7 +20,7 @@ from doe_kc.correlation.assessment import STATUS_LABELS, harmed, inside
 from doe_kc.correlation.posterior import AT_BOUND
 from doe_kc.rounding import with_sd
 from doe_kc.solver.suite import solve
-from doe_kc.study import Study, read_study
+from doe_kc.study import read_study
 from doe_kc.workflow.answer import Answer
 from doe_kc.workflow.chain import Steps, follow_chain
 from doe_kc.workflow.correlate import correlate
@@ -44,42 +44,45 @@ deviations off. Gap: whitened RMS of all records, handed in, re-tuned, handed ov
 """
 HEAD = (
     "car", "status", "effects added", "inside", "worst change", "improvement, %", "gap", "at a bound",
-    "evaluations", "seconds",
+    "evaluations",
 )  # fmt: skip
 
 
 def main() -> None:
     """Answer for every car and write the report."""
-    folders = {Path(a).name: Path(a) for a in sys.argv[1:]} or DEFAULT
+    parser = argparse.ArgumentParser()
+    parser.add_argument("folders", nargs="*", type=Path)
+    parser.add_argument("--work", type=Path)
+    given = parser.parse_args()
+    folders = {folder.name: folder for folder in given.folders} or DEFAULT
     rows, reasons = [], []
-    for car, folder in folders.items():
-        started = time.perf_counter()
-        answer = answered(folder)
-        rows.append(_row(car, answer, time.perf_counter() - started))
-        reasons.append(f"- **{car}**: {answer.assessment.line}")
-        print(rows[-1], flush=True)
-        if any(e.target.hold and harmed(e) for e in answer.correlation.improvements):
-            sys.exit(f"{car}: something measured is worse than in the nominal axle")
+    with tempfile.TemporaryDirectory() as place:
+        for car, folder in folders.items():
+            answer = answered(folder, (given.work or Path(place)) / car)
+            rows.append(_row(car, answer))
+            reasons.append(f"- **{car}**: {answer.assessment.line}")
+            print(*rows[-1], sep=" | ", flush=True)
+            if any(e.target.hold and harmed(e) for e in answer.correlation.improvements):
+                sys.exit(f"{car}: something measured is worse than in the nominal axle")
     text = INTRODUCTION.format(count=len(rows)) + table(HEAD, rows) + "\n\n" + "\n".join(reasons) + "\n"
     (HERE / "answers.md").write_text(text, encoding="utf-8")
 
 
-def answered(folder: Path) -> Answer:
+def answered(folder: Path, work: Path) -> Answer:
     """The chain on the nominal axle and a folder of records."""
-    with tempfile.TemporaryDirectory() as place:
-        file = Path(place) / "study.toml"
-        file.write_text(f"axle = {str(EXAMPLE / 'axle.toml')!r}\nmeasurement = {str(folder.resolve())!r}\n")
-        study: Study = read_study(file)
-        reduced = reduce_records(study, solve(study.axle))
-        steps = Steps(discover_study, partial(_correlated))
-        return follow_chain(study, reduced, steps)
+    work.mkdir(parents=True, exist_ok=True)
+    file = work / "study.toml"
+    file.write_text(f"axle = {str(EXAMPLE / 'axle.toml')!r}\nmeasurement = {str(folder.resolve())!r}\n")
+    study = read_study(file)
+    reduced = reduce_records(study, solve(study.axle))
+    return follow_chain(study, reduced, Steps(discover_study, _correlated))
 
 
 def _correlated(study, reduced, adoption):  # type: ignore[no-untyped-def]
     return correlate(study, reduced, adoption=adoption)
 
 
-def _row(car: str, answer: Answer, seconds: float) -> list[str]:
+def _row(car: str, answer: Answer) -> list[str]:
     found, gap = answer.correlation, answer.gap
     entries = found.improvements
     point = found.best.point
@@ -95,7 +98,6 @@ def _row(car: str, answer: Answer, seconds: float) -> list[str]:
         " → ".join(f"{g:.2f}" for g in (gap.nominal, gap.tuned, gap.final) if g is not None) if gap else "-",
         f"{ended} of {point.size}",
         f"{len(found.run.evaluated)}",
-        f"{seconds:.0f}",
     ]
 
 

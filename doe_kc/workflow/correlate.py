@@ -9,6 +9,7 @@ from functools import partial
 
 import numpy as np
 
+from doe_kc.axle.model import Axle
 from doe_kc.campaign.runner import Campaign
 from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.likelihood import build_likelihood
@@ -206,6 +207,14 @@ def study_method(study: Study, name: str | None = None) -> type[Method]:
     return chosen
 
 
+def answered_axle(study: Study, axle: Axle) -> Axle:
+    """The axle with the load cases that the study's solver answers; all of them by default."""
+    answered = study.solver.load_cases if study.solver.command else []
+    if not answered:
+        return axle
+    return replace(axle, load_cases={k: c for k, c in axle.load_cases.items() if k in answered})
+
+
 @one_thread()
 def study_problem(
     study: Study,
@@ -216,9 +225,9 @@ def study_problem(
 ) -> Problem:
     """The correlation problem of a study, with its own variables or others; its search not yet prepared."""
     measurement = reduced.measurement if reduced is not None else None
-    axle = study.axle if adoption is None else adoption.axle
+    axle = answered_axle(study, study.axle if adoption is None else adoption.axle)
     targets = build_targets(
-        study.axle,
+        axle,
         measurement,
         study.characteristics,
         study.curves,

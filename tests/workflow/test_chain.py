@@ -15,7 +15,7 @@ from doe_kc.true_solver.options import SolverOptions
 from doe_kc.workflow.answer import answer_lines, answered, summary_document
 from doe_kc.workflow.answer_handover import write_answer
 from doe_kc.workflow.chain import ADVICE, DIFFERENT, Steps, describes_the_same, follow_chain
-from doe_kc.workflow.correlate import correlate
+from doe_kc.workflow.correlate import correlate, study_problem
 from tests.discovery.cases import discovery, nominal
 from tests.workflow.chain_cases import answer, reduced, study
 
@@ -145,6 +145,15 @@ def test_an_outside_model_of_another_car_is_not_discovered(
 
 def test_whether_two_solvers_describe_the_same_axle(tmp_path: Path) -> None:
     assert describes_the_same(study(tmp_path), reduced("named"))
+
+
+def test_only_load_cases_that_the_outside_solver_answers_have_targets(tmp_path: Path) -> None:
+    few = OUTSIDE.model_copy(update={"load_cases": ["vertical", "steer"]})
+    problem = study_problem(replace(study(tmp_path), solver=few), reduced("named"))
+    cases = {t.entry.load_case for t in problem.targets.characteristics}
+    assert cases == {"static", "vertical", "steer"}
+    assert {c.load_case for c in (*problem.targets.curves, *problem.targets.others)} == {"vertical", "steer"}
+    assert {c.load_case for c in problem.likelihood.curves} == {"vertical", "steer"}
 
 
 def test_the_thesis_objective_works_on_its_own_terms(tmp_path: Path) -> None:
