@@ -2,8 +2,8 @@
 
 Run: python reports/answers.py [--work DIR] [FOLDER ...], each a folder of test.toml and records, by default
 the four cars of the tests and the customer's one of the example. Writes answers.md beside itself. DIR keeps
-what is computed, so that an interrupted report goes on. Stops with an error when an axle is handed over that is
-worse than the nominal one in anything measured.
+what is computed, so that an interrupted report goes on. Stops with an error when an axle is handed over that
+is worse than the nominal one in anything measured.
 """
 
 from __future__ import annotations
