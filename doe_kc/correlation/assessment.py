@@ -14,8 +14,9 @@ from typing import Literal
 from doe_kc.comparison.interval import constraint_interval
 from doe_kc.correlation.posterior import AT_BOUND
 from doe_kc.correlation.result import Correlation
-from doe_kc.correlation.search_targets import SIGNIFICANT, hold_distance, hold_rms
+from doe_kc.correlation.search_targets import hold_distance, hold_rms
 from doe_kc.targets import Improvement
+from doe_kc.targets.improvement import SIGNIFICANT
 
 Status = Literal["sound", "doubtful", "not_usable"]
 FEW = 0.1

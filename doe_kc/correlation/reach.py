@@ -10,14 +10,13 @@ from scipy.optimize import linprog, lsq_linear
 
 from doe_kc.comparison.interval import constraint_interval
 from doe_kc.targets import Target, Targets
+from doe_kc.targets.improvement import SIGNIFICANT
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.typing import FloatArray
 
 MARGIN = 0.2
 """Share of a range by which a first-order forecast may be wrong before a target counts as out of reach."""
 ACTIVE = 1e-6
-SIGNIFICANT = 3.0
-"""Standard deviations of a target within which a value does not differ from it."""
 QUIET = 1.0 / 3.0
 """Share of an interval's half-width within which a value is not harmed: forecasts are of first order."""
 PURSUED = 4.0

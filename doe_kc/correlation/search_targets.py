@@ -21,11 +21,10 @@ from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.options import ObjectiveKind
 from doe_kc.correlation.reach import Relaxation
 from doe_kc.targets import Constraint, CurveTarget, MisfitTerm, Objective, Score, Target, Targets
+from doe_kc.targets.improvement import SIGNIFICANT
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import Space
 
-SIGNIFICANT = 3.0
-"""Standard deviations of a target within which a value does not differ from it."""
 ROUNDING = 1e-6
 """Share by which a limit lies beyond the baseline's own distance: the baseline meets its holds."""
 MISFIT_WEIGHT = 2.0

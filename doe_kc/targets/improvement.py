@@ -9,7 +9,7 @@ from doe_kc.targets.score import Score
 from doe_kc.targets.target import Target, Targets
 
 SIGNIFICANT = 3.0
-"""Standard deviations of the target that the baseline must be away for an improvement to mean anything."""
+"""Standard deviations of a target within which a value does not differ from it."""
 
 
 @dataclass(frozen=True)
