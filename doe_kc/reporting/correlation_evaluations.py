@@ -14,7 +14,7 @@ from doe_kc.typing import FloatArray
 
 @dataclass(frozen=True)
 class History:
-    """Ratings over n evaluations, all (n,).
+    """Merits of the search over n evaluations, all (n,).
 
     number: 1 = the baseline. rating: nan after a failure. best: largest so far. predicted, sd: what the
     method expected, nan where it expected nothing.
@@ -64,12 +64,12 @@ def evaluation_frame(found: Correlation) -> pd.DataFrame:
         {
             "evaluation": past.number.astype(int),
             "origin": past.origin,
-            "rating": past.rating,
+            "merit": past.rating,
             "best_so_far": past.best,
             "feasible": past.feasible,
             "chosen": [i == found.run.best for i in range(past.number.size)],
             "failed_because": [e.outcome.reason for e in found.run.evaluated],
-            "predicted_rating": past.predicted,
+            "predicted_merit": past.predicted,
             "predicted_sd": past.sd,
             "seconds": [e.outcome.seconds for e in found.run.evaluated],
         }

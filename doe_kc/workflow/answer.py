@@ -23,8 +23,6 @@ from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
 from doe_kc.workflow.handover import characteristic_entries
 
-NONE_NEEDED = ("named", "none")
-
 
 @dataclass(frozen=True)
 class AnswerGap:

@@ -110,9 +110,9 @@ def test_evaluations_tell_failures_predictions_and_the_best_so_far() -> None:
     frame = evaluation_frame(odd())
     assert list(frame["evaluation"]) == list(range(1, 11))
     assert list(np.flatnonzero(frame["failed_because"] != "")) == [2, 6]
-    assert frame["rating"].isna().sum() == 2
-    assert frame["predicted_rating"].notna().sum() == 6
-    best = frame["rating"].cummax().ffill()
+    assert frame["merit"].isna().sum() == 2
+    assert frame["predicted_merit"].notna().sum() == 6
+    best = frame["merit"].cummax().ffill()
     np.testing.assert_allclose(frame["best_so_far"], best)
     assert frame["chosen"].sum() == 1 and frame["chosen"][odd().run.best]
     row = frame.iloc[odd().run.best]
