@@ -6,16 +6,18 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from doe_kc.comparison.compare import Comparison, same_input
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
 from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting import style
 from doe_kc.reporting.names import RESPONSE_NAMES, input_label, response_axis, response_name
-from doe_kc.reporting.plain_axes import draw_plain_axes
+from doe_kc.reporting.panel import Box, Panel
+from doe_kc.reporting.panel_axis import ticks
 from doe_kc.reporting.series import draw_series
+from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.solver.load_cases import LOAD_CASES
 
 SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
@@ -23,7 +25,7 @@ SIDE_NAMES = ("left", "right")
 MARGINS = {"left": 0.06, "right": 0.988, "top": 0.92, "bottom": 0.062, "wspace": 0.27, "hspace": 0.36}
 
 
-def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
+def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
     """Responses of both wheels over the input: measured (dots, band = both branches), model (lines).
 
     Angles and wheel centre are changes from static.
@@ -31,25 +33,19 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Figure:
     model = comparison.model.cases[load_case]
     measured = comparison.measured.cases[load_case]
     case = LOAD_CASES[load_case]
-    fig, axes = style.figure(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=MARGINS)
-    panels = list(axes.flat)
-    for ax, response in zip(panels, RIG_RESPONSES, strict=False):
-        _draw(ax, model, measured, response)
-        style.label(ax, None, response_axis(response))
-        ax.set_title(RESPONSE_LABELS[response], fontsize=9, y=1.0)
-        ax.xaxis.set_major_locator(style.ticks(5))
-        ax.yaxis.set_major_locator(style.ticks(7))
-        ax.set_xlabel(input_label(load_case, measured.input_unit))
-    _table(panels[7], comparison, load_case)
-    _legend(panels[8])
-    fig.suptitle(
-        f"{case.label}: {comparison.model.source} against {comparison.measured.source}",
-        fontsize=11,
-        y=0.985,
-        parse_math=False,
-    )
-    draw_plain_axes(fig)
-    return fig
+    page, panels = sheet(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=MARGINS)
+    for panel, response in zip(panels.flat, RIG_RESPONSES, strict=False):
+        _draw(panel, model, measured, response)
+        panel.set_labels(input_label(load_case, measured.input_unit), response_axis(response))
+        panel.set_title(RESPONSE_LABELS[response])
+        panel.x.set_locator(ticks(5))
+        panel.y.set_locator(ticks(7))
+    table, legend = page.panels[7:]
+    del page.panels[7:]
+    _table(page, table.box, comparison, load_case)
+    page.add_legend(_handles(), 1, 8.0, ("left", "top"), (legend.box.left, legend.box.top))
+    page.set_heading(f"{case.label}: {comparison.model.source} against {comparison.measured.source}", 0.985)
+    return page
 
 
 def write_comparison_figures(
@@ -67,30 +63,32 @@ def write_comparison_figures(
     )
 
 
-def _draw(ax: Axes, model: CaseCurves, measured: CaseCurves, response: str) -> None:
+def _draw(panel: Panel, model: CaseCurves, measured: CaseCurves, response: str) -> None:
     for side, colour in enumerate(SIDE_COLOURS):
         mean, half = measured.mean[response][side], np.abs(measured.half_width[response][side])
-        ax.fill_between(measured.input, mean - half, mean + half, color=colour, alpha=0.2, lw=0)
-        ax.plot(measured.input[::2], mean[::2], ".", color=colour, ms=3)
-        ax.plot(model.input, model.mean[response][side], color=colour)
+        panel.fill_between(measured.input, mean - half, mean + half, color=colour, alpha=0.2, lw=0)
+        panel.plot(measured.input[::2], mean[::2], "", marker=".", color=colour, ms=3)
+        panel.plot(model.input, model.mean[response][side], color=colour)
         loop = np.abs(model.half_width[response][side])
         if loop.max() > 0:
             for sign in (-1, 1):
-                ax.plot(model.input, model.mean[response][side] + sign * loop, ":", color=colour, lw=0.8)
+                panel.plot(model.input, model.mean[response][side] + sign * loop, ":", color=colour, lw=0.8)
 
 
-def _legend(ax: Axes) -> None:
-    ax.axis("off")
-    for side, colour in enumerate(SIDE_COLOURS):
-        ax.plot([], [], ".", color=colour, label=f"measured, {SIDE_NAMES[side]} wheel (mean of branches)")
-        ax.fill_between([], [], [], color=colour, alpha=0.2, lw=0, label="   between its branches")
-        ax.plot([], [], color=colour, label=f"model, {SIDE_NAMES[side]} wheel")
-    ax.legend(loc="upper left", fontsize=8)
+def _handles() -> list[Line2D | Patch]:
+    out: list[Line2D | Patch] = []
+    for colour, name in zip(SIDE_COLOURS, SIDE_NAMES, strict=True):
+        dots = f"measured, {name} wheel (mean of branches)"
+        out += [
+            Line2D([], [], ls="", marker=".", color=colour, label=dots),
+            Patch(color=colour, alpha=0.2, lw=0, label="   between its branches"),
+            Line2D([], [], color=colour, lw=1.2, label=f"model, {name} wheel"),
+        ]
+    return out
 
 
-def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:
+def _table(page: Sheet, box: Box, comparison: Comparison, load_case: str) -> None:
     """Characteristics of the load case, and the RMS of its curves on the left wheel."""
-    ax.axis("off")
     rows = [r for r in comparison.characteristics if r.entry.load_case == load_case]
     gradients = {f"{r.entry.label} [{r.entry.unit}]": r for r in rows if r.entry.kind == "gradient"}
     wide = max(map(len, (*gradients, *RESPONSE_NAMES.values()))) + 1
@@ -104,4 +102,6 @@ def _table(ax: Axes, comparison: Comparison, load_case: str) -> None:
             unit = RESPONSE_UNITS[curve.response]
             lines.append(f"{response_name(curve.response):<{wide}}{curve.rms:>10.3g} {unit}")
     lines.append("* outside the constraint interval")
-    ax.text(0, 1, "\n".join(lines), family="monospace", fontsize=6, va="top", transform=ax.transAxes)
+    page.write(
+        box.left / page.width, box.top / page.height, "\n".join(lines), 6.0, along="top", family="monospace"
+    )

@@ -5,14 +5,14 @@ from __future__ import annotations
 from itertools import groupby
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting import style
 from doe_kc.reporting.correlation_parameters import ParameterRow, parameter_rows
+from doe_kc.reporting.panel import Panel
+from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.rounding import with_sd
 
 SINGLE = 30
@@ -21,7 +21,7 @@ ROW = 0.2
 SEEN, UNSEEN, BOUND = style.PALETTE["blue"], "#B9BEC3", style.PALETTE["vermillion"]
 
 
-def parameter_figure(found: Correlation, study: str) -> Figure:
+def parameter_figure(found: Correlation, study: str) -> Sheet:
     """Bar from baseline to final between lower and upper bound, whisker ± sd of the posterior."""
     rows = [r for r in parameter_rows(found) if r.role == "variable"]
     parts = _columns(_lines(rows))
@@ -33,12 +33,12 @@ def parameter_figure(found: Correlation, study: str) -> Figure:
         "wspace": 0.98,
     }
     margins |= {"top": 1 - 0.72 / height, "bottom": 0.85 / height}
-    fig, axes = style.figure(1, columns, size=(8.27, height), margins=margins)
-    for ax, part in zip(axes[0], parts, strict=True):
-        _column(ax, part, deep)
-    _legend(fig, found.posterior is not None)
-    fig.suptitle(f"Parameter changes: {study}", fontsize=11, y=1 - 0.15 / height, va="top", parse_math=False)
-    return fig
+    page, panels = sheet(1, columns, size=(8.27, height), margins=margins)
+    for panel, part in zip(panels[0], parts, strict=True):
+        _column(panel, part, deep)
+    _legend(page, found.posterior is not None)
+    page.set_heading(f"Parameter changes: {study}", 1 - 0.15 / height)
+    return page
 
 
 def _lines(rows: list[ParameterRow]) -> list[ParameterRow | str]:
@@ -60,49 +60,50 @@ def _columns(lines: list[ParameterRow | str]) -> list[list[ParameterRow | str]]:
     return [first, second if isinstance(top, str) else [top.group, *second]]
 
 
-def _column(ax: Axes, lines: list[ParameterRow | str], deep: int) -> None:
-    ax.set_xlim(-0.02, 1.02)
-    ax.set_ylim(deep, 0)
-    ax.set_xticks([0.0, 0.5, 1.0], ["lower", "middle", "upper"])
-    ax.set_yticks([])
-    ax.spines["left"].set_visible(False)
-    ax.set_xlabel("place between the bounds")
+def _column(panel: Panel, lines: list[ParameterRow | str], deep: int) -> None:
+    panel.x.set_limits(-0.02, 1.02)
+    panel.y.set_limits(deep, 0)
+    panel.x.set_ticks([0.0, 0.5, 1.0], ["lower", "middle", "upper"])
+    panel.y.set_ticks([], [])
+    panel.spines["left"] = False
+    panel.set_labels("place between the bounds", None)
     for y, line in enumerate(lines):
         if isinstance(line, str):
-            ax.text(
-                -0.04, y + 0.55, line.capitalize(), fontsize=7.2, fontweight="bold", va="center", ha="right"
+            panel.text(
+                -0.04, y + 0.55, line.capitalize(), size=7.2, weight="bold", across="right", along="center"
             )
         else:
-            _bar(ax, y + 0.5, line)
+            _bar(panel, y + 0.5, line)
 
 
-def _bar(ax: Axes, y: float, row: ParameterRow) -> None:
-    ax.add_patch(Rectangle((0, y - 0.3), 1, 0.6, fc="#F1F3F4", ec="none", zorder=0))
+def _bar(panel: Panel, y: float, row: ParameterRow) -> None:
+    panel.bars(y, 0.0, 1.0, 0.6, ["#F1F3F4"], zorder=0)
     hidden = row.visible is False
     colour = UNSEEN if hidden else SEEN
-    low, wide = min(row.start, row.place), abs(row.place - row.start)
-    ax.add_patch(
-        Rectangle((low, y - 0.26), wide, 0.52, fc="white" if hidden else colour, ec=colour, lw=0.5,
-                  hatch="/////" if hidden else None, zorder=2)
+    low, high = sorted((row.start, row.place))
+    panel.bars(
+        y, low, high, 0.52, ["white" if hidden else colour], edgecolors=colour, linewidths=0.5,
+        hatch="/////" if hidden else None, zorder=2,
     )  # fmt: skip
     if np.isfinite(row.spread):
         ends = np.clip([row.place - row.spread, row.place + row.spread], 0, 1)
-        ax.plot(ends, [y, y], color="#444444", lw=0.7, zorder=3)
-    ax.plot([row.start, row.start], [y - 0.36, y + 0.36], color="black", lw=0.8, zorder=3)
-    ax.plot([row.place], [y], "o", color=colour, ms=2.8, zorder=4)
+        panel.plot(ends, [y, y], color="#444444", lw=0.7, zorder=3)
+    panel.plot([row.start, row.start], [y - 0.36, y + 0.36], color="black", lw=0.8, zorder=3)
+    panel.plot(row.place, y, "", marker="o", color=colour, ms=2.8, zorder=4)
     if row.at_bound:
         mark = ">" if row.at_bound == "upper" else "<"
-        ax.plot([row.place], [y], mark, color=BOUND, ms=5.5, clip_on=False, zorder=5)
-    _texts(ax, y, row, "#777777" if hidden else "black")
+        panel.plot(row.place, y, "", marker=mark, color=BOUND, ms=5.5, clip=False, zorder=5)
+    _texts(panel, y, row, "#777777" if hidden else "black")
 
 
-def _texts(ax: Axes, y: float, row: ParameterRow, colour: str) -> None:
-    ax.text(-0.04, y, row.path, fontsize=6.2, va="center", ha="right", color=colour)
+def _texts(panel: Panel, y: float, row: ParameterRow, colour: str) -> None:
+    panel.text(-0.04, y, row.path, size=6.2, across="right", along="center", color=colour)
     unit = "" if row.unit == "-" else f" {row.unit}"
-    ax.text(1.05, y, f"{with_sd(row.final, row.sd)}{unit}", fontsize=6.2, va="center", color=colour)
+    words = f"{with_sd(row.final, row.sd)}{unit}"
+    panel.text(1.05, y, words, size=6.2, along="center", color=colour)
 
 
-def _legend(fig: Figure, known: bool) -> None:
+def _legend(page: Sheet, known: bool) -> None:
     handles: list[Line2D | Patch] = [
         Line2D([], [], color="black", ls="", marker="|", ms=7, label="baseline"),
         Line2D([], [], color=SEEN, ls="", marker="o", ms=3.5, label="final"),
@@ -113,4 +114,4 @@ def _legend(fig: Figure, known: bool) -> None:
             Line2D([], [], color="#444444", lw=0.8, label="± sd (posterior)"),
             Patch(fc="white", ec=UNSEEN, hatch="/////", label="not visible in these measurements"),
         ]
-    fig.legend(handles=handles, loc="lower center", ncols=5, fontsize=7, frameon=False)
+    page.add_legend(handles, 5)

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -18,7 +16,9 @@ from doe_kc.curves import RESPONSE_LABELS, CaseCurves
 from doe_kc.measurement import Measurement
 from doe_kc.reporting import style
 from doe_kc.reporting.names import case_label, input_label, response_axis
-from doe_kc.reporting.plain_axes import draw_plain_axes
+from doe_kc.reporting.panel import Dash, Panel
+from doe_kc.reporting.panel_axis import ticks
+from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.solver.load_cases import CASE_ORDER
 from doe_kc.typing import FloatArray
 
@@ -75,31 +75,31 @@ def _sd(measurement: Measurement | None, case: CaseCurves | None) -> dict[str, F
     }
 
 
-def curve_figure(view: CaseView, study: str) -> Figure:
+def curve_figure(view: CaseView, study: str) -> Sheet:
     """Six responses of both wheels over the input; angles and wheel centre are changes from static."""
-    fig, axes = style.figure(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=MARGINS)
-    for ax, response in zip(axes.flat, PANELS, strict=True):
-        _panel(ax, view, response)
-        style.label(ax, None, response_axis(response))
-        ax.set_title(RESPONSE_LABELS[response], fontsize=9, y=1.0)
-        ax.xaxis.set_major_locator(style.ticks(6))
-        ax.yaxis.set_major_locator(style.ticks(7))
-    for ax in axes[-1]:
-        ax.set_xlabel(view.input_label)
-    handles = _handles(view)
-    fig.legend(handles=handles, loc="lower center", ncols=4, fontsize=7.5, frameon=False)
-    fig.suptitle(f"{case_label(view.load_case)}: {study}", fontsize=11, y=0.965, parse_math=False)
-    draw_plain_axes(fig)
-    return fig
+    page, panels = sheet(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=MARGINS)
+    for panel, response in zip(panels.flat, PANELS, strict=True):
+        _panel(panel, view, response)
+        panel.set_labels(None, response_axis(response))
+        panel.set_title(RESPONSE_LABELS[response])
+        panel.x.set_locator(ticks(6))
+        panel.y.set_locator(ticks(7))
+    for panel in panels[-1]:
+        panel.set_labels(view.input_label, None)
+    page.add_legend(_handles(view), 4, 7.5)
+    page.set_heading(f"{case_label(view.load_case)}: {study}", 0.965)
+    return page
 
 
-def _panel(ax: Axes, view: CaseView, response: str) -> None:
+def _panel(panel: Panel, view: CaseView, response: str) -> None:
     for side in (1, 0):
         if view.measured is not None:
-            _measured(ax, view, response, side)
-        for case, colour, dash in ((view.baseline, BASELINE, "--"), (view.final, FINAL, "-")):
+            _measured(panel, view, response, side)
+        models: list[tuple[CaseCurves | None, str, Dash]]
+        models = [(view.baseline, BASELINE, "--"), (view.final, FINAL, "-")]
+        for case, colour, dash in models:
             if case is not None and response in case.mean:
-                ax.plot(case.input, case.mean[response][side], dash, color=colour, **_weight(side))
+                panel.plot(case.input, case.mean[response][side], dash, color=colour, **_weight(side))
 
 
 def _weight(side: int) -> dict[str, Any]:
@@ -107,20 +107,20 @@ def _weight(side: int) -> dict[str, Any]:
     return {"lw": 0.8, "alpha": 0.55} if side else {"lw": 1.5, "alpha": 1.0}
 
 
-def _measured(ax: Axes, view: CaseView, response: str, side: int) -> None:
+def _measured(panel: Panel, view: CaseView, response: str, side: int) -> None:
     case = view.measured
     if case is None or response not in case.mean:
         return
     mean, half = case.mean[response][side], case.half_width[response][side]
     sd = view.sd.get(response, np.zeros((2, mean.size)))[side]
     face = "none" if side else MEASURED
-    ax.fill_between(
+    panel.fill_between(
         case.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0, zorder=0
     )
     for sign in (-1, 1):
-        ax.plot(case.input, mean + sign * half, color=style.PALETTE["grey"], lw=0.4 if side else 0.7)
+        panel.plot(case.input, mean + sign * half, color=style.PALETTE["grey"], lw=0.4 if side else 0.7)
     step = max(1, mean.size // 20)
-    ax.plot(case.input[::step], mean[::step], "o", color=MEASURED, mfc=face, ms=2.6, mew=0.5)
+    panel.plot(case.input[::step], mean[::step], "", marker="o", color=MEASURED, mfc=face, ms=2.6, mew=0.5)
 
 
 def _handles(view: CaseView) -> list[Line2D | Patch]:

@@ -6,14 +6,15 @@ from itertools import groupby
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, Rectangle
+from matplotlib.patches import Patch
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting import style
 from doe_kc.reporting.correlation_characteristics import CharacteristicRow, characteristic_rows
+from doe_kc.reporting.panel import Panel
+from doe_kc.reporting.sheet import Sheet, sheet
+from doe_kc.reporting.words import Across
 from doe_kc.rounding import short
 
 REACH = 0.6
@@ -27,27 +28,27 @@ X0, X1 = 0.475, 0.79
 COLUMNS = {"unit": 0.235, "target": 0.345, "baseline": 0.405, "final": 0.462, "improvement": 0.865}
 
 
-def dna_figure(found: Correlation, study: str) -> Figure:
+def dna_figure(found: Correlation, study: str) -> Sheet:
     """One row a characteristic, normalised to its target; true numbers beside, improvement at the right."""
     rows = characteristic_rows(found)
     groups = [(name, list(members)) for name, members in groupby(rows, key=lambda r: r.load_case)]
     lines = len(rows) + len(groups)
     height = ROW * lines + 1.9
     margins = {"left": X0, "right": X1, "top": 1 - 1.0 / height, "bottom": 0.9 / height}
-    fig, axes = style.figure(1, 1, size=(8.27, height), margins=margins)
-    ax = axes[0, 0]
-    _frame(ax, lines)
+    page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
+    panel = panels[0, 0]
+    _frame(panel, lines)
     at = 0
     for name, members in groups:
-        ax.text(_across(0.02), at + 0.62, name, fontsize=8, fontweight="bold", va="center", clip_on=False)
+        panel.text(_across(0.02), at + 0.62, name, size=8.0, weight="bold", along="center")
         for k, row in enumerate(members, start=at + 1):
-            _row(ax, k + 0.5, row)
+            _row(panel, k + 0.5, row)
         at += len(members) + 1
-    _heads(ax)
-    _legend(fig)
-    fig.suptitle(f"Correlation DNA: {study}", fontsize=11, y=1 - 0.18 / height, va="top", parse_math=False)
-    fig.text(0.5, 1 - 0.42 / height, _summary(found), ha="center", va="top", fontsize=7.5, color="#555555")
-    return fig
+    _heads(panel)
+    _legend(page)
+    page.set_heading(f"Correlation DNA: {study}", 1 - 0.18 / height)
+    page.write(0.5, 1 - 0.42 / height, _summary(found), 7.5, "center", "top", color="#555555")
+    return page
 
 
 def _summary(found: Correlation) -> str:
@@ -62,66 +63,69 @@ def _across(x: float) -> float:
     return float(1 - REACH + (x - X0) / (X1 - X0) * 2 * REACH)
 
 
-def _frame(ax: Axes, lines: int) -> None:
-    ax.set_xlim(1 - REACH, 1 + REACH)
-    ax.set_ylim(lines, 0)
-    ax.set_yticks([])
-    ax.grid(visible=False, axis="y")
-    ax.spines["left"].set_visible(False)
-    ax.axvline(1.0, color=style.PALETTE["black"], lw=1.0, ls=(0, (4, 2)))
-    ax.set_xlabel("normalised to the target (1); default interval 1 ± 0.15")
+def _frame(panel: Panel, lines: int) -> None:
+    panel.x.set_limits(1 - REACH, 1 + REACH)
+    panel.y.set_limits(lines, 0)
+    panel.y.set_ticks([], [])
+    panel.spines["left"] = False
+    panel.vline(1.0, (0, (4, 2)), color=style.PALETTE["black"], lw=1.0)
+    panel.set_labels("normalised to the target (1); default interval 1 ± 0.15", None)
 
 
-def _heads(ax: Axes) -> None:
+def _heads(panel: Panel) -> None:
     for name, x in COLUMNS.items():
-        ha = "left" if name == "unit" else "right"
-        ax.text(_across(x), -0.15, name, fontsize=7, ha=ha, va="bottom", color="#555555")
+        side: Across = "left" if name == "unit" else "right"
+        panel.text(_across(x), -0.15, name, size=7.0, across=side, along="bottom", color="#555555")
 
 
-def _row(ax: Axes, y: float, row: CharacteristicRow) -> None:
+def _row(panel: Panel, y: float, row: CharacteristicRow) -> None:
     entry, (low, high) = row.entry, row.interval
     ends = sorted(row.normalized(v) for v in (low, high))
     ends = [float(np.clip(v, 1 - REACH, 1 + REACH)) for v in ends]
     fill: dict[str, Any] = (
-        {"fc": BAND} if row.constraint else {"fc": "none", "ec": BAND, "ls": ":", "lw": 0.7}
+        {"colors": [BAND]}
+        if row.constraint
+        else {"colors": ["none"], "edgecolors": BAND, "linestyles": ":", "linewidths": 0.7}
     )
-    ax.add_patch(Rectangle((ends[0], y - 0.36), ends[1] - ends[0], 0.72, **fill, zorder=0))
+    panel.bars(y, ends[0], ends[1], 0.72, **fill, zorder=0)
     places = [row.normalized(v) for v in (entry.baseline, entry.final)]
     if np.isfinite(places).all():
         shown = np.clip(places, 1 - REACH, 1 + REACH)
-        ax.plot(shown, [y, y], color="#8A9199", lw=0.8, zorder=1)
-        _marker(ax, places[0], y, BASELINE, "o")
-        _marker(ax, places[1], y, FINAL if row.inside or not row.constraint else WORSE, "D")
-    _texts(ax, y, row)
+        panel.plot(shown, [y, y], color="#8A9199", lw=0.8, zorder=1)
+        _marker(panel, places[0], y, BASELINE, "o")
+        _marker(panel, places[1], y, FINAL if row.inside or not row.constraint else WORSE, "D")
+    _texts(panel, y, row)
 
 
-def _marker(ax: Axes, place: float, y: float, colour: str, shape: str) -> None:
+def _marker(panel: Panel, place: float, y: float, colour: str, shape: str) -> None:
     """The value, or an arrow at the edge that it lies beyond."""
     beyond = abs(place - 1) > REACH
     shown = float(np.clip(place, 1 - REACH, 1 + REACH))
     mark = shape if not beyond else ">" if place > 1 else "<"
     face = "white" if shape == "o" and not beyond else colour
-    ax.plot([shown], [y], mark, color=colour, mfc=face, mew=1.1, ms=4.4, clip_on=False, zorder=3)
+    panel.plot(shown, y, "", marker=mark, color=colour, mfc=face, mew=1.1, ms=4.4, clip=False, zorder=3)
 
 
-def _texts(ax: Axes, y: float, row: CharacteristicRow) -> None:
+def _texts(panel: Panel, y: float, row: CharacteristicRow) -> None:
     entry = row.entry
     muted = "#000000" if entry.target.active or entry.sought else "#777777"
-    ax.text(_across(0.035), y, row.label, fontsize=7, va="center", color=muted, clip_on=False)
-    ax.text(_across(COLUMNS["unit"]), y, row.unit, fontsize=6.5, va="center", color="#555555")
+    panel.text(_across(0.035), y, row.label, size=7.0, along="center", color=muted)
+    panel.text(_across(COLUMNS["unit"]), y, row.unit, size=6.5, along="center", color="#555555")
     for name, value in (
         ("target", entry.target.value),
         ("baseline", entry.baseline),
         ("final", entry.final),
     ):
-        ax.text(_across(COLUMNS[name]), y, short(value), fontsize=6.5, va="center", ha="right", color=muted)
+        panel.text(
+            _across(COLUMNS[name]), y, short(value), size=6.5, across="right", along="center", color=muted
+        )
     words = f"{entry.percent:.1f} %" if np.isfinite(entry.percent) else "on target"
     weight, colour = ("bold", muted) if entry.counts else ("normal", "#777777")
-    ax.text(
-        _across(COLUMNS["improvement"]), y, words, fontsize=6.5, va="center", ha="right", color=colour,
-        fontweight=weight,
+    panel.text(
+        _across(COLUMNS["improvement"]), y, words, size=6.5, across="right", along="center", color=colour,
+        weight=weight,
     )  # fmt: skip
-    ax.text(_across(0.88), y, note(row), fontsize=6, va="center", color="#555555")
+    panel.text(_across(0.88), y, note(row), size=6.0, along="center", color="#555555")
 
 
 def note(row: CharacteristicRow) -> str:
@@ -133,9 +137,9 @@ def note(row: CharacteristicRow) -> str:
     return "" if row.entry.counts else "baseline within 3 sd"
 
 
-def _legend(fig: Figure) -> None:
+def _legend(page: Sheet) -> None:
     line: dict[str, Any] = {"ls": "", "ms": 4.4}
-    handles = [
+    handles: list[Line2D | Patch] = [
         Line2D([], [], marker="o", color=BASELINE, mfc="white", label="baseline", **line),
         Line2D([], [], marker="D", color=FINAL, label="final", **line),
         Line2D([], [], marker="D", color=WORSE, label="final, constraint violated", **line),
@@ -144,12 +148,4 @@ def _legend(fig: Figure) -> None:
         Patch(fc="none", ec=BAND, ls=":", label="interval, not a constraint"),
         Line2D([], [], marker=">", color="#555555", label="beyond the axis", **line),
     ]
-    fig.legend(
-        handles=handles,
-        loc="lower center",
-        ncols=7,
-        fontsize=6.5,
-        handletextpad=0.4,
-        columnspacing=1.2,
-        frameon=False,
-    )
+    page.add_legend(handles, 7, 6.5, handletextpad=0.4, columnspacing=1.2)

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
@@ -20,16 +18,20 @@ from doe_kc.reporting.correlation_curves import BAND
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_views import ModelView, model_views, view_gaps
 from doe_kc.reporting.names import case_label, response_name
-from doe_kc.reporting.plain_axes import draw_plain_axes
+from doe_kc.reporting.panel import Box, Dash, Panel
+from doe_kc.reporting.panel_axis import ticks
+from doe_kc.reporting.sheet import Sheet, sheet
+from doe_kc.reporting.words import POINTS
 from doe_kc.typing import FloatArray
 
 SHOWN = 6
 PER_CASE = 2
+COLUMNS = 3
 HEAD, FOOT, PAIR = 0.45, 0.5, 3.65
 """Inches of the title of all, of the legend, and of a curve with its deviation."""
 TITLE, CURVE, GAP, DEVIATION = 0.42, 1.72, 0.13, 0.8
 """Inches of the parts of a pair from above; numbers and name of the input have the rest."""
-DASHES = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
+DASHES: Mapping[str, Dash] = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
 WORDS = {
     "tuned": "re-tuned without an effect",
     "with_effect": "with the effect",
@@ -89,69 +91,64 @@ def worst_views(found: Discovery) -> list[WorstView]:
     return out
 
 
-def curve_figure(worst: Sequence[WorstView], study: str) -> Figure:
+def curve_figure(worst: Sequence[WorstView], study: str) -> Sheet:
     """Two rows of three curves, each with its deviation from the measured one below."""
-    columns, rows = 3, max(1, -(-len(worst) // 3))
+    rows = max(1, -(-len(worst) // COLUMNS))
     height = HEAD + PAIR * rows + FOOT
     margins = {"left": 0.065, "right": 0.985, "wspace": 0.3}
-    fig, axes = style.figure(2 * rows, columns, size=(11.69, height), share_x=False, margins=margins)
-    _place(axes, height)
-    for k in range(columns * rows):
-        top, below = axes[2 * (k // columns), k % columns], axes[2 * (k // columns) + 1, k % columns]
-        if k >= len(worst):
-            top.set_axis_off()
-            below.set_axis_off()
-            continue
-        _curve(top, worst[k])
-        _deviation(below, worst[k])
-    fig.legend(handles=_handles(worst), loc="lower center", ncols=6, fontsize=7.5, frameon=False)
-    title = f"Curves that re-tuning explains worst: {study}"
-    fig.suptitle(title, fontsize=11, y=1.0 - 0.12 / height, va="top", parse_math=False)
-    draw_plain_axes(fig)
-    return fig
+    page, panels = sheet(2 * rows, COLUMNS, size=(11.69, height), share_x=False, margins=margins)
+    _place(panels, height)
+    for k, one in enumerate(worst):
+        row, column = divmod(k, COLUMNS)
+        _curve(panels[2 * row, column], one)
+        _deviation(panels[2 * row + 1, column], one)
+    shown = [p for k in range(len(worst)) for p in panels[2 * (k // COLUMNS) :, k % COLUMNS][:2]]
+    page.panels[:] = [p for p in page.panels if any(p is s for s in shown)]
+    page.add_legend(_handles(worst), 6, 7.5)
+    page.set_heading(f"Curves that re-tuning explains worst: {study}", 1.0 - 0.12 / height)
+    return page
 
 
-def _place(axes: NDArray[Any], height: float) -> None:
+def _place(panels: NDArray[Any], height: float) -> None:
     """A deviation close below its curve, room for a title above the curve and for the input's name between
     the pairs; height: of the page, inches."""
-    for row, panels in enumerate(axes):
+    for row, members in enumerate(panels):
         pair, below = divmod(row, 2)
         tall, low = (DEVIATION, CURVE + GAP + DEVIATION) if below else (CURVE, CURVE)
         bottom = height - HEAD - PAIR * pair - TITLE - low
-        for ax in panels:
-            box = ax.get_position()
-            ax.set_position((box.x0, bottom / height, box.width, tall / height))
+        for panel in members:
+            panel.box = Box(panel.box.left, bottom * POINTS, panel.box.width, tall * POINTS)
 
 
-def _curve(ax: Axes, worst: WorstView) -> None:
+def _curve(panel: Panel, worst: WorstView) -> None:
     view, side = worst.view, worst.side
     mean, sd = view.measured[side], view.sd[side]
-    ax.fill_between(view.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0)
+    panel.fill_between(view.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0)
     if worst.half is not None:
         for sign in (-1.0, 1.0):
-            ax.plot(view.input, mean + sign * worst.half, color=style.PALETTE["grey"], lw=0.6)
+            panel.plot(view.input, mean + sign * worst.half, color=style.PALETTE["grey"], lw=0.6)
     for name, dash in DASHES.items():
         if name in view.models:
-            ax.plot(view.input, view.models[name][side], dash, color=COLOURS[name], lw=1.4)
+            panel.plot(view.input, view.models[name][side], dash, color=COLOURS[name], lw=1.4)
     step = max(1, mean.size // 22)
-    ax.plot(view.input[::step], mean[::step], "o", color="black", ms=2.4, mew=0.0, zorder=4)
-    ax.set_title(worst.title, fontsize=8.5, y=1.0)
-    style.label(ax, None, worst.label)
-    ax.tick_params(labelbottom=False)
-    ax.xaxis.set_major_locator(style.ticks(6))
-    ax.yaxis.set_major_locator(style.ticks(6))
+    panel.plot(view.input[::step], mean[::step], "", marker="o", color="black", ms=2.4, mew=0.0, zorder=4)
+    panel.set_title(worst.title, size=8.5)
+    panel.set_labels(None, worst.label)
+    panel.numbers["x"] = False
+    panel.x.set_locator(ticks(6))
+    panel.y.set_locator(ticks(6))
 
 
-def _deviation(ax: Axes, worst: WorstView) -> None:
+def _deviation(panel: Panel, worst: WorstView) -> None:
     view = worst.view
-    ax.axhspan(-BAND, BAND, color="#DDDDDD", lw=0, zorder=0)
-    ax.axhline(0.0, color="black", lw=0.6)
+    panel.hspan(-BAND, BAND, color="#DDDDDD", zorder=0)
+    panel.hline(0.0, color="black", lw=0.6)
     for name, dash in DASHES.items():
         if name in view.models:
-            ax.plot(view.input, view.deviation(name)[worst.side], dash, color=COLOURS[name], lw=1.2)
-    style.label(ax, view.input_label, "model − measured\n[sd of the noise]")
-    ax.xaxis.set_major_locator(style.ticks(6))
-    ax.yaxis.set_major_locator(style.ticks(4))
+            panel.plot(view.input, view.deviation(name)[worst.side], dash, color=COLOURS[name], lw=1.2)
+    panel.set_labels(view.input_label, "model − measured\n[sd of the noise]")
+    panel.x.set_locator(ticks(6))
+    panel.y.set_locator(ticks(4))
 
 
 def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:

@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from textwrap import fill
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -16,11 +14,18 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.search import Step, threshold
 from doe_kc.reporting import style
 from doe_kc.reporting.discovery_words import hypothesis_label
+from doe_kc.reporting.panel import Box, Panel
+from doe_kc.reporting.panel_axis import PanelAxis
+from doe_kc.reporting.sheet import Sheet
+from doe_kc.reporting.words import POINTS, text_width
 
 SHOWN = 9
 """Candidates of a step, best first."""
 REFITTED, SCREENED, CHOSEN = style.PALETTE["orange"], "#DDE1E5", style.PALETTE["blue"]
-ROW = 0.2
+ROW, HEAD, LINE, TOP, FOOT, WIDTH = 0.2, 0.24, 0.145, 0.3, 0.75, 8.27
+"""Inches: a candidate; above a panel, and a line of its title; title and foot of the page; its width."""
+EDGE = 9.0
+"""Points beside panels and their names."""
 TITLE = 78
 """Characters of a line of a panel's title."""
 LEAST = -2.0
@@ -70,53 +75,57 @@ def _candidates(step: Step) -> tuple[Candidate, ...]:
     return tuple(rows[:SHOWN])
 
 
-def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Figure:
+def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
     """One panel a step; the axis is linear about zero and logarithmic beyond."""
-    rows = [max(len(s.candidates), 1) for s in steps]
-    height = ROW * sum(rows) + 0.7 * len(steps) + 1.1
-    fig, axes = style.figure(len(steps), 1, size=(8.27, height), share_x=True)
-    grid = axes[0, 0].get_gridspec()
-    grid.set_height_ratios(rows)
+    titles = [fill(s.title, TITLE) for s in steps]
+    heads = [HEAD + LINE * (t.count("\n") + 1) for t in titles]
+    deep = [ROW * max(len(s.candidates), 1) for s in steps]
+    height = TOP + sum(heads) + sum(deep) + FOOT
+    page = Sheet((WIDTH, height))
+    widest = max((text_width(c.label, 7.0) for s in steps for c in s.candidates), default=0.0)
+    left = widest + EDGE
     largest = max((c.gain for s in steps for c in s.candidates if np.isfinite(c.gain)), default=1.0)
-    for ax, step in zip(axes[:, 0], steps, strict=True):
-        _panel(ax, step, largest)
-    axes[-1, 0].set_xlabel("ln evidence gained over the model without it")
-    axes[-1, 0].tick_params(labelbottom=True)
-    handles = [
+    axis, top = PanelAxis(), height - TOP
+    for step, title, head, tall in zip(steps, titles, heads, deep, strict=True):
+        top -= head + tall
+        box = Box(left, top * POINTS, page.width - left - EDGE, tall * POINTS)
+        _panel(page.add_panel(box, axis), step, title, largest)
+    for panel in page.panels[:-1]:
+        panel.numbers["x"] = False
+    page.panels[-1].set_labels("ln evidence gained over the model without it", None)
+    handles: list[Line2D | Patch] = [
         Patch(color=CHOSEN, label="taken into the model"),
         Patch(color=REFITTED, label="refitted jointly, not taken"),
         Patch(fc=SCREENED, ec="#8A9199", label="screened only"),
         Line2D([], [], color="black", ls="--", lw=0.9, label="needed among so many candidates"),
     ]
-    fig.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, frameon=False)
-    fig.suptitle(f"Evidence for effects: {study}", fontsize=11, parse_math=False)
-    return fig
+    page.add_legend(handles, 4)
+    page.set_heading(f"Evidence for effects: {study}", 1 - 0.06 / height)
+    return page
 
 
-def _panel(ax: Axes, step: EvidenceStep, largest: float) -> None:
-    ax.set_xscale("symlog", linthresh=10.0, linscale=1.0)
-    ax.set_xlim(LEAST, max(20.0, 8.0 * largest))
+def _panel(panel: Panel, step: EvidenceStep, title: str, largest: float) -> None:
+    panel.x.set_symmetrical_logarithmic(10.0)
+    panel.x.set_limits(LEAST, max(20.0, 8.0 * largest))
     ticks = [t for t in (0, 10, 100, 1000, 10**4, 10**5, 10**6) if t < 8.0 * largest]
-    ax.set_xticks(ticks, [f"{t:,}".replace(",", " ") for t in ticks])
-    ax.set_ylim(max(len(step.candidates), 1), 0)
-    ax.set_title(fill(step.title, TITLE), loc="left", fontsize=8.5, fontweight="bold", parse_math=False)
-    ax.grid(visible=False, axis="y")
-    ax.minorticks_off()
-    ax.tick_params(axis="y", length=0)
-    ax.set_yticks([i + 0.5 for i in range(len(step.candidates))], [c.label for c in step.candidates])
-    ax.axvline(0.0, color="#8A9199", lw=0.7)
-    ax.axvline(step.needed, color="black", lw=0.9, ls=(0, (4, 2)))
+    panel.x.set_ticks(ticks, [f"{t:,}".replace(",", " ") for t in ticks])
+    panel.y.set_limits(max(len(step.candidates), 1), 0)
+    panel.set_title(title, size=8.5, weight="bold", across="left")
+    panel.grid["y"] = panel.marks["y"] = False
+    panel.y.set_ticks([i + 0.5 for i in range(len(step.candidates))], [c.label for c in step.candidates])
+    panel.vline(0.0, color="#8A9199", lw=0.7)
+    panel.vline(step.needed, (0, (4, 2)), color="black", lw=0.9)
     for y, candidate in enumerate(step.candidates):
-        _bar(ax, y + 0.5, candidate)
+        _bar(panel, y + 0.5, candidate)
 
 
-def _bar(ax: Axes, y: float, candidate: Candidate) -> None:
+def _bar(panel: Panel, y: float, candidate: Candidate) -> None:
     colour = CHOSEN if candidate.accepted else REFITTED if candidate.refitted else SCREENED
     edge = "#8A9199" if not candidate.refitted else colour
     shown = float(np.clip(candidate.gain, LEAST, None)) if np.isfinite(candidate.gain) else LEAST
-    ax.barh(y, shown, height=0.68, color=colour, ec=edge, lw=0.5, zorder=2)
+    panel.bars(y, 0.0, shown, 0.68, [colour], edgecolors=edge, linewidths=0.5, zorder=2)
     text = f"{candidate.gain:,.{1 if abs(candidate.gain) < 1000 else 0}f}".replace("-0.0", "0.0")
-    ax.annotate(
-        text.replace("-", "−").replace(",", " "), (max(shown, 0.0), y), xytext=(4, 0),
-        textcoords="offset points", fontsize=6.5, va="center", color="#333333",
+    panel.text(
+        max(shown, 0.0), y, text.replace("-", "−").replace(",", " "), shift=(4.0, 0.0), size=6.5,
+        along="center", color="#333333",
     )  # fmt: skip

@@ -5,15 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
-from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.typing import ColorType
 
-from doe_kc.reporting import style
+from doe_kc.reporting.color_scale import STRIPS, draw_color_scale, outline
 from doe_kc.reporting.discovery_grid import GridCell, MapGrid
 from doe_kc.reporting.names import case_label, response_name
+from doe_kc.reporting.panel import Box, Panel
+from doe_kc.reporting.sheet import Sheet, sheet
+from doe_kc.reporting.words import POINTS
 
 COLOURS = LinearSegmentedColormap.from_list("disagreement", ["#FFF3DC", "#F2A23C", "#D55E00", "#6B1F00"])
 """One hue from light to dark: told apart by the colour-blind and in grey."""
@@ -30,7 +31,7 @@ NOTE = (
 )
 
 
-def heat_map_figure(grids: Sequence[MapGrid], study: str) -> Figure:
+def heat_map_figure(grids: Sequence[MapGrid], study: str) -> Sheet:
     """One panel a map, one colour scale for all; grey cells are noise, empty ones not measured."""
     cases = max((g.cases for g in grids), key=len)
     responses = max((g.responses for g in grids), key=len)
@@ -39,48 +40,48 @@ def heat_map_figure(grids: Sequence[MapGrid], study: str) -> Figure:
     height = TOP + len(grids) * deep + (len(grids) - 1) * BETWEEN + BOTTOM
     margins = {"left": LEFT / width, "right": 1 - RIGHT / width, "top": 1 - TOP / height}
     margins |= {"bottom": BOTTOM / height, "hspace": BETWEEN / deep}
-    fig, axes = style.figure(len(grids), 1, size=(width, height), margins=margins)
+    page, panels = sheet(len(grids), 1, size=(width, height), margins=margins)
     norm = LogNorm(min(g.threshold for g in grids), max(_largest(grids), 10.0 * grids[0].threshold))
-    for ax, grid in zip(axes[:, 0], grids, strict=True):
-        _panel(ax, grid, cases, responses, norm)
-    _scale(fig, norm, width, height)
-    title = f"Disagreement of model and records: {study}"
-    fig.suptitle(title, fontsize=11, y=1 - 0.12 / height, va="top", parse_math=False)
-    return fig
+    for panel, grid in zip(panels[:, 0], grids, strict=True):
+        _panel(panel, grid, cases, responses, norm)
+    _scale(page, norm)
+    page.set_heading(f"Disagreement of model and records: {study}", 1 - 0.12 / height)
+    return page
 
 
 def _largest(grids: Sequence[MapGrid]) -> float:
     return max((abs(c.z) for g in grids for c in g.cells.values()), default=1.0)
 
 
-def _panel(ax: Axes, grid: MapGrid, cases: Sequence[str], responses: Sequence[str], norm: LogNorm) -> None:
-    ax.set_xlim(0, len(responses))
-    ax.set_ylim(len(cases), 0)
-    ax.grid(visible=False)
-    ax.spines[:].set_visible(False)
-    ax.tick_params(length=0, labelbottom=True)
-    ax.set_xticks(np.arange(len(responses)) + 0.5, [response_name(r).capitalize() for r in responses])
-    ax.set_yticks(np.arange(len(cases)) + 0.5, [case_label(c) for c in cases])
+def _panel(
+    panel: Panel, grid: MapGrid, cases: Sequence[str], responses: Sequence[str], norm: LogNorm
+) -> None:
+    panel.x.set_limits(0, len(responses))
+    panel.y.set_limits(len(cases), 0)
+    panel.spines = dict.fromkeys(panel.spines, False)
+    panel.grid, panel.marks = dict.fromkeys(panel.grid, False), dict.fromkeys(panel.marks, False)
+    panel.numbers["x"] = True
+    panel.x.set_ticks(np.arange(len(responses)) + 0.5, [response_name(r).capitalize() for r in responses])
+    panel.y.set_ticks(np.arange(len(cases)) + 0.5, [case_label(c) for c in cases])
+    corners, colors = [], []
     for i, case in enumerate(cases):
         for j, response in enumerate(responses):
             cell = grid.cells.get((case, response))
-            _cell(ax, j, i, cell, grid.threshold, norm)
-    words = (
-        "noise alone explains all" if not grid.beyond else f"{grid.beyond} of {len(grid.cells)} beyond noise"
-    )
-    ax.set_title(f"{grid.title}: {words}", loc="left", fontsize=9, fontweight="bold")
+            corners.append([(j, i), (j + 1, i), (j + 1, i + 1), (j, i + 1)])
+            colors.append(_cell(panel, j, i, cell, grid.threshold, norm))
+    panel.add(PolyCollection(corners, facecolors=colors, edgecolors="white", linewidths=1.5))
+    panel.set_title(f"{grid.title}: {beyond_words(grid)}", weight="bold", across="left")
 
 
-def _cell(ax: Axes, x: int, y: int, cell: GridCell | None, threshold: float, norm: LogNorm) -> None:
-    quiet = cell is None or abs(cell.z) <= threshold
-    colour = ABSORBED if cell is None else QUIET if quiet else COLOURS(norm(abs(cell.z)))
-    ax.add_patch(Rectangle((x, y), 1, 1, fc=colour, ec="white", lw=1.5))
+def _cell(panel: Panel, x: int, y: int, cell: GridCell | None, threshold: float, norm: LogNorm) -> ColorType:
+    """The colour of a cell, whose words are written."""
     if cell is None:
-        return
+        return ABSORBED
+    quiet = abs(cell.z) <= threshold
     ink = "#6B757E" if quiet else "white" if float(norm(abs(cell.z))) > 0.6 else "black"
-    size = signed(cell.z)
-    ax.text(x + 0.5, y + 0.36, size, ha="center", va="center", fontsize=7.5, color=ink)
-    ax.text(x + 0.5, y + 0.74, shape_words(cell), ha="center", va="center", fontsize=6, color=ink)
+    for down, size, word in ((0.36, 7.5, signed(cell.z)), (0.74, 6.0, shape_words(cell))):
+        panel.text(x + 0.5, y + down, word, size=size, across="center", along="center", color=ink)
+    return QUIET if quiet else COLOURS(norm(abs(cell.z)))
 
 
 def beyond_words(grid: MapGrid) -> str:
@@ -101,12 +102,15 @@ def shape_words(cell: GridCell) -> str:
     return shape if cell.contrast.wheels == "both" else f"{shape}, L−R"
 
 
-def _scale(fig: Figure, norm: LogNorm, width: float, height: float) -> None:
-    inside = (LEFT / width, 0.95 / height, 1 - (LEFT + RIGHT) / width, 0.13 / height)
-    bar = fig.colorbar(ScalarMappable(norm, COLOURS), cax=fig.add_axes(inside), orientation="horizontal")
-    ticks = [t for t in TICKS if norm.vmin is not None and norm.vmin <= t <= (norm.vmax or t)]
-    bar.set_ticks(ticks, labels=[f"{t:g}" for t in ticks], minor=False)
-    bar.minorticks_off()
-    bar.set_label("largest |z| over shapes and wheels, standard deviations of the noise", fontsize=7)
-    bar.ax.tick_params(labelsize=6.5)
-    fig.text(0.02, 0.08 / height, NOTE, fontsize=6.5, color="#555555", va="bottom")
+def _scale(page: Sheet, norm: LogNorm) -> None:
+    low, high = float(norm.vmin or 1.0), float(norm.vmax or 10.0)
+    box = Box(LEFT * POINTS, 0.95 * POINTS, page.width - (LEFT + RIGHT) * POINTS, 0.13 * POINTS)
+    panel = page.add_panel(box)
+    panel.x.set_logarithmic()
+    draw_color_scale(panel, np.geomspace(low, high, STRIPS + 1), COLOURS(np.linspace(0.0, 1.0, STRIPS)))
+    outline(panel)
+    ticks = [t for t in TICKS if low <= t <= high]
+    panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
+    panel.number_size["x"] = 6.5
+    panel.set_labels("largest |z| over shapes and wheels, standard deviations of the noise", None, 7.0)
+    page.write(0.02, 0.08 * POINTS / page.height, NOTE, 6.5, along="bottom", color="#555555")

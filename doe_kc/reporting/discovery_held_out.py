@@ -4,54 +4,48 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from doe_kc.discovery.held_out import HeldOut
-from doe_kc.reporting import style
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.names import case_label
+from doe_kc.reporting.panel import Panel
+from doe_kc.reporting.sheet import Sheet, sheet
 
 ROW = 0.3
 TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 
 
-def held_out_figure(cases: Sequence[HeldOut], study: str) -> Figure:
+def held_out_figure(cases: Sequence[HeldOut], study: str) -> Sheet:
     """A row a load case: predicted RMS of the re-tuned model and of the one with the effect, log axis."""
     height = ROW * max(len(cases), 2) + 1.45
     margins = {"left": 0.23, "right": 0.83, "top": 1 - 0.65 / height, "bottom": 0.8 / height}
-    fig, axes = style.figure(1, 1, size=(8.27, height), margins=margins)
-    ax = axes[0, 0]
-    ax.set_xscale("log")
+    page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
+    panel = panels[0, 0]
+    panel.x.set_logarithmic()
     highest = 1.4 * max([3.0, *(max(h.tuned.rms, h.with_effect.rms) for h in cases)])
-    ax.set_xlim(min([0.75, *(0.9 * h.with_effect.rms for h in cases)]), highest)
+    panel.x.set_limits(min([0.75, *(0.9 * h.with_effect.rms for h in cases)]), highest)
     ticks = [t for t in TICKS if t <= highest]
-    ax.set_xticks(ticks, [str(t) for t in ticks])
-    ax.minorticks_off()
-    ax.set_ylim(max(len(cases), 1), 0)
-    ax.grid(visible=False, axis="y")
-    ax.tick_params(axis="y", length=0)
-    ax.set_yticks([i + 0.5 for i in range(len(cases))], [case_label(h.load_case) for h in cases])
-    ax.axvline(1.0, color="black", lw=0.9, ls=(0, (4, 2)), zorder=1)
+    panel.x.set_ticks(ticks, [str(t) for t in ticks])
+    panel.y.set_limits(max(len(cases), 1), 0)
+    panel.grid["y"] = panel.marks["y"] = False
+    panel.y.set_ticks([i + 0.5 for i in range(len(cases))], [case_label(h.load_case) for h in cases])
+    panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=1)
     for y, held in enumerate(cases):
-        one, two = held.tuned.rms, held.with_effect.rms
-        ax.annotate(
-            "", (two, y + 0.5), (one, y + 0.5), arrowprops={"arrowstyle": "-", "color": "#C9CED3", "lw": 1.2}
-        )
-        ax.plot([one], [y + 0.5], "o", color=COLOURS["tuned"], mfc="white", ms=5, mew=1.3)
-        ax.plot([two], [y + 0.5], "D", color=COLOURS["with_effect"], ms=4.5)
-        ax.text(
-            1.02, y + 0.5, gain_words(held.gain), transform=ax.get_yaxis_transform(), fontsize=7, va="center"
-        )
-    ax.text(
-        1.02, -0.15, "gain, ln density", transform=ax.get_yaxis_transform(), fontsize=6.5, color="#555555"
-    )
-    ax.set_xlabel("RMS of the held-out records, in standard deviations of their prediction")
-    fig.legend(handles=_handles(), loc="lower center", ncols=3, fontsize=7, frameon=False)
-    fig.suptitle(
-        f"Load cases held out: {study}", fontsize=11, y=1 - 0.12 / height, va="top", parse_math=False
-    )
-    return fig
+        _row(panel, y + 0.5, held)
+    panel.text(1.02, -0.15, "gain, ln density", scales=("panel", "data"), size=6.5, color="#555555")
+    panel.set_labels("RMS of the held-out records, in standard deviations of their prediction", None)
+    page.add_legend(_handles(), 3)
+    page.set_heading(f"Load cases held out: {study}", 1 - 0.12 / height)
+    return page
+
+
+def _row(panel: Panel, y: float, held: HeldOut) -> None:
+    one, two = held.tuned.rms, held.with_effect.rms
+    panel.plot([one, two], [y, y], color="#C9CED3", lw=1.2)
+    panel.plot(one, y, "", marker="o", color=COLOURS["tuned"], mfc="white", ms=5, mew=1.3)
+    panel.plot(two, y, "", marker="D", color=COLOURS["with_effect"], ms=4.5)
+    panel.text(1.02, y, gain_words(held.gain), scales=("panel", "data"), size=7.0, along="center")
 
 
 def gain_words(gain: float) -> str:

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
+from matplotlib.collections import QuadMesh
 from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -18,7 +16,11 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.standing import Status
 from doe_kc.effects import EFFECTS
 from doe_kc.reporting import style
+from doe_kc.reporting.color_scale import draw_color_scale, outline
 from doe_kc.reporting.discovery_words import hypothesis_label
+from doe_kc.reporting.panel import Box, Panel
+from doe_kc.reporting.sheet import Sheet, sheet
+from doe_kc.reporting.words import POINTS
 from doe_kc.typing import FloatArray
 
 VISIBLE = 1.0
@@ -81,69 +83,70 @@ def _changes(found: Discovery) -> dict[str, FloatArray]:
     }
 
 
-def isolability_figure(table: Isolability, study: str) -> Figure:
+def isolability_figure(table: Isolability, study: str) -> Sheet:
     """Matrix of |correlation| on the left, detectable sizes on the right, one row a hypothesis."""
     count = len(table.labels)
     deep = ROW * count
     height, width = deep + 2.2, 3.25 + deep + 2.6
     margins = {"left": 3.0 / width, "right": 1 - 0.25 / width, "top": 1 - 0.7 / height}
     margins |= {"bottom": 1.5 / height, "wspace": 0.03}
-    fig, axes = style.figure(1, 2, size=(width, height), margins=margins, share_x=False,
-                             width_ratios=(deep, 2.4))  # fmt: skip
-    _matrix(axes[0, 0], table)
-    _sizes(axes[0, 1], table)
-    _scale(fig, width, height)
+    page, panels = sheet(1, 2, size=(width, height), margins=margins, share_x=False,
+                         width_ratios=(deep, 2.4))  # fmt: skip
+    _matrix(panels[0, 0], table)
+    _sizes(panels[0, 1], table)
+    _scale(page)
     present = [s for s in BARS if s in table.statuses]
     handles: list[Line2D | Patch] = [Patch(color=BARS[s], label=s) for s in present]
     handles.append(Line2D([], [], color="black", ls="--", lw=0.9, label="typical size"))
-    fig.legend(handles=handles, loc="lower right", ncols=len(handles), fontsize=7, frameon=False)
-    fig.suptitle(f"What these records can tell apart: {study}", fontsize=11, y=1 - 0.12 / height, va="top",
-                 parse_math=False)  # fmt: skip
-    return fig
+    page.add_legend(handles, len(handles), corner=("right", "bottom"))
+    page.set_heading(f"What these records can tell apart: {study}", 1 - 0.12 / height)
+    return page
 
 
-def _matrix(ax: Axes, table: Isolability) -> None:
+def _matrix(panel: Panel, table: Isolability) -> None:
     count = len(table.labels)
-    ax.set_facecolor("#E4E7EA")
-    norm = BoundaryNorm(LEVELS, COLOURS.N)
-    ax.pcolormesh(np.arange(count + 1), np.arange(count + 1), np.ma.masked_invalid(table.correlation),
-                  cmap=COLOURS, norm=norm, edgecolors="#ECEFF1", linewidth=0.3)  # fmt: skip
-    ax.set_xlim(0, count)
-    ax.set_ylim(count, 0)
-    ax.grid(visible=False)
-    ax.tick_params(length=0)
+    panel.background = "#E4E7EA"
+    edges = np.stack(np.meshgrid(np.arange(count + 1), np.arange(count + 1)), axis=-1)
+    panel.add(
+        QuadMesh(edges, array=np.ma.masked_invalid(table.correlation), cmap=COLOURS,
+                 norm=BoundaryNorm(LEVELS, COLOURS.N), edgecolors="#ECEFF1", linewidth=0.3)
+    )  # fmt: skip
+    panel.x.set_limits(0, count)
+    panel.y.set_limits(count, 0)
+    panel.grid, panel.marks = dict.fromkeys(panel.grid, False), dict.fromkeys(panel.marks, False)
+    panel.number_size = {"x": 5.5, "y": 6.5}
     places = np.arange(count) + 0.5
-    ax.set_yticks(places, [f"{label}  {i}" for i, label in enumerate(table.labels, start=1)], fontsize=6.5)
-    ax.set_xticks(places, [str(i) for i in range(1, count + 1)], fontsize=5.5)
-    for text, status in zip(ax.get_yticklabels(), table.statuses, strict=True):
-        text.set_fontweight("bold" if status == "found" else "normal")
-    ax.set_title("|correlation| of the changes that re-tuning leaves", fontsize=8.5)
+    names = [f"{label}  {i}" for i, label in enumerate(table.labels, start=1)]
+    panel.y.set_ticks(places, names, [status == "found" for status in table.statuses])
+    panel.x.set_ticks(places, [str(i) for i in range(1, count + 1)])
+    panel.set_title("|correlation| of the changes that re-tuning leaves", size=8.5)
 
 
-def _sizes(ax: Axes, table: Isolability) -> None:
-    ax.set_xscale("log")
-    ax.set_xlim(SMALLEST, LARGEST)
-    ax.set_ylim(len(table.labels), 0)
-    ax.set_yticks([])
-    ax.minorticks_off()
+def _sizes(panel: Panel, table: Isolability) -> None:
+    panel.x.set_logarithmic()
+    panel.x.set_limits(SMALLEST, LARGEST)
+    panel.y.set_limits(len(table.labels), 0)
+    panel.y.set_ticks([], [])
     ticks = (0.001, 0.01, 0.1, 1.0, 10.0, 100.0)
-    ax.set_xticks(ticks, [f"{t:g}" for t in ticks])
-    ax.grid(visible=False, axis="y")
-    for i, (size, status) in enumerate(zip(table.detectable, table.statuses, strict=True)):
-        shown = float(np.clip(size, SMALLEST, LARGEST))
-        ax.barh(i + 0.5, shown - SMALLEST, left=SMALLEST, height=0.7, color=BARS[status], zorder=2)
-        if size > LARGEST:
-            ax.plot([LARGEST * 0.8], [i + 0.5], ">", color="white", ms=2.6, zorder=3)
-    ax.axvline(1.0, color="black", lw=0.9, ls=(0, (4, 2)), zorder=4)
-    ax.set_xlabel("smallest size that would be found,\nas a multiple of the typical one")
-    ax.set_title("Detectable size", fontsize=8.5)
+    panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
+    places = np.arange(len(table.labels)) + 0.5
+    shown = np.clip(table.detectable, SMALLEST, LARGEST)
+    panel.bars(places, SMALLEST, shown, 0.7, [BARS[s] for s in table.statuses], zorder=2)
+    beyond = places[table.detectable > LARGEST]
+    panel.plot(np.full(beyond.size, LARGEST * 0.8), beyond, "", marker=">", color="white", ms=2.6, zorder=3)
+    panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=4)
+    panel.set_labels("smallest size that would be found,\nas a multiple of the typical one", None)
+    panel.set_title("Detectable size", size=8.5)
 
 
-def _scale(fig: Figure, width: float, height: float) -> None:
-    norm = BoundaryNorm(LEVELS, COLOURS.N)
-    place = (3.0 / width, 0.95 / height, 2.6 / width, 0.12 / height)
-    bar = fig.colorbar(ScalarMappable(norm, COLOURS), cax=fig.add_axes(place), orientation="horizontal")
-    bar.set_ticks(LEVELS, labels=[f"{v:g}" for v in LEVELS])
-    bar.set_label("|correlation|; near 1: cannot be told apart", fontsize=6.5)
-    bar.ax.tick_params(labelsize=5.5)
-    fig.text(3.0 / width, 0.42 / height, "grey: re-tuning absorbs the effect (nearly) wholly", fontsize=6.5)
+def _scale(page: Sheet) -> None:
+    """Every level is as wide as the next."""
+    panel = page.add_panel(Box(3.0 * POINTS, 0.95 * POINTS, 2.6 * POINTS, 0.12 * POINTS))
+    edges = np.arange(float(len(LEVELS)))
+    draw_color_scale(panel, edges, COLOURS(np.arange(COLOURS.N)))
+    outline(panel)
+    panel.x.set_ticks(edges, [f"{v:g}" for v in LEVELS])
+    panel.number_size["x"] = 5.5
+    panel.set_labels("|correlation|; near 1: cannot be told apart", None, 6.5)
+    words = "grey: re-tuning absorbs the effect (nearly) wholly"
+    page.write(3.0 * POINTS / page.width, 0.42 * POINTS / page.height, words, 6.5)

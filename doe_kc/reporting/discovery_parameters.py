@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
+from matplotlib.patches import FancyArrowPatch, Patch
 
 from doe_kc.discovery.gaps import RETURNS_FROM
 from doe_kc.reporting import style
 from doe_kc.reporting.discovery_gaps import COLOURS
 from doe_kc.reporting.discovery_tables import TunedParameter
+from doe_kc.reporting.panel import Panel
+from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.rounding import short, unit_words
 
 SHOWN = 40
@@ -34,42 +34,44 @@ def _away(p: TunedParameter) -> float:
     return abs(p.with_effect_distance) - abs(p.tuned_distance)
 
 
-def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Figure:
+def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
     """An arrow a parameter, from the re-tuned model to the one with the effect, in sd of the prior."""
     rows = moved_parameters(parameters)
     height = ROW * max(len(rows), 4) + 1.75
     margins = {"left": 0.15, "right": 0.66, "top": 1 - 0.75 / height, "bottom": 0.95 / height}
-    fig, axes = style.figure(1, 1, size=(8.27, height), margins=margins)
-    ax = axes[0, 0]
+    page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
+    panel = panels[0, 0]
     reach = max(2.0, 1.08 * max((p.moved for p in rows), default=1.0))
-    ax.set_xlim(-reach, reach)
-    ax.set_ylim(max(len(rows), 1), 0)
-    ax.axvspan(-1, 1, color="#EEF1F3", lw=0, zorder=0)
-    ax.axvline(0.0, color="black", lw=0.8, zorder=1)
-    ax.grid(visible=False, axis="y")
-    ax.tick_params(axis="y", length=0)
-    ax.set_yticks([i + 0.5 for i in range(len(rows))], [p.path for p in rows], fontsize=6.5)
-    ax.set_xlabel("distance from nominal, standard deviations of its prior")
+    panel.x.set_limits(-reach, reach)
+    panel.y.set_limits(max(len(rows), 1), 0)
+    panel.vspan(-1, 1, color="#EEF1F3", zorder=0)
+    panel.vline(0.0, color="black", lw=0.8, zorder=1)
+    panel.grid["y"] = panel.marks["y"] = False
+    panel.y.set_ticks([i + 0.5 for i in range(len(rows))], [p.path for p in rows])
+    panel.number_size["y"] = 6.5
+    panel.set_labels("distance from nominal, standard deviations of its prior", None)
     for y, p in enumerate(rows):
-        _arrow(ax, y + 0.5, p)
-    heads = "nominal, re-tuned, with the effect"
+        _arrow(panel, y + 0.5, p)
     if rows:
-        ax.text(1.02, -0.35, heads, transform=ax.get_yaxis_transform(), fontsize=6.5, color="#555555")
+        heads = "nominal, re-tuned, with the effect"
+        panel.text(1.02, -0.35, heads, scales=("panel", "data"), size=6.5, color="#555555")
     else:
-        ax.text(0, 0.5, "no parameter is off nominal", ha="center", va="center", fontsize=8)
-    fig.legend(handles=_handles(rows), loc="lower center", ncols=4, fontsize=7, frameon=False)
-    fig.suptitle(f"Parameters before and after: {study}", fontsize=11, y=1 - 0.12 / height, va="top",
-                 parse_math=False)  # fmt: skip
-    return fig
+        panel.text(0, 0.5, "no parameter is off nominal", across="center", along="center")
+    page.add_legend(_handles(rows), 4)
+    page.set_heading(f"Parameters before and after: {study}", 1 - 0.12 / height)
+    return page
 
 
-def _arrow(ax: Axes, y: float, p: TunedParameter) -> None:
+def _arrow(panel: Panel, y: float, p: TunedParameter) -> None:
     start, end = p.tuned_distance, p.with_effect_distance
-    ax.plot([start], [y], "o", color=COLOURS["tuned"], mfc="white", ms=4, mew=1.2, zorder=3)
+    panel.plot(start, y, "", marker="o", color=COLOURS["tuned"], mfc="white", ms=4, mew=1.2, zorder=3)
     if np.isfinite(end):
-        look = {"arrowstyle": "-|>", "color": arrow_colour(p), "lw": 1.1, "mutation_scale": 7, "shrinkA": 2}
-        ax.annotate("", (end, y), (start, y), arrowprops={**look, "shrinkB": 0})
-    ax.text(1.02, y, values_words(p), transform=ax.get_yaxis_transform(), fontsize=6.2, va="center")
+        arrow = FancyArrowPatch(
+            (start, y), (end, y), arrowstyle="-|>", color=arrow_colour(p), lw=1.1, mutation_scale=7,
+            shrinkA=2, shrinkB=0, zorder=3,
+        )  # fmt: skip
+        panel.add(arrow, clip=False)
+    panel.text(1.02, y, values_words(p), scales=("panel", "data"), size=6.2, along="center")
 
 
 def values_words(p: TunedParameter) -> str:

@@ -6,19 +6,22 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from scipy.stats import rankdata
 
 from doe_kc.correlation.pareto.front import VIOLATION, Front
 from doe_kc.errors import InputError
 from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import case_label
+from doe_kc.reporting.panel import Dash, Panel
+from doe_kc.reporting.panel_axis import PanelAxis
 from doe_kc.reporting.series import draw_series
-from doe_kc.reporting.style import PALETTE, figure, label
+from doe_kc.reporting.sheet import Sheet, sheet
+from doe_kc.reporting.style import PALETTE
 from doe_kc.typing import FloatArray
 
 SIZE = (11.69, 5.4)
+MARGINS = {"left": 0.065, "right": 0.985, "top": 0.86, "bottom": 0.2, "wspace": 0.14}
 MOST = 300
 """Designs drawn, best ratings first: more lines hide each other."""
 NARROW = 0.05
@@ -26,58 +29,67 @@ NARROW = 0.05
 OTHERS, BEST, KNEE = PALETTE["grey"], PALETTE["blue"], PALETTE["vermillion"]
 
 
-def pareto_figure(front: Front, *, study: str) -> Figure:
+def pareto_figure(front: Front, *, study: str) -> Sheet:
     """Parallel coordinates of the front, and its designs over the two objectives most in conflict.
 
     InputError for an empty front.
     """
     if not len(front.indices):
         raise InputError(f"{study}: the front is empty, no design has an answer; nothing to draw.")
-    fig, axes = figure(1, 2, size=SIZE, width_ratios=(2.1, 1.0), share_x=False)
-    _parallel(axes[0, 0], front)
-    _pair(axes[0, 1], front)
+    page, panels = sheet(1, 2, size=SIZE, width_ratios=(2.1, 1.0), share_x=False, margins=MARGINS)
+    left, right = panels[0]
+    handles = _parallel(left, front)
+    page.add_legend(handles, 3, 8.0, ("left", "bottom"), (left.box.left, left.box.top))
+    _pair(right, front)
     kind = "feasible designs" if front.feasible else "designs, none of which is feasible,"
-    fig.suptitle(
+    page.set_heading(
         f"Trade-offs: {len(front.indices)} confirmed {kind} that no other beats in every objective: {study}",
-        fontsize=11,
-        parse_math=False,
+        0.985,
     )
-    return fig
+    return page
 
 
-def _parallel(ax: Axes, front: Front) -> None:
+def _parallel(panel: Panel, front: Front) -> list[Line2D]:
+    """Lines with a word in the legend."""
+    _scale(panel.y, front.values)
     places = np.arange(len(front.names))
     for row in front.values[1:MOST]:
-        ax.plot(places, row, color=OTHERS, lw=0.6, alpha=0.5)
-    for place, color, style, text in _marked(front):
-        ax.plot(places, front.values[place], style, color=color, lw=2.0, ms=5, label=text)
-    ax.plot([], [], color=OTHERS, lw=0.8, label="other designs of the front")
-    ax.set_xticks(places)
-    ax.set_xticklabels([_name(n).replace(", ", ",\n") for n in front.names], rotation=30, ha="right")
-    ax.set_xlim(-0.2, len(front.names) - 0.8)
-    _scale(ax, front.values, "y")
-    label(ax, None, "loss: share of the rating, sign turned (0 = targets met)")
-    ax.legend(loc="best", fontsize=8)
+        panel.plot(places, row, color=OTHERS, lw=0.6, alpha=0.5)
+    shown = [
+        panel.plot(places, front.values[place], dash, marker=marker, color=color, lw=2.0, ms=5, label=text)
+        for place, color, marker, dash, text in _marked(front)
+    ]
+    panel.x.set_ticks(places, [_name(n).replace(", ", ",\n") for n in front.names])
+    panel.number_angle["x"] = 30.0
+    panel.x.set_limits(-0.2, len(front.names) - 0.8)
+    panel.set_labels(None, "loss: share of the rating, sign turned (0 = targets met)")
+    return [*shown, Line2D([], [], color=OTHERS, lw=0.8, label="other designs of the front")]
 
 
-def _pair(ax: Axes, front: Front) -> None:
+def _pair(panel: Panel, front: Front) -> None:
     i, j, rho = most_in_conflict(front.values)
-    ax.plot(front.values[:MOST, i], front.values[:MOST, j], "o", color=OTHERS, ms=3, alpha=0.7)
-    for place, color, style, _ in _marked(front):
-        ax.plot(front.values[place, i], front.values[place, j], style[0], color=color, ms=8)
-    _scale(ax, front.values[:, [i]], "x")
-    _scale(ax, front.values[:, [j]], "y")
-    label(ax, f"{_name(front.names[i])}: loss", f"{_name(front.names[j])}: loss")
+    _scale(panel.x, front.values[:, [i]])
+    _scale(panel.y, front.values[:, [j]])
+    panel.plot(front.values[:MOST, i], front.values[:MOST, j], "", marker="o", color=OTHERS, ms=3, alpha=0.7)
+    for place, color, marker, *_ in _marked(front):
+        panel.plot(front.values[place, i], front.values[place, j], "", marker=marker, color=color, ms=8)
+    panel.set_labels(f"{_name(front.names[i])}: loss", f"{_name(front.names[j])}: loss")
     words = f"rank correlation {rho:+.2f}" if np.isfinite(rho) else "one design"
-    ax.set_title(f"Most in conflict ({words})", fontsize=9)
+    panel.set_title(f"Most in conflict ({words})")
 
 
-def _marked(front: Front) -> list[tuple[int, str, str, str]]:
-    """Place, colour, marker with line, and words of the designs that stand out; shapes differ as well."""
-    best = (0, BEST, "o-", f"best rating {front.ratings[0]:.3g}: evaluation {front.indices[0] + 1}")
+def _marked(front: Front) -> list[tuple[int, str, str, Dash, str]]:
+    """Place, colour, marker, dash and words of the designs that stand out; shapes differ as well."""
+    best: tuple[int, str, str, Dash, str] = (
+        0,
+        BEST,
+        "o",
+        "-",
+        f"best rating {front.ratings[0]:.3g}: evaluation {front.indices[0] + 1}",
+    )
     knee = front.knee
     words = f"knee, rating {front.ratings[knee]:.3g}: evaluation {front.indices[knee] + 1}"
-    return [best, (knee, KNEE, "s--", words)]
+    return [best, (knee, KNEE, "s", "--", words)]
 
 
 def most_in_conflict(values: FloatArray) -> tuple[int, int, float]:
@@ -97,10 +109,10 @@ def most_in_conflict(values: FloatArray) -> tuple[int, int, float]:
     return int(i), int(j), float(rho[i, j])
 
 
-def _scale(ax: Axes, values: FloatArray, axis: str) -> None:
+def _scale(axis: PanelAxis, values: FloatArray) -> None:
     """Logarithmic when positive values span more than a factor of thirty."""
     if values.min() > 0.0 and values.max() > 30.0 * values.min():
-        (ax.set_yscale if axis == "y" else ax.set_xscale)("log")
+        axis.set_logarithmic()
 
 
 def _name(name: str) -> str:

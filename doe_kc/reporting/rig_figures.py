@@ -7,8 +7,6 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
@@ -16,9 +14,11 @@ from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.measurement import Gradient, Measurement
 from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.reporting.names import input_label, response_axis
-from doe_kc.reporting.plain_axes import draw_plain_axes
+from doe_kc.reporting.panel import Panel
+from doe_kc.reporting.panel_axis import ticks
 from doe_kc.reporting.series import draw_series
-from doe_kc.reporting.style import A4, PALETTE, figure, label, ticks
+from doe_kc.reporting.sheet import Sheet, sheet
+from doe_kc.reporting.style import A4, PALETTE
 from doe_kc.typing import FloatArray
 
 SIDE_TITLES = ("Left wheel", "Right wheel")
@@ -32,35 +32,32 @@ WINDOW = "#EAF3EA"
 MARGINS = {"left": 0.09, "right": 0.988, "top": 0.948, "bottom": 0.078, "wspace": 0.355, "hspace": 0.12}
 
 
-def rig_figure(measurement: Measurement, load_case: str) -> Figure:
+def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
     """A4 sheet of one load case: a row per response; left wheel, right wheel, residual about the trend.
 
     Raises KeyError when the load case was not measured.
     """
     case = measurement.curves.cases[load_case]
     run = measurement.runs[load_case][0]
-    fig, axes = figure(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=MARGINS)
+    page, panels = sheet(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=MARGINS)
     gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
-    for row, response in zip(axes, RIG_RESPONSES, strict=True):
+    for row, response in zip(panels, RIG_RESPONSES, strict=True):
         for side, name in enumerate(SIDES):
             _panel(row[side], measurement, load_case, response, side)
             _gradient(row[side], gradients[response, name])
         _residual(row[2], measurement, load_case, response)
         _same_scale(row[0], row[1])
-        label(row[0], None, response_axis(response))
-        label(row[2], None, f"residual [{RESPONSE_UNITS[response]}]")
-    for ax in axes.flat:
-        ax.yaxis.set_major_locator(ticks(5))
-    for ax in axes[-1]:
-        label(ax, _without_remark(input_label(load_case, case.input_unit)), None)
-    for ax, title in zip(axes[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
-        ax.set_title(title, fontsize=9, y=1.0)
-    fig.suptitle(
-        f"{measurement.manifest.name}: {run.record.case.label}", fontsize=11, y=0.985, parse_math=False
-    )
-    _legend(fig, len(measurement.runs[load_case]))
-    draw_plain_axes(fig)
-    return fig
+        row[0].set_labels(None, response_axis(response))
+        row[2].set_labels(None, f"residual [{RESPONSE_UNITS[response]}]")
+    for panel in panels.flat:
+        panel.y.set_locator(ticks(5))
+    for panel in panels[-1]:
+        panel.set_labels(_without_remark(input_label(load_case, case.input_unit)), None)
+    for panel, title in zip(panels[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
+        panel.set_title(title)
+    page.set_heading(f"{measurement.manifest.name}: {run.record.case.label}", 0.985)
+    _legend(page, len(measurement.runs[load_case]))
+    return page
 
 
 def write_rig_figures(
@@ -85,16 +82,16 @@ def _without_remark(axis: str) -> str:
     return re.sub(r" \([^)]*\)", "", axis)
 
 
-def _panel(ax: Axes, measurement: Measurement, load_case: str, response: str, side: int) -> None:
+def _panel(panel: Panel, measurement: Measurement, load_case: str, response: str, side: int) -> None:
     run = measurement.runs[load_case][0]
     case = measurement.curves.cases[load_case]
-    ax.plot(run.record.input, _changes(measurement, load_case, response, side), color=LOOP, lw=0.7)
+    panel.plot(run.record.input, _changes(measurement, load_case, response, side), color=LOOP, lw=0.7)
     half = case.half_width[response][side]
     mean = case.mean[response][side]
-    ax.plot(case.input, mean + half, color=UNLOAD, lw=0.9)
-    ax.plot(case.input, mean - half, color=LOAD, lw=0.9)
+    panel.plot(case.input, mean + half, color=UNLOAD, lw=0.9)
+    panel.plot(case.input, mean - half, color=LOAD, lw=0.9)
     fit = measurement.trends[load_case][response][side]
-    ax.plot(case.input, fit(case.input), color=TREND, lw=0.8, ls="--")
+    panel.plot(case.input, fit(case.input), dash="--", color=TREND, lw=0.8)
 
 
 def _changes(measurement: Measurement, load_case: str, response: str, side: int) -> FloatArray:
@@ -106,12 +103,12 @@ def _changes(measurement: Measurement, load_case: str, response: str, side: int)
     return samples if response == "tyre_load" else samples - own[at]
 
 
-def _gradient(ax: Axes, gradient: Gradient) -> None:
+def _gradient(panel: Panel, gradient: Gradient) -> None:
     window = np.array([-gradient.window, gradient.window])
-    ax.axvspan(window[0], window[1], color=WINDOW, lw=0, zorder=0)
-    ax.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT, lw=1.6)
+    panel.vspan(window[0], window[1], color=WINDOW, zorder=0)
+    panel.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT, lw=1.6)
     scale, unit = _readable(gradient.unit)
-    _note(ax, f"{scale * gradient.value:.4g} ± {scale * gradient.sd:.1g} {unit}", GRADIENT)
+    _note(panel, f"{scale * gradient.value:.4g} ± {scale * gradient.sd:.1g} {unit}", GRADIENT)
 
 
 def _readable(unit: str) -> tuple[float, str]:
@@ -122,43 +119,52 @@ def _readable(unit: str) -> tuple[float, str]:
     return 1.0, unit
 
 
-def _note(ax: Axes, content: str, color: str) -> None:
+def _note(panel: Panel, content: str, color: str) -> None:
     """Small text inside the panel's top edge, readable over curves."""
-    box = {"facecolor": "white", "alpha": 0.8, "lw": 0, "pad": 1.0}
-    text = ax.text(0.5, 0.98, content, transform=ax.transAxes, fontsize=6.5, color=color)
-    text.set(ha="center", va="top", bbox=box)
+    panel.text(
+        0.5,
+        0.98,
+        content,
+        scales=("panel", "panel"),
+        size=6.5,
+        across="center",
+        along="top",
+        color=color,
+        backing="white",
+    )
 
 
-def _residual(ax: Axes, measurement: Measurement, load_case: str, response: str) -> None:
+def _residual(panel: Panel, measurement: Measurement, load_case: str, response: str) -> None:
     run = measurement.runs[load_case][0]
     for side in (0, 1):
         fit = measurement.trends[load_case][response][side]
         samples = _changes(measurement, load_case, response, side)
-        ax.plot(
+        panel.plot(
             run.record.input,
             samples - fit(run.record.input),
-            ".",
+            "",
+            marker=".",
             ms=1.2,
             color=RESIDUAL[side],
             rasterized=True,
         )
     degrees = ", ".join(str(t.degree) for t in measurement.trends[load_case][response])
-    _note(ax, f"trend degree {degrees}", TREND)
-    ax.axhline(0.0, color=TREND, lw=0.6)
-    low, high = ax.get_ylim()
-    ax.set_ylim(low, high + 0.15 * (high - low))
+    _note(panel, f"trend degree {degrees}", TREND)
+    panel.hline(0.0, color=TREND, lw=0.6)
+    low, high = panel.y.limits
+    panel.y.set_limits(low, high + 0.15 * (high - low))
 
 
-def _same_scale(left: Axes, right: Axes) -> None:
-    limits = [*left.get_ylim(), *right.get_ylim()]
+def _same_scale(left: Panel, right: Panel) -> None:
+    limits = [*left.y.limits, *right.y.limits]
     # Room for the note in the top edge.
     limits.append(max(limits) + 0.12 * (max(limits) - min(limits)))
-    for ax in (left, right):
-        ax.set_ylim(min(limits), max(limits))
+    for panel in (left, right):
+        panel.y.set_limits(min(limits), max(limits))
 
 
-def _legend(fig: Figure, runs: int) -> None:
-    handles = [
+def _legend(page: Sheet, runs: int) -> None:
+    handles: list[Line2D | Patch] = [
         Line2D([], [], color=LOOP, lw=1, label="main run, samples"),
         Line2D([], [], color=UNLOAD, label=f"input falling, {_runs(runs)}"),
         Line2D([], [], color=LOAD, label=f"input rising, {_runs(runs)}"),
@@ -168,7 +174,7 @@ def _legend(fig: Figure, runs: int) -> None:
         Line2D([], [], color=RESIDUAL[0], ls="", marker=".", label="residual left"),
         Line2D([], [], color=RESIDUAL[1], ls="", marker=".", label="residual right"),
     ]
-    fig.legend(handles=handles, loc="lower center", ncols=4, fontsize=7, frameon=False)
+    page.add_legend(handles, 4)
 
 
 def _runs(runs: int) -> str:
