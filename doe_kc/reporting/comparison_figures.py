@@ -82,7 +82,7 @@ def _handles() -> list[Line2D | Patch]:
         out += [
             Line2D([], [], ls="", marker=".", color=colour, label=dots),
             Patch(color=colour, alpha=0.2, lw=0, label="   between its branches"),
-            Line2D([], [], color=colour, lw=1.2, label=f"model, {name} wheel"),
+            Line2D([], [], color=colour, lw=1.5, label=f"model, {name} wheel"),
         ]
     return out
 

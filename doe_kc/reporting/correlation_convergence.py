@@ -33,7 +33,7 @@ def convergence_figure(found: Correlation, study: str) -> Sheet:
     panel = page.add_panel(Box(LEFT, BOTTOM, page.width - LEFT, page.height - BOTTOM - TOP))
     _scale(panel, past)
     panel.plot(
-        np.repeat(past.number, 2)[1:], np.repeat(-past.best, 2)[:-1], color=style.PALETTE["black"],
+        np.repeat(past.number, 2)[1:], np.repeat(-past.best, 2)[:-1], color=style.PALETTE["black"], lw=1.2,
         label="best so far",
     )  # fmt: skip
     for k, origin in enumerate(past.origins):

@@ -22,12 +22,12 @@ from doe_kc.reporting.words import POINTS, text_width
 SHOWN = 9
 """Candidates of a step, best first."""
 REFITTED, SCREENED, CHOSEN = style.PALETTE["orange"], "#DDE1E5", style.PALETTE["blue"]
-ROW, HEAD, LINE, TOP, FOOT, WIDTH = 0.2, 0.24, 0.145, 0.3, 0.75, 8.27
+ROW, HEAD, LINE, TOP, FOOT, WIDTH = 0.2, 0.24, 0.145, 0.22, 0.75, 8.27
 """Inches: a candidate; above a panel, and a line of its title; title and foot of the page; its width."""
-EDGE = 9.0
-"""Points beside panels and their names."""
-TITLE = 78
-"""Characters of a line of a panel's title."""
+EDGE, END = 9.0, 20.0
+"""Points beside the names, and beside the panels, where half a number needs room."""
+LETTER = 6.0
+"""Points of a letter of a panel's title, not less than most."""
 LEAST = -2.0
 """Left end of the axis: how much worse a candidate makes it does not matter."""
 
@@ -77,18 +77,18 @@ def _candidates(step: Step) -> tuple[Candidate, ...]:
 
 def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
     """One panel a step; the axis is linear about zero and logarithmic beyond."""
-    titles = [fill(s.title, TITLE) for s in steps]
+    widest = max((text_width(c.label, 7.0) for s in steps for c in s.candidates), default=0.0)
+    left = widest + EDGE
+    titles = [fill(s.title, int((WIDTH * POINTS - left - END) / LETTER)) for s in steps]
     heads = [HEAD + LINE * (t.count("\n") + 1) for t in titles]
     deep = [ROW * max(len(s.candidates), 1) for s in steps]
     height = TOP + sum(heads) + sum(deep) + FOOT
     page = Sheet((WIDTH, height))
-    widest = max((text_width(c.label, 7.0) for s in steps for c in s.candidates), default=0.0)
-    left = widest + EDGE
     largest = max((c.gain for s in steps for c in s.candidates if np.isfinite(c.gain)), default=1.0)
     axis, top = PanelAxis(), height - TOP
     for step, title, head, tall in zip(steps, titles, heads, deep, strict=True):
         top -= head + tall
-        box = Box(left, top * POINTS, page.width - left - EDGE, tall * POINTS)
+        box = Box(left, top * POINTS, page.width - left - END, tall * POINTS)
         _panel(page.add_panel(box, axis), step, title, largest)
     for panel in page.panels[:-1]:
         panel.numbers["x"] = False
@@ -113,8 +113,8 @@ def _panel(panel: Panel, step: EvidenceStep, title: str, largest: float) -> None
     panel.set_title(title, size=8.5, weight="bold", across="left")
     panel.grid["y"] = panel.marks["y"] = False
     panel.y.set_ticks([i + 0.5 for i in range(len(step.candidates))], [c.label for c in step.candidates])
-    panel.vline(0.0, color="#8A9199", lw=0.7)
-    panel.vline(step.needed, (0, (4, 2)), color="black", lw=0.9)
+    panel.vline(0.0, color="#8A9199", lw=0.7, zorder=1.9)
+    panel.vline(step.needed, (0, (4, 2)), color="black", lw=0.9, zorder=1.9)
     for y, candidate in enumerate(step.candidates):
         _bar(panel, y + 0.5, candidate)
 

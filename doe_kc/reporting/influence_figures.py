@@ -113,7 +113,7 @@ def _case_names(panel: Panel, influence: Influence, at: Layout) -> None:
     for case, members in groupby(cases):
         count = len(list(members))
         words = case_label(case).replace(" ", "\n") if count < 3 else case_label(case).replace(", ", ",\n")
-        panel.text(start + count / 2, -0.6, words, size=7.0, across="center", along="bottom")
+        panel.text(start + count / 2, 0.0, words, shift=(0.0, GAP), size=7.0, across="center", along="bottom")
         start += count
 
 

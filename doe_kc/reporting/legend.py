@@ -102,5 +102,6 @@ def _key(handle: Line2D | Patch, left: float, middle: float, space: Mapping[str,
     else:
         line.set_data([left, left + length / 2.0, left + length], [middle] * 3)
         line.set_markevery([1] if marked else None)
+    line.set_clip_box(None)  # of the panel, where the handle is one of its lines
     line.set_zorder(ORDER)
     return line

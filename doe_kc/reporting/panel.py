@@ -33,6 +33,8 @@ Scale = Literal["data", "panel"]
 """In what a coordinate is: units of the axis, or shares of the panel's width or height."""
 Dash = Literal["-", "--", ":", ""] | tuple[float, Sequence[float]]
 """Of a line, as Matplotlib's `linestyle`; "" for markers alone."""
+LINE = 1.5
+"""Points of a line's width where nobody says another."""
 TITLE_PAD = 6.0
 """Points between a panel and its title (Matplotlib's own)."""
 
@@ -117,7 +119,7 @@ class Panel:
         scales: tuple[Scale, Scale] = ("data", "data"), **look: Any,
     ) -> Line2D:  # fmt: skip
         """A line or markers; dash: as Matplotlib's `linestyle`, "" for markers alone. clip: at the edges."""
-        look.setdefault("lw", 1.2)
+        look.setdefault("lw", LINE)
         line = Line2D(np.atleast_1d(np.asarray(x, dtype=float)), np.atleast_1d(np.asarray(y, dtype=float)),
                       linestyle=dash, **look)  # fmt: skip
         self.lines.append(line)

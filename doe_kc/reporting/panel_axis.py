@@ -15,7 +15,7 @@ from matplotlib.ticker import (
     MaxNLocator,
     ScalarFormatter,
 )
-from matplotlib.transforms import IdentityTransform, Transform, nonsingular
+from matplotlib.transforms import IdentityTransform, Transform
 from numpy.typing import ArrayLike
 
 from doe_kc.typing import FloatArray
@@ -92,10 +92,11 @@ class PanelAxis:
             return self._limits
         if self._low > self._high:
             return (1.0, 10.0) if self.logarithmic else (0.0, 1.0)
-        if self.logarithmic:
-            low, high = LogLocator().nonsingular(self._low, self._high)
-        else:
-            low, high = nonsingular(self._low, self._high, expander=0.05)
+        low, high = self._low, self._high
+        if not self.logarithmic:
+            low, high = MaxNLocator().nonsingular(low, high)  # wider where all values are the same
+        elif low == high:
+            low, high = low / 10.0, high * 10.0
         start, end = self._scaled(np.array([low, high]))
         free = MARGIN * (end - start)
         inverse = self.scale.inverted().transform(np.array([[start - free], [end + free]]))[:, 0]

@@ -11,6 +11,8 @@ from doe_kc.typing import FloatArray
 
 TICK, MINOR, PAD = 3.5, 2.0, 3.5
 """Points: lengths of tick marks, and from their end to the number (Matplotlib's own)."""
+ROOM = {"x": 30.0, "y": 20.0}
+"""Points of an axis for each of its intervals where nobody says how many there are."""
 LABEL_PAD = 4.0
 """Points between numbers and the axis label (Matplotlib's own)."""
 
@@ -29,8 +31,8 @@ class Frame:
     def add(self, panel: Panel) -> None:
         """The limits of the panel are final."""
         box = panel.box
-        x = panel.x.ticks(int(box.width / (3.0 * panel.number_size["x"])))
-        y = panel.y.ticks(int(box.height / (2.0 * panel.number_size["y"])))
+        x = panel.x.ticks(int(box.width / ROOM["x"]))
+        y = panel.y.ticks(int(box.height / ROOM["y"]))
         across = box.left + box.width * panel.x.shares(x.places)
         along = box.bottom + box.height * panel.y.shares(y.places)
         if panel.spines["bottom"]:

@@ -16,6 +16,8 @@ from doe_kc.reporting import style
 from doe_kc.reporting.picture_digest import PictureDigests, shows
 
 Job = tuple[Path, Callable[[], Figure]]
+FEW = 3
+"""Pictures that are drawn in this process: they take 0.2 s each, the start of the others as much."""
 
 
 def draw_series(
@@ -23,8 +25,8 @@ def draw_series(
 ) -> list[Path]:
     """A picture of every (path without suffix, picklable maker); the paths in order, none with "none".
 
-    A file that shows the same numbers already is left as it is. workers: processes, default one per core.
-    Raises RunError when one cannot be written.
+    A file that shows the same numbers already is left as it is. workers: processes for
+    more than a few, default one per core. Raises RunError when one cannot be written.
     """
     if pictures == "none":
         return []
@@ -37,7 +39,7 @@ def draw_series(
         if mark is None or not shows(path, mark)
     ]
     if missing:
-        count = min(workers or available_cores(), len(missing))
+        count = 1 if len(missing) <= FEW else min(workers or available_cores(), len(missing))
         with processes(count) as executor:
             try:
                 for done in [executor.submit(_draw, *job) for job in missing]:

@@ -6,10 +6,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
 from matplotlib.artist import Artist
 from matplotlib.backend_bases import RendererBase
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -21,7 +19,7 @@ from doe_kc.reporting.legend import Corner, Legend
 from doe_kc.reporting.panel import Box, Panel
 from doe_kc.reporting.panel_axis import PanelAxis
 from doe_kc.reporting.panel_frame import Frame
-from doe_kc.reporting.style import A4, DPI, RC
+from doe_kc.reporting.style import A4, DPI
 from doe_kc.reporting.words import POINTS, Across, Along, Word, Words, extent
 
 FRAME, FRAME_WIDTH, MINOR_WIDTH = "#000000", 0.8, 0.6
@@ -141,9 +139,7 @@ def sheet(
     size: inches. share_x: one horizontal axis for all panels, its numbers below the last row. margins: left,
         right, top, bottom in shares of the page; wspace, hspace between panels in shares of their mean size.
     """
-    with rc_context(dict(RC)):  # type: ignore[arg-type]  # matplotlib types the keys as literals
-        page = Sheet(size)
-        FigureCanvasAgg(page)
+    page = Sheet(size)
     room = {**MARGINS, **margins}
     lefts, widths = _cells(room["left"], room["right"], room["wspace"], width_ratios or (1.0,) * columns)
     downs, heights = _cells(

@@ -36,24 +36,8 @@ PALETTE: Mapping[str, str] = {
 
 CYCLE = tuple(PALETTE[k] for k in ("blue", "vermillion", "green", "orange", "purple", "sky", "black"))
 
-RC: Mapping[str, object] = {
-    "font.size": 8.0,
-    "axes.titlesize": 9.0,
-    "axes.labelsize": 8.0,
-    "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0,
-    "legend.fontsize": 7.0,
-    "legend.frameon": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "grid.color": "#DDDDDD",
-    "grid.linewidth": 0.5,
-    "lines.linewidth": 1.2,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "doe_kc",
-}
+RC: Mapping[str, object] = {"svg.fonttype": "none", "svg.hashsalt": "doe_kc"}
+"""SVG: texts that can be searched and edited, and the same names of its parts every time."""
 
 
 def picture_path(path_without_suffix: Path, pictures: PictureFormat) -> Path:

@@ -11,19 +11,21 @@ from doe_kc.errors import RunError
 from doe_kc.measurement import Measurement
 from doe_kc.pictures import PictureFormat
 from doe_kc.reporting.rig_figures import rig_figure
-from doe_kc.reporting.style import PALETTE, figure, save
+from doe_kc.reporting.sheet import sheet
+from doe_kc.reporting.style import PALETTE, save
 
 
 def test_every_panel_has_its_unit(car_a: Measurement) -> None:
     fig = rig_figure(car_a, "vertical")
-    axes = fig.axes
-    assert len(axes) == 21
+    panels = fig.panels
+    assert len(panels) == 21
     for row, response in enumerate(RIG_RESPONSES):
         unit = RESPONSE_UNITS[response]
-        assert axes[3 * row].get_ylabel().endswith(f" [{unit}]")
-        assert axes[3 * row + 2].get_ylabel() == f"residual [{unit}]"
-    assert [ax.get_xlabel() for ax in axes[-3:]] == ["Pad travel [mm]"] * 3
-    assert any("26.26 ± 0.04 N/mm" in t.get_text() for t in axes[18].texts)
+        assert panels[3 * row].y_label.text.endswith(f" [{unit}]")
+        assert panels[3 * row + 2].y_label.text == f"residual [{unit}]"
+    assert [panel.x_label.text for panel in panels[-3:]] == ["Pad travel [mm]"] * 3
+    assert any("26.26 ± 0.04 N/mm" in t.text for t in panels[18].texts)
+    assert fig.outside == []
 
 
 FORMATS: tuple[PictureFormat, ...] = ("png", "svg")
@@ -33,8 +35,8 @@ def test_a_figure_is_saved_twice_the_same(tmp_path: Path) -> None:
     before = dict(matplotlib.rcParams)
     contents = []
     for name in ("a.1", "b.1"):
-        fig, axes = figure(1, 2, size=(4.0, 2.0))
-        axes[0, 0].plot([0.0, 1.0], color=PALETTE["blue"])
+        fig, panels = sheet(1, 2, size=(4.0, 2.0), margins={})
+        panels[0, 0].plot([0.0, 1.0], [0.0, 1.0], color=PALETTE["blue"])
         png, svg = (save(fig, tmp_path / "new" / name, form) for form in FORMATS)
         assert (png.name, svg.name) == (f"{name}.png", f"{name}.svg")
         assert png.read_bytes().startswith(b"\x89PNG")
@@ -45,7 +47,7 @@ def test_a_figure_is_saved_twice_the_same(tmp_path: Path) -> None:
 
 def test_an_unwritable_folder_is_a_run_error(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    fig, _ = figure(1, 1)
+    fig, _ = sheet(1, 1, margins={})
     with pytest.raises(RunError, match="file: folder cannot be made"):
         save(fig, tmp_path / "file" / "x")
 

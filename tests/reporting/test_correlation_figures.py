@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
 
 from doe_kc.errors import RunError
 from doe_kc.reporting.correlation_bars import parameter_figure
@@ -14,13 +13,14 @@ from doe_kc.reporting.correlation_convergence import convergence_figure
 from doe_kc.reporting.correlation_curves import case_views, curve_figure
 from doe_kc.reporting.correlation_dna import REACH, dna_figure
 from doe_kc.reporting.correlation_figures import write_correlation_figures
+from doe_kc.reporting.panel import Panel
 from doe_kc.rounding import short
 from tests.correlation.cases import measured
 from tests.reporting.correlations import CAR, all_three, odd, real, typed
 
 
-def texts(ax: Axes) -> list[str]:
-    return [t.get_text() for t in ax.texts]
+def texts(panel: Panel) -> list[str]:
+    return [t.text for t in panel.texts]
 
 
 def test_files_are_written_without_curves_too(tmp_path: Path) -> None:
@@ -35,26 +35,28 @@ def test_files_are_written_without_curves_too(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["real", "odd", "typed"])
 def test_dna_keeps_every_mark_on_the_axis(name: str) -> None:
     found = all_three()[name]
-    ax = dna_figure(found, "S").axes[0]
-    places = np.concatenate([np.atleast_1d(line.get_xdata()) for line in ax.lines]).astype(float)
+    page = dna_figure(found, "S")
+    (panel,) = page.panels
+    assert page.outside == []
+    places = np.concatenate([np.atleast_1d(line.get_xdata()) for line in panel.lines]).astype(float)
     assert (np.abs(places - 1.0) <= REACH + 1e-12).all()
-    words = texts(ax)
+    words = texts(panel)
     for entry in found.improvements:
         assert entry.target.entry.label in words and short(entry.final) in words
 
 
 def test_values_beyond_the_axis_are_arrows() -> None:
-    ax = dna_figure(real(), "S").axes[0]
-    marks = [str(line.get_marker()) for line in ax.lines]
+    marks = [str(line.get_marker()) for line in dna_figure(real(), "S").panels[0].lines]
     assert marks.count("<") == 2 and marks.count(">") == 1
 
 
 def test_curves_have_units_and_both_wheels() -> None:
     (view,) = [v for v in case_views(real(), measured(CAR)) if v.load_case == "roll"]
-    fig = curve_figure(view, "S")
-    assert [ax.get_ylabel() for ax in fig.axes][:2] == ["Δ toe [deg]", "Δ camber [deg]"]
-    assert all(ax.get_xlabel().endswith("[deg]") for ax in fig.axes[-3:])
-    toe = fig.axes[0]
+    page = curve_figure(view, "S")
+    assert [panel.y_label.text for panel in page.panels][:2] == ["Δ toe [deg]", "Δ camber [deg]"]
+    assert all(panel.x_label.text.endswith("[deg]") for panel in page.panels[-3:])
+    assert page.outside == []
+    toe = page.panels[0]
     blue = [line for line in toe.lines if line.get_color() == "#0072B2"]
     assert len(blue) == 2 and blue[0].get_lw() < blue[1].get_lw()
     case = real().best.outcome.curves
@@ -65,26 +67,28 @@ def test_curves_have_units_and_both_wheels() -> None:
 def test_without_measurement_the_model_is_drawn_alone() -> None:
     views = case_views(real(), None)
     assert len(views) == 8 and all(v.measured is None for v in views)
-    assert len(curve_figure(views[0], "S").axes[0].lines) == 4
+    assert len(curve_figure(views[0], "S").panels[0].lines) == 4
     assert case_views(typed(), None) == []
 
 
 def test_convergence_shows_failures_predictions_and_feasibility() -> None:
     def labels(name: str) -> list[str]:
-        return convergence_figure(all_three()[name], "S").axes[0].get_legend_handles_labels()[1]
+        page = convergence_figure(all_three()[name], "S")
+        assert page.outside == []
+        return page.keys[0].labels
 
     assert {"no equilibrium", "predicted ± sd", "ego, infeasible", "best so far"} <= set(labels("odd"))
     assert "feasible from evaluation 2" in labels("real")
-    crosses = [x for x in convergence_figure(odd(), "S").axes[0].lines if x.get_marker() == "x"]
+    crosses = [x for x in convergence_figure(odd(), "S").panels[0].lines if x.get_marker() == "x"]
     assert list(np.atleast_1d(crosses[0].get_xdata())) == [3.0, 7.0]
 
 
 def test_parameters_mark_bounds_and_unseen_ones() -> None:
-    ax = parameter_figure(odd(), "S").axes[0]
-    marks = [str(line.get_marker()) for line in ax.lines]
+    (panel,) = parameter_figure(odd(), "S").panels
+    marks = [str(line.get_marker()) for line in panel.lines]
     assert (marks.count("<"), marks.count(">")) == (1, 1)
-    assert sum(bool(p.get_hatch()) for p in ax.patches) == 1
-    assert len(parameter_figure(real(), "S").axes) == 2
+    assert sum(bool(p.get_hatch()) for p in panel.areas) == 1
+    assert len(parameter_figure(real(), "S").panels) == 2
 
 
 def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.collections import PolyCollection
 
 from doe_kc.errors import RunError
 from doe_kc.reporting.discovery_curves import curve_figure, worst_views
@@ -19,6 +20,7 @@ from doe_kc.reporting.discovery_held_out import gain_words, held_out_figure
 from doe_kc.reporting.discovery_isolability import isolability, isolability_figure
 from doe_kc.reporting.discovery_parameters import moved_parameters, parameter_figure
 from doe_kc.reporting.discovery_tables import tuned_parameters
+from doe_kc.reporting.sheet import Sheet
 from tests.discovery.cases import LOAD_CASES, discovery
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
@@ -31,9 +33,10 @@ def test_every_verdict_is_drawn(car: str, tmp_path: Path) -> None:
     jobs = discovery_jobs(found, tmp_path, "S $x_1$")
     assert [path.name for path, _ in jobs] == (NAMES if found.held_out else NAMES[:-1])
     for _, make in jobs:
-        fig = make()
-        assert fig.get_suptitle().endswith("S $x_1$")
-        assert all(ax.get_title() != "" or ax.has_data() or not ax.axison for ax in fig.axes)
+        page = make()
+        assert isinstance(page, Sheet) and page.heading.endswith("S $x_1$")
+        assert all(panel.lines or panel.areas for panel in page.panels)
+        assert page.outside == []
 
 
 def test_files_are_written(tmp_path: Path) -> None:
@@ -52,36 +55,35 @@ def test_makers_hold_only_what_they_draw(tmp_path: Path) -> None:
 def test_heat_map_shows_every_cell_with_its_sign_and_shape() -> None:
     grids = discovery_grids(discovery("named"))
     fig = heat_map_figure(grids, "S")
-    for ax, grid in zip(fig.axes[:3], grids, strict=True):
-        texts = [t.get_text() for t in ax.texts]
+    for panel, grid in zip(fig.panels[:3], grids, strict=True):
+        texts = [t.text for t in panel.texts]
         assert texts.count("gradient") + texts.count("gradient, L−R") > 0
         for cell in grid.cells.values():
             assert signed(cell.z) in texts
-        assert ax.get_title(loc="left").startswith(grid.title)
+        assert panel.title.text.startswith(grid.title)
     assert (signed(-3.14), signed(123.4)) == ("−3.1", "+123")
 
 
 def test_gap_marks_stay_on_the_axis_and_noise_is_one() -> None:
     rows = gap_rows(discovery("named"))
     fig = gap_figure(rows, "S")
-    for ax in fig.axes:
-        low, high = ax.get_xlim()
-        xs = np.concatenate([np.atleast_1d(line.get_xdata()) for line in ax.lines]).astype(float)
+    for panel in fig.panels:
+        low, high = panel.x.limits
+        xs = np.concatenate([np.atleast_1d(line.get_xdata()) for line in panel.lines]).astype(float)
         assert (low <= xs).all() and (xs <= high).all()
-        assert "noise" in ax.get_xlabel()
-    labels = [t.get_text() for t in fig.legends[0].get_texts()]
+        assert "noise" in panel.x_label.text
+    labels = fig.keys[0].labels
     assert labels[-1] == "noise floor" and len(labels) == 5
-    fewer = [t.get_text() for t in gap_figure(gap_rows(discovery("none")), "S").legends[0].get_texts()]
+    fewer = gap_figure(gap_rows(discovery("none")), "S").keys[0].labels
     assert len(fewer) == 3
 
 
 def test_evidence_has_a_panel_a_step_and_the_price_of_a_name() -> None:
     steps = evidence_steps(discovery("two"))
     fig = evidence_figure(steps, "S")
-    assert len(fig.axes) == len(steps)
-    for ax, step in zip(fig.axes, steps, strict=True):
-        assert [t.get_text() for t in ax.get_yticklabels()] == [c.label for c in step.candidates]
-        assert any(float(np.atleast_1d(x.get_xdata())[0]) == step.needed for x in ax.lines)
+    for panel, step in zip(fig.panels, steps, strict=True):
+        assert panel.y.ticks(9).words == tuple(c.label for c in step.candidates)
+        assert any(float(np.atleast_1d(x.get_xdata())[0]) == step.needed for x in panel.lines)
 
 
 def test_worst_curves_come_first_and_have_units() -> None:
@@ -90,10 +92,10 @@ def test_worst_curves_come_first_and_have_units() -> None:
     assert gaps == sorted(gaps, reverse=True) and len(worst) == 6
     assert worst[0].gaps["with_effect"] < 1.5 < worst[0].gaps["tuned"]
     fig = curve_figure(worst, "S")
-    labels = [ax.get_ylabel() for ax in fig.axes]
+    labels = [panel.y_label.text for panel in fig.panels]
     assert sum("sd of the noise" in text for text in labels) == 6
     assert all(text.endswith("]") for text in labels)
-    assert all(ax.get_xlabel().endswith("]") for ax in fig.axes[3:6])
+    assert all(panel.x_label.text.endswith("]") for panel in fig.panels[3:6])
 
 
 def test_friction_shows_as_half_width_of_the_loop() -> None:
@@ -106,17 +108,17 @@ def test_friction_shows_as_half_width_of_the_loop() -> None:
 def test_isolability_bars_and_matrix_share_their_rows() -> None:
     table = isolability(discovery("named"))
     fig = isolability_figure(table, "S")
-    matrix, sizes = fig.axes[:2]
-    assert matrix.get_ylim() == sizes.get_ylim() == (len(table.labels), 0.0)
-    labels = [t.get_text() for t in matrix.get_yticklabels()]
-    assert labels[0] == f"{table.labels[0]}  1"
-    assert len(sizes.patches) == len(table.labels)
+    matrix, sizes = fig.panels[:2]
+    assert matrix.y.limits == sizes.y.limits == (len(table.labels), 0.0)
+    assert matrix.y.ticks(9).words[0] == f"{table.labels[0]}  1"
+    (bars,) = sizes.areas
+    assert isinstance(bars, PolyCollection) and len(bars.get_paths()) == len(table.labels)
 
 
 def test_held_out_has_a_row_a_load_case() -> None:
     cases = discovery("named").held_out
-    ax = held_out_figure(cases, "S").axes[0]
-    assert len(ax.get_yticklabels()) == len(LOAD_CASES)
+    (panel,) = held_out_figure(cases, "S").panels
+    assert len(panel.y.ticks(9).words) == len(LOAD_CASES)
     assert [gain_words(v) for v in (-0.04, 12.34, 12345.0)] == ["0.0", "+12.3", "+12 345"]
 
 
@@ -124,8 +126,8 @@ def test_parameters_that_return_come_first() -> None:
     rows = moved_parameters(tuned_parameters(discovery("named")))
     change = [abs(p.with_effect_distance) - abs(p.tuned_distance) for p in rows]
     assert change == sorted(change)
-    ax = parameter_figure(tuned_parameters(discovery("named")), "S").axes[0]
-    assert [t.get_text() for t in ax.get_yticklabels()] == [p.path for p in rows]
+    (panel,) = parameter_figure(tuned_parameters(discovery("named")), "S").panels
+    assert panel.y.ticks(9).words == tuple(p.path for p in rows)
 
 
 def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.collections import QuadMesh
+from matplotlib.collections import PolyCollection, QuadMesh
 
 from doe_kc.errors import RunError
 from doe_kc.reporting.influence_figures import (
@@ -28,36 +28,43 @@ def test_files_are_written(tmp_path: Path) -> None:
 
 
 def test_heat_map_has_fixed_limits_and_white_zero() -> None:
-    ax = influence_heat_map(study([[1.0, 2.0], [0.5, -0.02]]), study="S").axes[0]
-    mesh = next(c for c in ax.collections if isinstance(c, QuadMesh))
+    page = influence_heat_map(study([[1.0, 2.0], [0.5, -0.02]]), study="S")
+    assert page.outside == []
+    mesh = next(c for c in page.panels[0].areas if isinstance(c, QuadMesh))
     assert mesh.get_clim() == (-100.0, 100.0)
     np.testing.assert_allclose(diverging()(0.5)[:3], 1.0, atol=0.01)
 
 
 def test_numbers_stand_from_five_percent_on() -> None:
-    ax = influence_heat_map(study([[100.0], [-5.0], [4.9], [0.0]]), study="S").axes[0]
-    numbers = [t.get_text() for t in ax.texts if t.get_text().lstrip("-").isdigit()]
+    panel = influence_heat_map(study([[100.0], [-5.0], [4.9], [0.0]]), study="S").panels[0]
+    numbers = [t.text for t in panel.texts if t.text.lstrip("-").isdigit()]
     assert numbers == ["100", "-5"]
 
 
 def test_load_cases_head_their_columns() -> None:
-    ax = influence_heat_map(study([[1.0, 1.0, 1.0]]), study="S").axes[0]
-    assert {"Vertical\nmotion", "Roll\nmotion", "Brake\nforce"} <= {t.get_text() for t in ax.texts}
+    panel = influence_heat_map(study([[1.0, 1.0, 1.0]]), study="S").panels[0]
+    assert {"Vertical\nmotion", "Roll\nmotion", "Brake\nforce"} <= {t.text for t in panel.texts}
 
 
 def test_bars_are_the_ten_strongest_with_sign() -> None:
     change = [[float(k if k % 2 else -k)] for k in range(1, 15)]
-    (ax,) = [a for a in influence_bars(study(change), study="S").axes if a.get_visible()]
-    widths = [bar.get_width() for bar in ax.patches]
+    page = influence_bars(study(change), study="S")
+    (panel,) = page.panels
+    assert page.outside == []
+    (bars,) = panel.areas
+    assert isinstance(bars, PolyCollection)
+    corners = np.array([path.vertices for path in bars.get_paths()])
+    widths = corners[:, 1, 0] - corners[:, 0, 0]
     np.testing.assert_allclose(widths, [100 / 14 * (k if k % 2 else -k) for k in range(14, 4, -1)])
-    assert ax.get_yticklabels()[0].get_text() == "P13.x"
+    assert panel.y.ticks(9).words[0] == "P13.x"
 
 
 def test_failed_row_stays_grey_and_column_without_entry_empty() -> None:
     part = study([[np.nan, 0.0], [1.0, 0.0]])
-    mesh = influence_heat_map(part, study="S").axes[0].collections[0]
+    mesh = influence_heat_map(part, study="S").panels[0].areas[0]
+    assert isinstance(mesh, QuadMesh)
     assert np.ma.count_masked(np.ma.asarray(mesh.get_array())) == 1
-    assert not influence_bars(part, study="S").axes[1].patches
+    assert not influence_bars(part, study="S").panels[1].areas
 
 
 def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:

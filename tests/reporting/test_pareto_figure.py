@@ -36,19 +36,18 @@ def test_an_objective_that_hardly_differs_is_in_no_conflict() -> None:
 
 def test_draws_every_design_and_names_best_and_knee() -> None:
     fig = pareto_figure(front(), study="test")
-    left, right = fig.axes
-    assert [t.get_text() for t in left.get_xticklabels()] == ["Brake force", "Static", "Vertical motion"]
-    legend = left.get_legend()
-    assert legend is not None
-    words = [t.get_text() for t in legend.get_texts()]
+    left, right = fig.panels
+    assert left.x.ticks(9).words == ("Brake force", "Static", "Vertical motion")
+    words = fig.keys[0].labels
     assert words[0].endswith("evaluation 8") and words[1].endswith("evaluation 14")
-    assert len(left.lines) == 11 + 2 + 1
-    assert "Brake force" in right.get_xlabel() and "Vertical motion" in right.get_ylabel()
+    assert len(left.lines) == 11 + 2
+    assert "Brake force" in right.x_label.text and "Vertical motion" in right.y_label.text
+    assert fig.outside == []
 
 
 def test_says_when_nothing_is_feasible() -> None:
     fig = pareto_figure(front(feasible=False), study="test")
-    assert "none of which is feasible" in fig.get_suptitle()
+    assert "none of which is feasible" in fig.heading
 
 
 @pytest.mark.parametrize("designs", [1, 2])

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
+from doe_kc.campaign.executors import in_process
 from doe_kc.pictures import PictureFormat
-from doe_kc.reporting import style
+from doe_kc.reporting import series
 from doe_kc.reporting.picture_digest import PictureDigests
-from doe_kc.reporting.plain_axes import draw_plain_axes
 from doe_kc.reporting.series import draw_series
+from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.typing import FloatArray
 
 
@@ -25,11 +26,11 @@ class Line:
     seconds: float = 0.0
 
 
-def line_figure(line: Line) -> Figure:
-    fig, axes = style.figure(1, 1, size=(3.0, 2.0))
-    axes[0, 0].plot(line.y)
-    fig.suptitle(line.title)
-    return fig
+def line_figure(line: Line) -> Sheet:
+    page, panels = sheet(1, 1, size=(3.0, 2.0), margins={})
+    panels[0, 0].plot(np.arange(line.y.size), line.y)
+    page.set_heading(line.title, 0.98)
+    return page
 
 
 LINE = Line(np.array([1.0, 2.0, 4.0]))
@@ -93,19 +94,16 @@ def test_digests_tell_values_apart() -> None:
     assert digest(iter(())) is None
 
 
-def test_plain_axes_keep_limits_ticks_and_labels() -> None:
-    fig, axes = style.figure(2, 1, size=(3.0, 4.0), share_x=True, margins={"left": 0.2, "bottom": 0.2})
-    for ax in axes[:, 0]:
-        ax.plot([0.0, 10.0], [-3.0, 3.0])
-        ax.set_ylabel("Δ toe [deg]")
-        ax.yaxis.set_major_locator(style.ticks(4))
-    axes[1, 0].set_ylim(3.0, -3.0)
-    draw_plain_axes(fig)
-    upper, lower = axes[:, 0]
-    numbers = [t for t in lower.texts if t.get_text().lstrip("−").replace(".", "").isdigit()]
-    heights = {t.get_text(): t.get_position()[1] for t in numbers if t.get_position()[0] < 0.0}
-    assert heights["0"] == pytest.approx(0.5) and heights["2"] == pytest.approx(1.0 / 6.0)
-    assert [t.get_text() for t in lower.texts].count("Δ toe [deg]") == 1
-    below = [t for t in upper.texts if t.get_position()[1] < 0.0]
-    assert not below and any(t.get_position()[1] < 0.0 for t in lower.texts)
-    assert upper.get_ylim() == pytest.approx((-3.3, 3.3)) and not upper.axison
+@pytest.mark.parametrize(("count", "workers"), [(series.FEW, 1), (series.FEW + 1, 2)])
+def test_a_few_are_drawn_in_this_process(
+    count: int, workers: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def here(number: int) -> Executor:
+        asked.append(number)
+        return in_process()
+
+    monkeypatch.setattr(series, "processes", here)
+    draw_series([(tmp_path / f"{k}", partial(line_figure, LINE)) for k in range(count)], 2)
+    assert asked == [workers] and len(list(tmp_path.iterdir())) == count

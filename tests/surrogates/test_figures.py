@@ -7,7 +7,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.reporting.surrogate_figures import model_quality, predicted_against_true, write_surrogate_figures
@@ -36,43 +35,24 @@ def report() -> SurrogateReport:
     return SurrogateReport(space(5), designs, fitted, none, none, none, agreement, targets)
 
 
-def outside(fig: Figure) -> list[str]:
-    """Texts that reach beyond the page."""
-    from matplotlib.text import Text
-
-    fig.canvas.draw()
-    page = fig.bbox
-    out = []
-    for text in fig.findobj(Text):
-        if isinstance(text, Text) and text.get_visible() and text.get_text().strip():
-            box = text.get_window_extent()
-            if box.x0 < page.x0 or box.x1 > page.x1 or box.y0 < page.y0 or box.y1 > page.y1:
-                out.append(text.get_text())
-    return out
-
-
 def test_one_panel_a_characteristic_with_its_unit_and_model() -> None:
     fig = predicted_against_true(report(), study="small")
-    panels = [ax for ax in fig.axes if ax.get_visible()]
-    assert len(panels) == 4
-    for ax, entry in zip(panels, ENTRIES, strict=True):
-        assert entry.label in ax.get_title()
-        assert f"[{entry.unit}]" in ax.get_title()
-    assert "gp, Q² 1.0000" in panels[1].get_title()
-    assert "never changes" in panels[3].get_title()
-    assert [t.get_text() for t in panels[1].texts if "→" in t.get_text()] == ["99 →"]
-    assert outside(fig) == []
+    for panel, entry in zip(fig.panels, ENTRIES, strict=True):
+        assert entry.label in panel.title.text
+        assert f"[{entry.unit}]" in panel.title.text
+    assert "gp, Q² 1.0000" in fig.panels[1].title.text
+    assert "never changes" in fig.panels[3].title.text
+    assert [t.text for t in fig.panels[1].texts if "→" in t.text] == ["99 →"]
+    assert fig.outside == []
 
 
 def test_quality_names_models_and_characteristics() -> None:
     fig = model_quality(report(), study="small")
-    labels = [t.get_text() for t in fig.axes[0].get_yticklabels()]
+    labels = fig.panels[0].y.ticks(9).words
     assert len(labels) == 4
     assert all(e.label in text for e, text in zip(ENTRIES, labels, strict=True))
-    legend = fig.axes[0].get_legend()
-    assert legend is not None
-    assert [t.get_text() for t in legend.get_texts()] == ["Linear (ridge)", "Gaussian process"]
-    assert outside(fig) == []
+    assert fig.keys[0].labels == ["Linear (ridge)", "Gaussian process"]
+    assert fig.outside == []
 
 
 def test_equal_studies_give_equal_files(tmp_path: Path) -> None:
