@@ -13,12 +13,12 @@ import numpy as np
 import pandas as pd
 from appendix_c_causes import causes, matrix
 from appendix_c_text import markdown
+from axes import draw_matrix, figure
 from matplotlib.figure import Figure
 
 from doe_kc.axle import read_axle
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
-from doe_kc.reporting.influence_figures import draw_matrix
-from doe_kc.reporting.style import figure, save
+from doe_kc.reporting.style import save
 from doe_kc.typing import FloatArray
 
 HERE = Path(__file__).parent

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from axes import figure, label
 from correlation_runs import Trace
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from report_figures import legend, title
 
-from doe_kc.reporting.style import CYCLE, PALETTE, figure, label
+from doe_kc.reporting.style import CYCLE, PALETTE
 from doe_kc.typing import FloatArray
 
 Runs = Mapping[str, Sequence[Trace]]

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from axes import figure, label
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from recovery import STATED, Fit
 from report_figures import legend, title
 from scipy.stats import norm
 
-from doe_kc.reporting.style import PALETTE, figure, label
+from doe_kc.reporting.style import PALETTE
 
 SEEN, UNSEEN = PALETTE["blue"], PALETTE["grey"]
 

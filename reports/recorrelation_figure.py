@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
+from axes import figure, label
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from recorrelation_case import Case
 from report_figures import legend, title
 
-from doe_kc.reporting.style import PALETTE, figure, label
+from doe_kc.reporting.style import PALETTE
 from doe_kc.typing import FloatArray
 
 FREE = PALETTE["green"]

@@ -11,11 +11,10 @@ from typing import Any
 
 import pandas as pd
 import pytest
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from doe_kc import output
 from doe_kc.errors import RunError
-from doe_kc.reporting import workbook_file
+from doe_kc.reporting import style, workbook_file
 from tests.cli.runner import (
     AXLE,
     Outcome,
@@ -93,7 +92,7 @@ def test_full_disk_while_drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     def full(*_args: Any, **_options: Any) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(FigureCanvasAgg, "print_png", full)
+    monkeypatch.setattr(style, "write_png", full)
     study = write_study(tmp_path, records={"lateral": ("lateral.csv",)})
     old = tmp_path / "out" / "reduce" / "rig_lateral.png"
     old.parent.mkdir(parents=True)
