@@ -227,8 +227,8 @@ def _missed_targets(study: Study, intervals: Sequence[_StatedInterval]) -> Itera
             yield _fault(
                 "targets",
                 f"{study.source}: characteristics {interval.entry.id}: the interval {interval.words} does "
-                f"not hold the target {target:g}, so that no design meets both; correct low and high, or give "
-                "objective = false.",
+                f"not hold the target {target:g}, so that no design meets both; correct low and high, or "
+                "give objective = false.",
             )
 
 

@@ -22,7 +22,7 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
 from doe_kc.targets import build_targets, rate, score
-from tests.cli.runner import Outcome, assert_one_message, fails, leftovers, succeeds, write_study
+from tests.cli.runner import Outcome, assert_one_message, fails, invoke, leftovers, succeeds, write_study
 
 RECORDS = {"lateral": ("lateral.csv",), "brake": ("brake.csv",)}
 TABLES = """
@@ -54,9 +54,20 @@ def study_in(folder: Path, method: str = "ego", budget: int = 12, extra: str = "
 
 def document_of(study: Path, *options: object) -> dict[str, Any]:
     file = study / "c.json"
-    succeeds("correlate", study, "--json", file, "--workers", 1, *options)
+    outcome = invoke("correlate", study, "--json", file, "--workers", 1, *options)
+    assert outcome.code in (0, 1) and not outcome.err.count("doe-kc:"), outcome.err
     found: dict[str, Any] = json.loads(file.read_text())
+    assert outcome.code == (1 if found["status"] == "not_usable" else 0)
     return found
+
+
+def test_an_axle_that_is_not_usable_ends_with_code_1_and_is_written(tmp_path: Path) -> None:
+    study = study_in(tmp_path, budget=1)
+    outcome = invoke("correlate", study, "--json", tmp_path / "c.json", "--workers", 1)
+    assert outcome.code == 1 and outcome.out.startswith("Not usable: No design was better")
+    assert json.loads((tmp_path / "c.json").read_text())["status"] == "not_usable"
+    assert {"axle.toml", "report.html", "run.json"} <= {p.name for p in (study / "out/correlate").iterdir()}
+    assert invoke("report", study).code == 0
 
 
 def test_the_document_holds_what_the_tables_say(tmp_path: Path) -> None:
@@ -150,7 +161,8 @@ def test_report_rates_anew_without_a_run(tmp_path: Path) -> None:
     first = document_of(study)
     count = stored(study)
     again = study / "again.json"
-    succeeds("report", study, "--json", again)
+    told = succeeds("report", study, "--json", again)
+    assert "No run is stored" in told.out and not (study / "out" / "index.html").exists()
     same = json.loads(again.read_text())
     assert same["rating"] == first["rating"] and same["parameters"] == first["parameters"]
     file = study / "study.toml"
@@ -242,8 +254,6 @@ def test_slopes_of_the_own_solver_are_used_unless_forbidden(tmp_path: Path) -> N
     ],
 )
 def test_wrong_options(tmp_path: Path, options: list[str], pattern: str) -> None:
-    from tests.cli.runner import invoke
-
     outcome = invoke("correlate", study_in(tmp_path), *options)
     assert outcome.code == 2 and "Traceback" not in outcome.err
     import re
@@ -364,5 +374,6 @@ def test_constraints_in_conflict_are_named(tmp_path: Path) -> None:
         '[[characteristics]]\nmatch = "lateral_offset.wc_lateral_disp"\ntarget = 0.05\n'
     )
     study = study_in(tmp_path, budget=8, extra=extra)
-    outcome = succeeds("correlate", study, "--workers", 1)
+    outcome = invoke("correlate", study, "--workers", 1)
+    assert outcome.code == 1 and outcome.out.startswith("Not usable: ")
     assert "No design within the bounds meets" in outcome.out
