@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 import pytest
@@ -60,6 +60,12 @@ def plain() -> CurveSet:
 
 
 def change(h: Hypothesis, amplitude: float, shape: float = 0.0) -> np.ndarray:
+    return _change(h.name, amplitude, shape)
+
+
+@cache
+def _change(name: str, amplitude: float, shape: float) -> np.ndarray:
+    (h,) = (h for h in HYPOTHESES if h.name == name)
     axle = with_hypothesis(h, amplitude, shape)
     return numbers(observed(axle, curve_set(solve(axle, compiled=False)))) - numbers(plain())
 
