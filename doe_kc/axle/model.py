@@ -38,8 +38,6 @@ BUSHINGS = {
 BUSHING_AXES = ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz")
 STRUT_BENDING, STRUT_TORSION = 8000.0, 30000.0
 """Nm/deg at the strut clamp for `strut.flexibility` 1; the stiffness is this over the flexibility."""
-NEARLY_RIGID = 1e-3
-"""`strut.flexibility` at which the sensitivity of a rigid strut is taken: its stiffness is infinite at 0."""
 DEFAULT_FOLLOW = {"UPS": "UPB", "UPBBI": "UPB", "SAH": "ROB"}
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic, appendix_b, appendix_c
+from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic, appendix_c
 from doe_kc.characteristics.reduction import reduce_all, reduce_one, reduction_gradient
 from doe_kc.registry import import_members
 
@@ -13,7 +13,6 @@ import_members(sys.modules[__name__])
 __all__ = [
     "CHARACTERISTICS",
     "Characteristic",
-    "appendix_b",
     "appendix_c",
     "reduce_all",
     "reduce_one",

@@ -71,11 +71,6 @@ APPENDIX_C_ORDER = (
 )
 
 
-def appendix_b() -> list[Characteristic]:
-    """The 27 characteristics of Appendix B."""
-    return [c for c in CHARACTERISTICS.values() if c.in_appendix_b]
-
-
 def appendix_c() -> list[Characteristic]:
     """The 21 columns of Appendix C, in their order."""
     return [CHARACTERISTICS[i] for i in APPENDIX_C_ORDER]

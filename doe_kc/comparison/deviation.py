@@ -7,10 +7,10 @@ import numpy as np
 from doe_kc.typing import FloatArray
 
 
-def rms_deviation(curve: FloatArray, target: FloatArray, increment: float = 1.0) -> float:
-    """sqrt(1/N sum (y_i - y'_i)^2 dx), in the unit of y for the default increment dx = 1.
+def rms_deviation(curve: FloatArray, target: FloatArray) -> float:
+    """sqrt(1/N sum (y_i - y'_i)^2), in the unit of y.
 
-    curve, target: (n,) on the same inputs. The thesis prints the increment under the root, which gives
-    the result the unit of y times the root of the input's; with dx = 1 it is the plain RMS.
+    curve, target: (n,) on the same inputs. The thesis prints the input's increment under the root too, which
+    gives the result the unit of y times the root of the input's; here it is 1.
     """
-    return float(np.sqrt(np.mean((curve - target) ** 2) * increment))
+    return float(np.sqrt(np.mean((curve - target) ** 2)))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.axle.model import NEARLY_RIGID, Axle
+from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients, interpolated
@@ -16,8 +16,6 @@ from doe_kc.solver.suite import solve
 from doe_kc.targets import CurveTarget
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
-
-FLEXIBILITY = "strut.flexibility"
 
 
 @dataclass(frozen=True)
@@ -35,10 +33,7 @@ def linearize(
 
     NotConverged when the axle has no equilibrium there.
     """
-    values = space.values(point)
-    if FLEXIBILITY in values:
-        values[FLEXIBILITY] = max(values[FLEXIBILITY], NEARLY_RIGID)
-    there = with_values(axle, values)
+    there = with_values(axle, space.values(point))
     solution = solve(there)
     paths = [*space.paths, *(tie.follower for tie in space.ties)]
     exact = sensitivities(there, solution, paths)

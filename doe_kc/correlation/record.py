@@ -12,6 +12,7 @@ from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
 from doe_kc.axle.schema import Strict
 from doe_kc.campaign.key import design_key
 from doe_kc.campaign.store import Store
+from doe_kc.correlation.answer_record import AnswerRecord
 from doe_kc.correlation.assessment import Objection
 from doe_kc.correlation.loop import Run
 from doe_kc.correlation.methods._base import best_design
@@ -94,7 +95,7 @@ class ObjectionRecord(Strict):
 class RunRecord(Strict):
     """The whole file. discovered: whether it followed a discovery, whose effects it begins with. without:
     (load case, response) left out of the objectives. objections, misfit: what the discovery says of the
-    axle handed over, see `assess`."""
+    axle handed over, see `assess`. answer: of the chain that it is part of; None of a correlation alone."""
 
     schema_: Literal["doe_kc.run/1"] = "doe_kc.run/1"
     method: str
@@ -112,6 +113,7 @@ class RunRecord(Strict):
     without: list[list[str]]
     objections: list[ObjectionRecord]
     misfit: float | None
+    answer: AnswerRecord | None = None
     evaluations: list[EvaluationRecord]
 
 
@@ -123,6 +125,7 @@ def run_document(
     without: Collection[tuple[str, str]] = (),
     objections: Sequence[Objection] = (),
     misfit: float | None = None,
+    answer: AnswerRecord | None = None,
 ) -> dict[str, Any]:
     """The record of a correlation, for `write_json`. The rest as in `RunRecord`."""
     space, after = found.problem.space, found.posterior
@@ -145,6 +148,7 @@ def run_document(
         without=[list(place) for place in sorted(without)],
         objections=[ObjectionRecord(sentence=o.sentence, fatal=o.fatal) for o in objections],
         misfit=misfit,
+        answer=answer,
         evaluations=[_evaluation(e.candidate) for e in found.run.evaluated],
     )
     return record.model_dump()

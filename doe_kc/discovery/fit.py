@@ -30,6 +30,7 @@ SMALL = 1.0
 """Predicted decrease below which a step is the last, its derivatives those of the step before."""
 POOR, GOOD = 0.25, 0.75
 STEPS = 24
+FOLLOWED_STEPS = 6
 SMALLEST = 1e-4
 LARGEST_RADIUS = 2.0
 
@@ -188,13 +189,13 @@ def _expanded(
     return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
 
 
-def followed(found: Fit, model: EffectModel, *, steps: int = 6) -> Fit:
+def followed(found: Fit, model: EffectModel) -> Fit:
     """The fit of the same model to other data, by steps along the derivatives at `found`.
 
     For small changes, such as a load case left out: no new derivatives are taken.
     """
     current = replace(found, model=model, cost=cost_of(model, found.z, found.residual))
-    for _ in range(steps):
+    for _ in range(FOLLOWED_STEPS):
         low, high = model.lower - current.z, model.upper - current.z
         gradient, hessian = current.gradient, current.hessian
         step = bounded_step(hessian, gradient, low, high)

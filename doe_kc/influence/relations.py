@@ -65,12 +65,11 @@ class Together:
 
 @dataclass(frozen=True)
 class Relations:
-    """Table 2 of a study. threshold: percent from which a link is listed."""
+    """Table 2 of a study."""
 
     by_characteristic: tuple[CharacteristicLinks, ...]
     by_parameter: tuple[ParameterLinks, ...]
     together: tuple[Together, ...]
-    threshold: float
 
     @property
     def longest(self) -> int:
@@ -91,26 +90,24 @@ class Relations:
 def relations(
     influence: Influence,
     *,
-    threshold: float = STRONG_PERCENT,
     at_most: int = AT_MOST,
     together: float = TOGETHER,
 ) -> Relations:
     """Strongest links both ways, and groups of characteristics with |r| >= `together` in every pair.
 
-    threshold: percent of the column's peak; at_most: links listed per characteristic and per parameter.
+    Links are listed from STRONG_PERCENT of the column's peak. at_most: of each characteristic and parameter.
     """
     percent = influence.percent
     return Relations(
         by_characteristic=tuple(
-            CharacteristicLinks(entry, _strongest(influence, percent, None, j, threshold, at_most))
+            CharacteristicLinks(entry, _strongest(influence, percent, None, j, at_most))
             for j, entry in enumerate(influence.characteristics)
         ),
         by_parameter=tuple(
-            ParameterLinks(entry, _strongest(influence, percent, i, None, threshold, at_most))
+            ParameterLinks(entry, _strongest(influence, percent, i, None, at_most))
             for i, entry in enumerate(influence.parameters)
         ),
         together=tuple(_groups(influence, together)),
-        threshold=threshold,
     )
 
 
@@ -119,7 +116,6 @@ def _strongest(
     percent: FloatArray,
     row: int | None,
     column: int | None,
-    threshold: float,
     at_most: int,
 ) -> tuple[Link, ...]:
     line = percent[row] if row is not None else percent[:, column]
@@ -131,7 +127,7 @@ def _strongest(
             percent=float(line[k]),
         )
         for k in map(int, order)
-        if abs(line[k]) >= threshold
+        if abs(line[k]) >= STRONG_PERCENT
     )
 
 

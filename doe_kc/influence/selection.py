@@ -49,16 +49,15 @@ def select_variables(
     targets: Mapping[str, float],
     *,
     sd: Mapping[str, float] | None = None,
-    prior_sd: Mapping[str, float] | None = None,
 ) -> Selection:
     """Verdict, expected move and bounds of every parameter of `influence` for `targets`.
 
     targets: characteristic id -> measured value in its unit; a nan is left out.
     sd: standard deviations, by default half the thesis's constraint interval, equations 5.1 and 5.2.
-    prior_sd: parameter path -> sd about nominal, by default a quarter of the distance of its bounds.
+    A parameter's prior standard deviation about nominal is a quarter of the distance of its bounds.
     InputError for an unknown characteristic, an sd that is not positive, or no usable target.
     """
-    problem = _problem(influence, targets, sd or {}, prior_sd or {})
+    problem = _problem(influence, targets, sd or {})
     pivots = choose(problem.scaled)
     columns = list(pivots.order)
     values = np.linalg.svd(problem.scaled, compute_uv=False)
@@ -102,13 +101,12 @@ def _problem(
     influence: Influence,
     targets: Mapping[str, float],
     sd: Mapping[str, float],
-    prior_sd: Mapping[str, float],
 ) -> _Problem:
     rows = _rows(influence, targets)
     known = tuple(influence.characteristics[j] for j in rows)
     slopes = per_unit(influence)[:, rows].T
     failed = np.asarray(~np.isfinite(slopes).all(axis=0))
-    prior = np.array([_prior(p, prior_sd) for p in influence.parameters])
+    prior = np.array([(p.upper - p.lower) / 4.0 for p in influence.parameters])
     return _Problem(
         parameters=influence.parameters,
         characteristics=known,
@@ -255,11 +253,4 @@ def _sd(name: str, target: float, given: Mapping[str, float]) -> float:
     value = given.get(name, (high - low) / 2.0)
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"standard deviation of {name} is {value:g}, expected a number > 0.")
-    return value
-
-
-def _prior(parameter: Parameter, given: Mapping[str, float]) -> float:
-    value = given.get(parameter.path, (parameter.upper - parameter.lower) / 4.0)
-    if not (math.isfinite(value) and value > 0.0):
-        raise InputError(f"prior sd of {parameter.path} is {value:g}, expected a number > 0.")
     return value

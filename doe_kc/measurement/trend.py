@@ -38,17 +38,17 @@ class Trend:
         return np.asarray(chebyshev.chebval(position, self.coefficients), dtype=np.float64)
 
 
-def fit_trends(inputs: FloatArray, values: FloatArray, *, max_degree: int = MAX_DEGREE) -> tuple[Trend, ...]:
+def fit_trends(inputs: FloatArray, values: FloatArray) -> tuple[Trend, ...]:
     """A trend for each row of `values` (k, n) over `inputs` (n,), both branches and all runs together.
 
     The degree is the smallest whose blocked 10-fold cross-validation error is within one standard error
     of the smallest one, the standard error being that of the difference, fold by fold.
-    n must exceed 2 (max_degree + 1).
+    n must exceed 2 (MAX_DEGREE + 1).
     """
     centre = float(inputs.max() + inputs.min()) / 2.0
     scale = float(np.ptp(inputs)) / 2.0
     position = (inputs - centre) / scale
-    basis: FloatArray = chebyshev.chebvander(position, max_degree).astype(np.float64)
+    basis: FloatArray = chebyshev.chebvander(position, MAX_DEGREE).astype(np.float64)
     folds = _folds(position)
     errors = _fold_errors(basis, values, folds)
     return tuple(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from openpyxl.workbook import Workbook
 
-from doe_kc.influence.relations import Link, Relations
+from doe_kc.influence.relations import STRONG_PERCENT, Link, Relations
 from doe_kc.influence.selection_result import Selection, Variable
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
@@ -55,7 +55,7 @@ def relations_sheet(book: Workbook, relations: Relations, study: str) -> None:
     title(
         ws,
         f"Relations: {study}",
-        f"Entries of {relations.threshold:g} % and more of the column's largest, strongest first; "
+        f"Entries of {STRONG_PERCENT:g} % and more of the column's largest, strongest first; "
         "+ = both grow together.",
     )
     numbers = [f"{k}." for k in range(1, relations.longest + 1)]

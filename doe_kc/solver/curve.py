@@ -61,16 +61,6 @@ def _end_slope(h0: float, h1: float, m0: float, m1: float) -> float:
     return float(slope)
 
 
-def evaluate(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
-    """The same curve in numbers, for plots and checks."""
-    from scipy.interpolate import PchipInterpolator
-
-    inner = PchipInterpolator(x, y)
-    slope = inner.derivative()
-    clipped = np.clip(at, x[0], x[-1])
-    return np.asarray(inner(clipped) + slope(clipped) * (at - clipped))
-
-
 def symbolic(b: Builder, prefix: str, points: int, *, side: str | None = None) -> SymbolicCurve:
     """The curve whose points are axle values `prefix.x0`, `prefix.y0`, `prefix.m0`, ..."""
     suffix = f"@{side}" if side else ""

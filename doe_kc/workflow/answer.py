@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.correlation.result import Correlation
@@ -25,20 +26,6 @@ from doe_kc.workflow.handover import characteristic_entries
 
 
 @dataclass(frozen=True)
-class AnswerGap:
-    """Whitened RMS of all records' deviations, both branches of every loop; 1 is noise.
-
-    nominal: of the axle handed in. tuned: re-tuned without an effect; None without a discovery. final: of the
-    axle handed over. noise_floor: what noise alone leaves.
-    """
-
-    nominal: float
-    tuned: float | None
-    final: float
-    noise_floor: float
-
-
-@dataclass(frozen=True)
 class Answer:
     """discovery, adoption: None where none was made; with an outside solver a discovery is advice and not
     adopted. gap: None without curves from the solver. further: what speaks against the axle beyond what the
@@ -48,7 +35,7 @@ class Answer:
     assessment: Assessment
     discovery: Discovery | None
     adoption: Adoption | None
-    gap: AnswerGap | None
+    gap: GapRecord | None
     further: tuple[Objection, ...] = ()
 
 
@@ -77,7 +64,7 @@ def answered(
 
 def answer_gap(
     study: Study, measurement: Measurement, correlation: Correlation, discovery: Discovery | None
-) -> AnswerGap | None:
+) -> GapRecord | None:
     """The gap of the records before and after. A discovery's calibrations of the rig and differences between
     the wheels are taken as it found them."""
     before, after = correlation.baseline.outcome.curves, correlation.best.outcome.curves
@@ -89,13 +76,17 @@ def answer_gap(
             final = fitted.model.residual_of(recorded(correlation.axle, measurement), fitted.z)
         else:
             final = fitted.model.likelihood.residual(after, NO_CHARACTERISTICS)
-        return AnswerGap(known.nominal, known.tuned, _rms(final), known.noise_floor)
+        return GapRecord(
+            nominal=known.nominal, tuned=known.tuned, final=_rms(final), noise_floor=known.noise_floor
+        )
     data = record_likelihood(study.axle, measurement)
 
     def left(curves: CurveSet) -> float:
         return _rms(data.residual(curves, NO_CHARACTERISTICS))
 
-    return AnswerGap(left(before), None, left(after), 1.0) if data.curves else None
+    if not data.curves:
+        return None
+    return GapRecord(nominal=left(before), tuned=None, final=left(after), noise_floor=1.0)
 
 
 def _rms(residual: np.ndarray) -> float:
@@ -130,28 +121,42 @@ def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | 
         yield Objection(f"The records ask for {names}, which was not adopted, {how}.")
 
 
-def summary_document(answer: Answer, axle_path: str, seconds: float) -> dict[str, Any]:
+def answer_record(answer: Answer, seconds: float) -> AnswerRecord:
+    """What is kept of an answer beside its correlation. seconds: of the whole run."""
+    discovery, adoption = answer.discovery, answer.adoption
+    return AnswerRecord(
+        verdict=discovery.verdict if discovery is not None else None,
+        effects=[] if discovery is None else list(_effect_entries(discovery, adoption)),
+        added=[] if adoption is None else [_effect_line(answer, e) for e in adoption.effects],
+        gap=answer.gap,
+        seconds=seconds,
+    )
+
+
+def _effect_entries(discovery: Discovery, adoption: Adoption | None) -> Iterator[dict[str, Any]]:
+    adopted = {(e.id, e.location) for e in adoption.effects} if adoption is not None else set()
+    for finding in (*discovery.findings, *discovery.traces):
+        taken = (finding.hypothesis.effect, finding.hypothesis.location) in adopted
+        named = discovery.verdict in ("named", "class") and finding in discovery.findings
+        if named or taken:
+            yield effect_entry(finding) | {"adopted": taken}
+
+
+def summary_document(
+    correlation: Correlation, assessment: Assessment, record: AnswerRecord, axle_path: str
+) -> dict[str, Any]:
     """summary.json, and the head of what `run --json` writes."""
-    discovery, gap = answer.discovery, answer.gap
-    adopted = {(e.id, e.location) for e in answer.adoption.effects} if answer.adoption is not None else set()
     return {
-        "status": answer.assessment.status,
-        "reasons": list(answer.assessment.reasons),
+        "status": assessment.status,
+        "reasons": list(assessment.reasons),
         "axle": axle_path,
-        "verdict": discovery.verdict if discovery is not None else None,
-        "effects": []
-        if discovery is None
-        else [
-            effect_entry(f) | {"adopted": (f.hypothesis.effect, f.hypothesis.location) in adopted}
-            for f in (*discovery.findings, *discovery.traces)
-            if (discovery.verdict in ("named", "class") and f in discovery.findings)
-            or (f.hypothesis.effect, f.hypothesis.location) in adopted
-        ],
-        "characteristics": characteristic_entries(answer.correlation),
-        "gap": None if gap is None else dict(vars(gap)),
-        "rating": answer.correlation.rating,
-        "mean_improvement_percent": answer.correlation.mean_improvement,
-        "seconds": seconds,
+        "verdict": record.verdict,
+        "effects": record.effects,
+        "characteristics": characteristic_entries(correlation),
+        "gap": None if record.gap is None else record.gap.model_dump(),
+        "rating": correlation.rating,
+        "mean_improvement_percent": correlation.mean_improvement,
+        "seconds": record.seconds,
     }
 
 
@@ -167,12 +172,10 @@ def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     return effect.label
 
 
-def answer_lines(answer: Answer) -> list[str]:
+def answer_lines(assessment: Assessment, record: AnswerRecord) -> list[str]:
     """The first lines of a terminal: status, effects, gap."""
-    lines = [answer.assessment.line]
-    if answer.adoption is not None and answer.adoption.effects:
-        lines += [f"Added: {_effect_line(answer, e)}" for e in answer.adoption.effects]
-    gap = answer.gap
+    lines = [assessment.line, *(f"Added: {words}" for words in record.added)]
+    gap = record.gap
     if gap is not None:
         steps = [f"{gap.nominal:.2f} as handed in"]
         if gap.tuned is not None:

@@ -6,11 +6,14 @@ from datetime import date
 from pathlib import Path
 
 from doe_kc.axle.write import write_axle
+from doe_kc.correlation.answer_record import AnswerRecord
+from doe_kc.correlation.assessment import Assessment
+from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
 from doe_kc.output import write_json
 from doe_kc.reporting.page.answer import write_answer_page
 from doe_kc.study import Study
-from doe_kc.workflow.answer import Answer, answer_lines, summary_document
+from doe_kc.workflow.answer import answer_lines, summary_document
 from doe_kc.workflow.handover import axle_note
 
 AXLE = "axle.toml"
@@ -18,27 +21,33 @@ SUMMARY = "summary.json"
 PAGE = "index.html"
 
 
-def write_answer(study: Study, answer: Answer, measurement: Measurement, seconds: float) -> list[Path]:
+def write_answer(
+    study: Study,
+    correlation: Correlation,
+    assessment: Assessment,
+    record: AnswerRecord,
+    measurement: Measurement,
+) -> list[Path]:
     """axle.toml, summary.json and index.html in the study's folder; returns the paths.
 
-    seconds: of the whole run. RunError when the folder cannot be written.
+    RunError when the folder cannot be written.
     """
-    correlation, assessment = answer.correlation, answer.assessment
     axle = write_axle(
         correlation.axle, study.axle_path, study.out / AXLE, note=axle_note(correlation, assessment)
     )
-    summary = write_json(study.out / SUMMARY, summary_document(answer, str(study.out / AXLE), seconds))
+    document = summary_document(correlation, assessment, record, str(study.out / AXLE))
+    summary = write_json(study.out / SUMMARY, document)
     page = write_answer_page(
         study.out / PAGE,
         correlation,
         assessment,
         study=study.name,
         date=date.today().isoformat(),
-        lines=answer_lines(answer)[1:],
+        lines=answer_lines(assessment, record)[1:],
         notes={
             "Axle": f"{AXLE}, from {study.axle_path.name}",
             "Measurement": measurement.manifest.name,
-            "Run time": f"{seconds:.0f} s",
+            "Run time": f"{record.seconds:.0f} s",
         },
         folder=study.out,
     )

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 
 from doe_kc.axle.plausibility import axle_warnings
-from doe_kc.characteristics import CHARACTERISTICS, Characteristic
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one
 from doe_kc.comparison.interval import constraint_interval
 from doe_kc.correlation.methods import check_method
+from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.errors import DoeKcError, InputError, RunError
 from doe_kc.measurement import Manifest, load_manifest
 from doe_kc.measurement.branches import reduce_case
@@ -77,20 +78,23 @@ def check_study(path: Path, *, measurement: Path | None = None, out: Path | None
     except InputError as error:
         return StudyCheck(None, None, (_fault("study", str(error)),), ())
     collect = _Collector()
-    manifest = _check_measurement(study, collect)
+    manifest, curves = _check_measurement(study, collect)
     _check_work(study, collect)
-    for sentence in (*_empty_intervals(study), *_aimless_constraints(study, manifest)):
+    intervals = list(_stated_intervals(study, curves))
+    for sentence in (*_empty(study, intervals), *_aimless_constraints(study, manifest)):
         collect.errors.append(_fault("targets", sentence))
     collect("out", lambda: _check_out(study.out))
     collect("out", lambda: _check_store(study))
-    return StudyCheck(study, manifest, tuple(collect.errors), tuple(_warnings(study, manifest)))
+    warnings = (*_warnings(study, manifest), *_missed_targets(study, intervals))
+    return StudyCheck(study, manifest, tuple(collect.errors), warnings)
 
 
 def _fault(kind: str, message: str) -> Fault:
     return Fault(message.split(": ", 1)[0], kind, message)
 
 
-def _check_measurement(study: Study, collect: _Collector) -> Manifest | None:
+def _check_measurement(study: Study, collect: _Collector) -> tuple[Manifest | None, CurveSet | None]:
+    """The manifest, and the measured curves of the load cases that have no fault."""
     if study.measurement is None:
         if study.variables.use == "selection":
             sentence = 'variables: use = "selection" needs a measurement; name one, or use = ["*"].'
@@ -98,15 +102,17 @@ def _check_measurement(study: Study, collect: _Collector) -> Manifest | None:
         if study.correlation.set_first:
             sentence = "correlation.set_first needs a measurement; name one or drop the key."
             collect.errors.append(_fault("measurement", f"{study.source}: {sentence}"))
-        return None
+        return None, None
     path = study.measurement / "test.toml" if study.measurement.is_dir() else study.measurement
     try:
         manifest = load_manifest(path)
     except InputError as error:
         collect.errors.append(_fault("measurement", str(error)))
-        return None
+        return None, None
+    curves = measured_curves(manifest, {}, study.axle.half_track)
+    cases: dict[str, CaseCurves] = {}
     for case in measured_cases(manifest):
-        collect("record", lambda case=case: _check_case(study, path, manifest, case))  # type: ignore[misc]
+        collect("record", lambda case=case: cases.update(_checked_case(study, path, manifest, case)))  # type: ignore[misc]
     if not set(manifest.records) & set(study.axle.load_cases):
         sentence = "no load case of the records is among the axle's; expected one of "
         collect.errors.append(
@@ -114,10 +120,10 @@ def _check_measurement(study: Study, collect: _Collector) -> Manifest | None:
         )
     for sentence in _unset(study, manifest):
         collect.errors.append(_fault("measurement", f"{study.source}: correlation.set_first: {sentence}"))
-    return manifest
+    return manifest, replace(curves, cases=cases)
 
 
-def _check_case(study: Study, path: Path, manifest: Manifest, case: str) -> None:
+def _checked_case(study: Study, path: Path, manifest: Manifest, case: str) -> Mapping[str, CaseCurves]:
     """Records read, branches told apart, enough points in the fit window; as `reduce` does it."""
     runs = {case: reduce_case(case_records(path, manifest, case))}
     curves = measured_curves(manifest, runs, study.axle.half_track)
@@ -126,6 +132,7 @@ def _check_case(study: Study, path: Path, manifest: Manifest, case: str) -> None
         from doe_kc.measurement.ride_height import vertical_curves
 
         vertical_curves(curves)
+    return curves.cases
 
 
 def _unset(study: Study, manifest: Manifest) -> Iterator[str]:
@@ -167,15 +174,62 @@ def _check_work(study: Study, collect: _Collector) -> None:
         collect("surrogates", lambda model=model: make(model))  # type: ignore[misc]
 
 
-def _empty_intervals(study: Study) -> Iterator[str]:
-    """Typed bounds whose low is not below high; one that is measured at one end needs the target."""
+@dataclass(frozen=True)
+class _StatedInterval:
+    """A constraint of which the study types an end, the other end that of equations 5.1 and 5.2; nan where
+    there is no target to take it from. aimed: whether the rating counts the distance to the target."""
+
+    entry: Characteristic
+    target: float
+    low: float
+    high: float
+    aimed: bool
+
+    @property
+    def words(self) -> str:
+        return f"[{self.low:g}, {self.high:g}] {self.entry.unit}"
+
+
+def _stated_intervals(study: Study, curves: CurveSet | None) -> Iterator[_StatedInterval]:
+    """About typed targets, else about those measured."""
     for ident, entry in CHARACTERISTICS.items():
         own = [o for o in study.characteristics if fnmatchcase(ident, o.match)]
+        if last(own, "low") is None and last(own, "high") is None:
+            continue
         target = last(own, "target")
-        implied = constraint_interval(target) if target is not None else (math.nan, math.nan)
-        low, high = first(last(own, "low"), implied[0]), first(last(own, "high"), implied[1])
-        if low >= high:
-            yield _empty(study, entry, low, high)
+        if target is None and curves is not None:
+            target = reduce_one(entry, curves, window=study.windows.get(entry.load_case))
+        implied = constraint_interval(first(target, math.nan))
+        yield _StatedInterval(
+            entry,
+            first(target, math.nan),
+            first(last(own, "low"), implied[0]),
+            first(last(own, "high"), implied[1]),
+            first(last(own, "objective"), entry.objective) and first(last(own, "goal"), "target") == "target",
+        )
+
+
+def _empty(study: Study, intervals: Sequence[_StatedInterval]) -> Iterator[str]:
+    """Intervals whose low is not below high."""
+    for interval in intervals:
+        if interval.low >= interval.high:
+            yield (
+                f"{study.source}: characteristics {interval.entry.id}: the interval {interval.words} is "
+                "empty; low must be below high."
+            )
+
+
+def _missed_targets(study: Study, intervals: Sequence[_StatedInterval]) -> Iterator[Fault]:
+    """Targets that their own interval excludes: a correlation ends between the two."""
+    for interval in intervals:
+        low, high, target = interval.low, interval.high, interval.target
+        if interval.aimed and low < high and (target < low or target > high):
+            yield _fault(
+                "targets",
+                f"{study.source}: characteristics {interval.entry.id}: the interval {interval.words} does "
+                f"not hold the target {target:g}, so that no design meets both; correct low and high, or "
+                "give objective = false.",
+            )
 
 
 def _aimless_constraints(study: Study, manifest: Manifest | None) -> Iterator[str]:
@@ -194,13 +248,6 @@ def _aimless_constraints(study: Study, manifest: Manifest | None) -> Iterator[st
                 "record is of its load case and no target is given; add target = VALUE or the record, or "
                 "drop the entry."
             )
-
-
-def _empty(study: Study, entry: Characteristic, low: float, high: float) -> str:
-    return (
-        f"{study.source}: characteristics {entry.id}: the interval [{low:g}, {high:g}] {entry.unit} is "
-        "empty; low must be below high."
-    )
 
 
 def _check_out(out: Path) -> None:

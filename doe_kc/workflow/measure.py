@@ -34,11 +34,9 @@ class Reduced:
     ride_height: RideHeight | None
 
 
-def study_records(study: Study, solution: Solution | None = None) -> Reduced | None:
-    """The study's reduced records; None when it names no measurement. solution: of its axle, if solved."""
-    if study.measurement is None:
-        return None
-    return reduce_records(study, solution if solution is not None else solve(study.axle))
+def study_records(study: Study) -> Reduced | None:
+    """The study's reduced records; None when it names no measurement."""
+    return reduce_records(study, solve(study.axle)) if study.measurement is not None else None
 
 
 def study_measurement(study: Study) -> Measurement:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from doe_kc.campaign.store import open_store
+from doe_kc.correlation.answer_record import AnswerRecord
 from doe_kc.correlation.assessment import Assessment, Objection, assess
 from doe_kc.correlation.problem import Candidate
 from doe_kc.correlation.record import (
@@ -33,23 +34,30 @@ RUN_FILE = "run.json"
 
 @dataclass(frozen=True)
 class Recalled:
-    """A correlation that was read back, and its assessment."""
+    """A correlation that was read back, and its assessment. answer: of the chain that it was part of; None of
+    one alone."""
 
     correlation: Correlation
     assessment: Assessment
+    answer: AnswerRecord | None
 
 
-def write_run(found: Correlation, folder: Path, answer: Answer | None = None) -> Path:
-    """run.json: what `recall` needs beside the store. answer: where the correlation is part of a chain."""
-    if answer is None or answer.adoption is None:
-        return write_json(folder / RUN_FILE, run_document(found))
+def write_run(found: Correlation, folder: Path) -> Path:
+    """run.json of a correlation alone: what `recall` needs beside the store."""
+    return write_json(folder / RUN_FILE, run_document(found))
+
+
+def write_chain(answer: Answer, record: AnswerRecord, folder: Path) -> Path:
+    """run.json of a chain's correlation: that, and what else its answer is written from."""
+    adoption = answer.adoption
     document = run_document(
-        found,
-        discovered=True,
-        effects=answer.adoption.records,
-        without=answer.adoption.without,
+        answer.correlation,
+        discovered=adoption is not None,
+        effects=() if adoption is None else adoption.records,
+        without=() if adoption is None else adoption.without,
         objections=answer.further,
         misfit=None if answer.gap is None else answer.gap.final,
+        answer=record,
     )
     return write_json(folder / RUN_FILE, document)
 
@@ -85,4 +93,8 @@ def recall(study: Study, reduced: Reduced | None, folder: Path) -> Recalled:
         found = replace(found, given=problem.judged(-1, Candidate(space.start, "given axle"), given))
     same = found.run.best == record.best
     further = [Objection(o.sentence, o.fatal) for o in record.objections]
-    return Recalled(found, assess(found, misfit=record.misfit if same else None, further=further))
+    assessment = assess(found, misfit=record.misfit if same else None, further=further)
+    answer = record.answer
+    if answer is not None and not same:  # the gap is that of the axle that was handed over then
+        answer = answer.model_copy(update={"gap": None})
+    return Recalled(found, assessment, answer)

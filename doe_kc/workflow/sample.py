@@ -20,7 +20,6 @@ from doe_kc.sampling import Design, find_sampler, sample
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
-from doe_kc.variables import Space
 
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
@@ -47,8 +46,8 @@ class Sampled:
         return [o for o in self.outcomes if o.failed]
 
 
-def study_design(study: Study, space: Space | None = None, *, method: str | None, n: int | None) -> Design:
-    """Designs of the study's space (or another); method and n in place of the study's own.
+def study_design(study: Study, *, method: str | None, n: int | None) -> Design:
+    """Designs of the study's space; method and n in place of the study's own.
 
     InputError for an unknown method, a table that does not fit, or a full factorial too large.
     """
@@ -56,7 +55,7 @@ def study_design(study: Study, space: Space | None = None, *, method: str | None
     chosen = method or options.method
     find_sampler(chosen, "--method" if method else f"{study.source}: sampling.method")
     return sample(
-        space or study.space,
+        study.space,
         n or options.n,
         seed=study.seed,
         method=chosen,

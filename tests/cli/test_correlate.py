@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import sqlite3
 import subprocess
 import sys
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +24,7 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
 from doe_kc.targets import build_targets, rate, score
-from tests.cli.runner import Outcome, assert_one_message, fails, leftovers, succeeds, write_study
+from tests.cli.runner import Outcome, assert_one_message, fails, invoke, leftovers, succeeds, write_study
 
 RECORDS = {"lateral": ("lateral.csv",), "brake": ("brake.csv",)}
 TABLES = """
@@ -52,16 +54,48 @@ def study_in(folder: Path, method: str = "ego", budget: int = 12, extra: str = "
     return write_study(folder, records=RECORDS, tables=TABLES.format(method=method, budget=budget) + extra)
 
 
+@dataclass(frozen=True)
+class Correlated:
+    """A study after `correlate`, with its stores and results."""
+
+    study: Path
+    document: dict[str, Any]
+
+    def copy(self, folder: Path) -> Path:
+        """Another of the same, to change."""
+        return Path(shutil.copytree(self.study, folder / "copy"))
+
+
+@pytest.fixture(scope="module")
+def example(tmp_path_factory: pytest.TempPathFactory) -> Correlated:
+    """The study of `study_in` with its default options, correlated with one worker; not to be changed."""
+    study = study_in(tmp_path_factory.mktemp("example"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("DOE_KC_COMPILE", "0")
+        patch.setattr("doe_kc.workflow.handover.write_correlation_figures", lambda *_, **__: [])
+        return Correlated(study, document_of(study))
+
+
 def document_of(study: Path, *options: object) -> dict[str, Any]:
     file = study / "c.json"
-    succeeds("correlate", study, "--json", file, "--workers", 1, *options)
+    outcome = invoke("correlate", study, "--json", file, "--workers", 1, *options)
+    assert outcome.code in (0, 1) and not outcome.err.count("doe-kc:"), outcome.err
     found: dict[str, Any] = json.loads(file.read_text())
+    assert outcome.code == (1 if found["status"] == "not_usable" else 0)
     return found
 
 
-def test_the_document_holds_what_the_tables_say(tmp_path: Path) -> None:
-    study = study_in(tmp_path)
-    found = document_of(study)
+def test_an_axle_that_is_not_usable_ends_with_code_1_and_is_written(tmp_path: Path) -> None:
+    study = study_in(tmp_path, budget=1)
+    outcome = invoke("correlate", study, "--json", tmp_path / "c.json", "--workers", 1)
+    assert outcome.code == 1 and outcome.out.startswith("Not usable: No design was better")
+    assert json.loads((tmp_path / "c.json").read_text())["status"] == "not_usable"
+    assert {"axle.toml", "report.html", "run.json"} <= {p.name for p in (study / "out/correlate").iterdir()}
+    assert invoke("report", study).code == 0
+
+
+def test_the_document_holds_what_the_tables_say(example: Correlated) -> None:
+    study, found = example.study, example.document
     assert found["method"] == "ego" and 1 < found["evaluations"] <= 12
     assert set(found) >= {
         *("method", "evaluations", "rating", "feasible", "mean_improvement_percent", "characteristics"),
@@ -73,12 +107,11 @@ def test_the_document_holds_what_the_tables_say(tmp_path: Path) -> None:
     assert found["parameters"]["static.toe"]["sd"] > 0
     files = {p.name for p in (study / "out" / "correlate").iterdir()}
     assert {"axle.toml", "report.html", "correlation.xlsx", "characteristics.csv", "run.json"} <= files
-    assert not leftovers(tmp_path)
+    assert not leftovers(study)
 
 
-def test_the_best_axle_loads_back_to_its_rating(tmp_path: Path) -> None:
-    folder = study_in(tmp_path)
-    found = document_of(folder)
+def test_the_best_axle_loads_back_to_its_rating(example: Correlated) -> None:
+    folder, found = example.study, example.document
     study = read_study(folder)
     axle = read_axle(folder / "out" / "correlate" / "axle.toml")
     from doe_kc.workflow.measure import study_records
@@ -91,20 +124,19 @@ def test_the_best_axle_loads_back_to_its_rating(tmp_path: Path) -> None:
     assert rate(targets, score(targets, values, curves)).total == pytest.approx(found["rating"], abs=1e-9)
 
 
-def test_a_second_run_needs_no_evaluation_and_ends_the_same(tmp_path: Path) -> None:
-    study = study_in(tmp_path)
-    first = document_of(study)
+def test_a_second_run_needs_no_evaluation_and_ends_the_same(example: Correlated, tmp_path: Path) -> None:
+    study, first = example.copy(tmp_path), example.document
     count = stored(study)
     second = document_of(study)
     assert stored(study) == count
-    assert {k: v for k, v in first.items() if k != "seconds"} == {
-        k: v for k, v in second.items() if k != "seconds"
+    elsewhere = {"seconds", "axle"}
+    assert {k: v for k, v in first.items() if k not in elsewhere} == {
+        k: v for k, v in second.items() if k not in elsewhere
     }
 
 
-def test_workers_do_not_change_the_result(tmp_path: Path) -> None:
-    one = document_of(study_in(tmp_path / "one"))
-    two = document_of(study_in(tmp_path / "two"), "--workers", 2)
+def test_workers_do_not_change_the_result(example: Correlated, tmp_path: Path) -> None:
+    one, two = example.document, document_of(study_in(tmp_path), "--workers", 2)
     assert one["rating"] == two["rating"] and one["parameters"] == two["parameters"]
 
 
@@ -145,12 +177,12 @@ def unmeasured(folder: Path, tables: str) -> Path:
     return write_study(folder, tables=tables + extra)
 
 
-def test_report_rates_anew_without_a_run(tmp_path: Path) -> None:
-    study = study_in(tmp_path)
-    first = document_of(study)
+def test_report_rates_anew_without_a_run(example: Correlated, tmp_path: Path) -> None:
+    study, first = example.copy(tmp_path), example.document
     count = stored(study)
     again = study / "again.json"
-    succeeds("report", study, "--json", again)
+    told = succeeds("report", study, "--json", again)
+    assert "No run is stored" in told.out and not (study / "out" / "index.html").exists()
     same = json.loads(again.read_text())
     assert same["rating"] == first["rating"] and same["parameters"] == first["parameters"]
     file = study / "study.toml"
@@ -207,9 +239,9 @@ def test_an_outside_solver_gives_the_same_correlation(tmp_path: Path) -> None:
         "sys.exit(subprocess.run(call, stdout=subprocess.DEVNULL).returncode)\n"
     )
     solver = f"[solver]\ncommand = {json.dumps(command)}\n"
-    study = study_in(tmp_path, budget=6, extra=solver)
+    study = study_in(tmp_path, budget=4, extra=solver)
     found = document_of(study, "--workers", 2)
-    own = document_of(study_in(tmp_path / "own", budget=6, extra="gradients = false\n"))
+    own = document_of(study_in(tmp_path / "own", budget=4, extra="gradients = false\n"))
     assert found["rating"] == pytest.approx(own["rating"], rel=1e-5)
     assert all(p["sd"] is None for p in found["parameters"].values())
     fails(
@@ -226,8 +258,8 @@ def test_an_outside_solver_gives_the_same_correlation(tmp_path: Path) -> None:
     fails(2, "correlation.gradients", "correlate", wrong)
 
 
-def test_slopes_of_the_own_solver_are_used_unless_forbidden(tmp_path: Path) -> None:
-    auto = document_of(study_in(tmp_path / "auto"))
+def test_slopes_of_the_own_solver_are_used_unless_forbidden(example: Correlated, tmp_path: Path) -> None:
+    auto = example.document
     forced = document_of(study_in(tmp_path / "true", extra="gradients = true\n"))
     without = document_of(study_in(tmp_path / "false", extra="gradients = false\n"))
     assert auto["rating"] == forced["rating"] != without["rating"]
@@ -242,8 +274,6 @@ def test_slopes_of_the_own_solver_are_used_unless_forbidden(tmp_path: Path) -> N
     ],
 )
 def test_wrong_options(tmp_path: Path, options: list[str], pattern: str) -> None:
-    from tests.cli.runner import invoke
-
     outcome = invoke("correlate", study_in(tmp_path), *options)
     assert outcome.code == 2 and "Traceback" not in outcome.err
     import re
@@ -320,8 +350,10 @@ def started(study: Path) -> subprocess.Popen[str]:
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
-def test_ended_in_mid_run_it_resumes_to_the_same_result(tmp_path: Path, number: signal.Signals) -> None:
-    study = study_in(tmp_path / "study", budget=14)
+def test_ended_in_mid_run_it_resumes_to_the_same_result(
+    example: Correlated, tmp_path: Path, number: signal.Signals
+) -> None:
+    study, count = study_in(tmp_path), stored(example.study)
     process = started(study)
     store = study / "out" / "store" / "evaluations.sqlite"
     deadline = time.monotonic() + 60.0
@@ -334,12 +366,11 @@ def test_ended_in_mid_run_it_resumes_to_the_same_result(tmp_path: Path, number: 
             Outcome(process.returncode, out, err), 1, "interrupted; .* kept.*, the same command"
         )
     kept = stored(study)
-    assert 6 <= kept < 14
+    assert 6 <= kept < count
     resumed = document_of(study)
-    whole = document_of(study_in(tmp_path / "whole", budget=14))
     for key in ("rating", "parameters", "characteristics", "evaluations"):
-        assert resumed[key] == whole[key]
-    assert stored(study) == stored(tmp_path / "whole")
+        assert resumed[key] == example.document[key]
+    assert stored(study) == count
 
 
 def _rows(store: Path) -> int:
@@ -364,5 +395,6 @@ def test_constraints_in_conflict_are_named(tmp_path: Path) -> None:
         '[[characteristics]]\nmatch = "lateral_offset.wc_lateral_disp"\ntarget = 0.05\n'
     )
     study = study_in(tmp_path, budget=8, extra=extra)
-    outcome = succeeds("correlate", study, "--workers", 1)
+    outcome = invoke("correlate", study, "--workers", 1)
+    assert outcome.code == 1 and outcome.out.startswith("Not usable: ")
     assert "No design within the bounds meets" in outcome.out

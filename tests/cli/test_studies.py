@@ -12,8 +12,9 @@ import pandas as pd
 import pytest
 
 from doe_kc.solver.load_cases import CASE_ORDER
-from tests.cli.runner import FEW, SHORT, fails, invoke, leftovers, succeeds, write_study
-from tests.reference import EXAMPLE
+from doe_kc.workflow.discover import effect_library
+from tests.cli.runner import FEW, SHORT, Outcome, fails, invoke, leftovers, succeeds, write_study
+from tests.reference import EXAMPLE, nominal
 
 LATERAL = {"lateral": ("lateral.csv", "lateral_repeat1.csv")}
 PUBLISHED = Path(__file__).parents[1] / "data" / "appendix_c_influence.csv"
@@ -181,10 +182,13 @@ def check_influence(document: dict[str, Any], out: str) -> None:
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_run_does_the_whole_chain(tmp_path: Path) -> None:
+def test_run_does_the_whole_chain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    few = effect_library(nominal())[:3]  # the others have tests of their own
+    monkeypatch.setattr("doe_kc.workflow.discover.effect_library", lambda *_: few)
     study = write_study(tmp_path, records=LATERAL, tables=SHORT)
-    outcome = succeeds("run", study, "--json", tmp_path / "r.json", "--workers", 1, "--seed", 3)
+    outcome = invoke("run", study, "--json", tmp_path / "r.json", "--workers", 1, "--seed", 3)
     document = json.loads((tmp_path / "r.json").read_text())
+    assert outcome.code == (1 if document["status"] == "not_usable" else 0), outcome.err
     steps = {"simulate", "reduce", "compare", "influence", "correlate", "discover"}
     head = {
         "status", "reasons", "axle", "verdict", "effects", "characteristics", "gap", "rating",
@@ -219,6 +223,22 @@ def test_run_does_the_whole_chain(tmp_path: Path) -> None:
     assert set(summary) == head and summary["reasons"] == document["reasons"]
     unlisted = {f for f in files if f.startswith("store/")} | {"correlate/run.json"}
     assert f"{len(files - unlisted)} files under" in outcome.out and not leftovers(tmp_path)
+    the_report_rebuilds_the_answer(study, outcome)
+
+
+def the_report_rebuilds_the_answer(study: Path, run: Outcome) -> None:
+    """Byte for byte, from what is stored."""
+    out = study / "out"
+    names = ("axle.toml", "summary.json", "index.html", "correlate/axle.toml", "compare/characteristics.csv")
+    written = {name: (out / name).read_bytes() for name in names}
+    store = {p.name: p.read_bytes() for p in (out / "store").glob("*.sqlite")}
+    for name in names:
+        (out / name).unlink()
+    again = succeeds("report", study)
+    assert {name: (out / name).read_bytes() for name in names} == written
+    assert {p.name: p.read_bytes() for p in (out / "store").glob("*.sqlite")} == store
+    assert again.out.splitlines()[:2] == run.out.splitlines()[:2]
+    assert f"The answer: {out / 'axle.toml'}" in again.out
 
 
 def test_another_measurement_takes_the_place_of_the_studys(tmp_path: Path) -> None:

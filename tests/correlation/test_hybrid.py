@@ -12,6 +12,7 @@ from doe_kc.correlation.hybrid.linear_model import linear_model
 from doe_kc.correlation.hybrid.record import Record, nearest
 from doe_kc.correlation.hybrid.search import Trial
 from doe_kc.correlation.loop import run_method
+from doe_kc.correlation.methods import hybrid
 from doe_kc.correlation.methods._base import Settings
 from doe_kc.correlation.methods.hybrid import Hybrid
 from doe_kc.correlation.problem import Candidate, Evaluated
@@ -176,9 +177,14 @@ def test_several_searches_contribute_and_say_who_they_are() -> None:
     assert sum(e.candidate.predicted is not None for e in modelled) > 0.5 * len(modelled)
 
 
-def test_stops_when_nothing_gains_any_more() -> None:
+def test_stops_when_nothing_gains_any_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    patience = 15
+    monkeypatch.setattr(hybrid, "PATIENCE", patience)
     problem = synthetic(3)
     method = Hybrid(problem, Settings(seed=1, budget=400))
     run = run_method(problem, method, solver(problem), budget=400)
-    assert run.stopped.startswith("no search gained")
+    assert run.stopped.startswith("no search gained") and f"last {patience} designs" in run.stopped
     assert len(run.evaluated) < 400
+    merits = [e.merit for e in run.evaluated]
+    before, idle = max(merits[:-patience]), max(merits[-patience:])
+    assert idle - before <= hybrid.WORTH * abs(before) < max(merits) - merits[0]

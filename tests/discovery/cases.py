@@ -5,7 +5,7 @@ Four load cases, thirteen tunable parameters, a library of a dozen hypotheses: a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache, lru_cache
 from pathlib import Path
@@ -62,6 +62,8 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "beyond": {"hub_compliance": {"camber_Nm_deg": 15000.0, "toe_Nm_deg": 30000.0}},
 }
 """Name of a car -> effects in it."""
+LATERAL = ("lateral", "lateral_opposite")
+"""Enough to name a compliant hub."""
 OFF_NOMINAL = {
     "beyond": {"LLF.z": 4.0, "LLR.z": -3.8, "ROB.z": -4.0, "UPB.y": 3.9, "llr.Fx": -0.6},
 }
@@ -134,9 +136,10 @@ def _case(like: Measurement, solved: CurveSet, name: str, rng: np.random.Generat
     return CaseCurves(name, theirs.input_unit, theirs.input, mean, half)
 
 
-def model(car: str) -> EffectModel:
+def model(car: str, load_cases: Sequence[str] = LOAD_CASES) -> EffectModel:
     """The nominal axle against a car's records."""
-    return EffectModel(nominal(), space(), record_likelihood(nominal(), records(car)))
+    axle = replace(nominal(), load_cases={name: nominal().load_cases[name] for name in load_cases})
+    return EffectModel(axle, space(), record_likelihood(axle, records(car)))
 
 
 @cache

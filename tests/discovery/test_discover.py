@@ -16,7 +16,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.measurement import reduce_measurement
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space
-from tests.discovery.cases import AXLE, RIG, discovery, library, model, nominal, records, space
+from tests.discovery.cases import AXLE, LATERAL, RIG, discovery, library, model, nominal, records, space
 
 
 def test_nothing_hidden_nothing_named() -> None:
@@ -130,11 +130,13 @@ def test_white_noise_assumed_where_it_is_not_does_not_pass_for_agreement() -> No
 def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ignore[no-untyped-def]
     path = tmp_path / "discovery.sqlite"
     told: list[str] = []
-    few = library("hub_compliance")
+    car, few = model("named", LATERAL), library("hub_compliance")
     with Ledger(path) as ledger:
-        first = discover(model("named"), few, Bench(ledger=ledger))
+        first = discover(car, few, Bench(ledger=ledger))
     with Ledger(path) as ledger:
-        again = discover(model("named"), few, Bench(ledger=ledger, watch=lambda words, _: told.append(words)))
+        again = discover(
+            model("named", LATERAL), few, Bench(ledger=ledger, watch=lambda words, _: told.append(words))
+        )
     assert "screening effects" not in told
     assert again.sentences == first.sentences
     assert np.array_equal(again.fitted.z, first.fitted.z)

@@ -1,61 +1,74 @@
-"""A search as a process of its own, killed in the middle, then run again."""
+"""A search as a process of its own, killed in the middle, then run again in another."""
 
 from __future__ import annotations
 
-import json
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.discover import discover
+from doe_kc.discovery.ledger import TABLE, Ledger
+from doe_kc.discovery.result import Discovery
+from tests.discovery.cases import LATERAL, library, model
+
 SEARCH = """
-import json, os, signal, sys
+import os, signal, sys
 from pathlib import Path
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.ledger import Ledger
-from tests.discovery.cases import library, model
+from tests.discovery.cases import LATERAL, library, model
 
-store, answer, lives = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3])
 put, fresh = Ledger.put, []
 
 def counted(self, key, arrays):
-    if len(fresh) == lives:
+    if len(fresh) == int(sys.argv[2]):
         os.kill(os.getpid(), signal.SIGKILL)
     fresh.append(key)
     put(self, key, arrays)
 
 Ledger.put = counted
-with Ledger(Path(store)) as ledger:
-    found = discover(model("named"), library("hub_compliance"), Bench(ledger=ledger))
-numbers = [list(found.fitted.z), [f.gain for f in found.findings], [h.gain for h in found.held_out]]
-answer.write_text(json.dumps([found.verdict, *numbers]))
-print(len(set(fresh)))
+with Ledger(Path(sys.argv[1])) as ledger:
+    discover(model("named", LATERAL), library("hub_compliance"), Bench(ledger=ledger))
 """
+"""Of a process that stores as many results as it is told, then kills itself."""
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 
 
-def run(folder: Path, name: str, lives: int) -> subprocess.CompletedProcess[str]:
-    """lives: results that it may store before it kills itself."""
-    arguments = [str(folder / f"{name}.sqlite"), str(folder / f"{name}.json"), str(lives)]
-    return subprocess.run(
-        [sys.executable, "-c", SEARCH, *arguments], capture_output=True, text=True, timeout=120, check=False
-    )
+def results(store: Path) -> int:
+    with sqlite3.connect(store) as connection:
+        return int(connection.execute(f"SELECT count(*) FROM {TABLE}").fetchone()[0])
 
 
-def test_killed_in_the_middle_it_goes_on_and_ends_the_same(tmp_path: Path) -> None:
-    whole = run(tmp_path, "whole", 10**6)
-    assert whole.returncode == 0, whole.stderr
-    stored = int(whole.stdout)
-    killed = run(tmp_path, "killed", stored // 2)
-    assert killed.returncode == -signal.SIGKILL
-    assert not (tmp_path / "killed.json").exists()
-    again = run(tmp_path, "killed", 10**6)
-    assert again.returncode == 0, again.stderr
-    assert int(again.stdout) < stored
-    assert (tmp_path / "killed.json").read_text() == (tmp_path / "whole.json").read_text()
-    assert json.loads((tmp_path / "whole.json").read_text())[0] == "named"
+def searched(store: Path) -> Discovery:
+    with Ledger(store) as ledger:
+        return discover(model("named", LATERAL), library("hub_compliance"), Bench(ledger=ledger))
+
+
+def test_killed_in_the_middle_it_goes_on_and_ends_the_same(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first, second = tmp_path / "whole.sqlite", tmp_path / "killed.sqlite"
+    whole = searched(first)
+    half = results(first) // 2
+    call = [sys.executable, "-c", SEARCH, str(second), str(half)]
+    killed = subprocess.run(call, capture_output=True, text=True, timeout=120, check=False)
+    assert killed.returncode == -signal.SIGKILL, killed.stderr
+    assert results(second) == half
+    fresh: list[str] = []
+    put = Ledger.put
+    monkeypatch.setattr(Ledger, "put", lambda self, key, arrays: (fresh.append(key), put(self, key, arrays)))
+    again = searched(second)
+    assert len(set(fresh)) == results(first) - half == results(second) - half
+    assert again.verdict == whole.verdict == "named"
+    assert np.array_equal(again.fitted.z, whole.fitted.z)
+    assert [f.gain for f in again.findings] == [f.gain for f in whole.findings]
+    assert [h.gain for h in again.held_out] == [h.gain for h in whole.held_out]

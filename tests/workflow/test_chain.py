@@ -12,7 +12,7 @@ import pytest
 from doe_kc.axle import read_axle
 from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.true_solver.options import SolverOptions
-from doe_kc.workflow.answer import answer_lines, answered, summary_document
+from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document
 from doe_kc.workflow.answer_handover import write_answer
 from doe_kc.workflow.chain import ADVICE, DIFFERENT, Steps, describes_the_same, follow_chain
 from doe_kc.workflow.correlate import correlate, study_problem
@@ -78,7 +78,8 @@ def test_effects_that_came_with_the_axle_and_the_baseline_that_was_handed_in() -
 def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
     plain, found = study(tmp_path), answer("named")
     plain = replace(plain, out=tmp_path / "out")
-    paths = write_answer(plain, found, reduced("named").measurement, 12.0)
+    record = answer_record(found, 12.0)
+    paths = write_answer(plain, found.correlation, found.assessment, record, reduced("named").measurement)
     assert [p.relative_to(tmp_path / "out").name for p in paths] == [
         "axle.toml",
         "summary.json",
@@ -93,12 +94,14 @@ def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
     assert summary["status"] == "sound" and summary["effects"][0]["adopted"] is True
     assert all(set(c) == ENTRY for c in summary["characteristics"])
     assert set(summary["gap"]) == {"nominal", "tuned", "final", "noise_floor"}
-    assert "Sound" in paths[2].read_text() and answer_lines(found)[0] == found.assessment.line
+    assert (
+        "Sound" in paths[2].read_text() and answer_lines(found.assessment, record)[0] == found.assessment.line
+    )
 
 
 def test_the_gap_of_the_answer_is_that_of_its_axle(tmp_path: Path) -> None:
     found = answer("named")
-    document = summary_document(found, "axle.toml", 1.0)
+    document = summary_document(found.correlation, found.assessment, answer_record(found, 1.0), "axle.toml")
     gap = document["gap"]
     assert gap["nominal"] > gap["tuned"] > gap["final"]
     assert gap["final"] == pytest.approx(discovery("named").gap.with_effect, rel=0.1)

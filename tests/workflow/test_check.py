@@ -12,7 +12,7 @@ from doe_kc.errors import InputError
 from doe_kc.study import read_study
 from doe_kc.workflow.check import Fault, check_study
 from doe_kc.workflow.correlate import study_problem
-from doe_kc.workflow.measure import study_measurement
+from doe_kc.workflow.measure import Reduced, study_measurement
 from tests.cli.runner import invoke, write_study
 
 
@@ -68,6 +68,43 @@ def test_an_empty_interval(bounds: str, tmp_path: Path) -> None:
         study_problem(read_study(study), None)
     if "target" in bounds:
         assert error.message == str(refused.value)
+
+
+WIND_UP = "[[characteristics]]\nmatch = 'brake.wind_up'\n"
+
+
+def measured_wind_up(folder: Path) -> float:
+    return study_measurement(read_study(small(folder))).characteristics["brake.wind_up"].value
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+def test_one_end_beyond_the_interval_of_what_is_measured(end: str, tmp_path: Path) -> None:
+    value = measured_wind_up(tmp_path / "m")
+    bound = value + (0.3 if end == "low" else -0.3) * abs(value)
+    study = small(tmp_path / "s", tables=f"{WIND_UP}{end} = {bound}")
+    error = one_error(study)
+    assert error.kind == "targets" and "is empty" in error.message
+    read = read_study(study)
+    with pytest.raises(InputError) as refused:
+        study_problem(read, Reduced(study_measurement(read), None))
+    assert error.message == str(refused.value)
+
+
+@pytest.mark.parametrize(("objective", "count"), [("", 1), ("\nobjective = false", 0)])
+def test_an_interval_that_excludes_its_target_is_a_warning(
+    objective: str, count: int, tmp_path: Path
+) -> None:
+    value = measured_wind_up(tmp_path / "m")
+    low = value + 0.1 * abs(value)
+    checked = check_study(small(tmp_path / "s", tables=f"{WIND_UP}low = {low}{objective}"))
+    assert not checked.errors and len(checked.warnings) == count
+    assert all(f"does not hold the target {value:g}" in w.message for w in checked.warnings)
+
+
+def test_one_end_within_the_interval_is_sound(tmp_path: Path) -> None:
+    low = measured_wind_up(tmp_path / "m") - 1e-6
+    checked = check_study(small(tmp_path / "s", tables=f"{WIND_UP}low = {low}"))
+    assert not checked.errors and not checked.warnings
 
 
 def test_results_that_cannot_be_written(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 from doe_kc.campaign.key import design_key
 from doe_kc.campaign.record import Record, packed_outcome
 from doe_kc.campaign.store import open_store
+from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
 from doe_kc.correlation.assessment import Objection
 from doe_kc.correlation.record import run_document
 from doe_kc.correlation.result import Correlation
@@ -112,6 +113,23 @@ def test_what_a_discovery_objects_to_is_said_again(tmp_path: Path) -> None:
     assert assessment.status == "doubtful"
     assert "hub is the leading one of a class." in assessment.reasons
     assert any("1.7 times the noise" in r for r in assessment.reasons)
+
+
+@pytest.mark.parametrize("same", [True, False])
+def test_the_answer_of_a_run_is_read_back(same: bool, tmp_path: Path) -> None:
+    """Its gap is that of the axle handed over then: of another design it is not known."""
+    study = kept(odd(), tmp_path, *ODD_WEIGHTS)
+    best = recall(study, REDUCED, tmp_path).correlation.run.best
+    gap = GapRecord(nominal=9.0, tuned=3.0, final=1.1, noise_floor=0.99)
+    answer = AnswerRecord(verdict="named", effects=[{"id": "hub"}], added=["Hub: 3 Nm"], gap=gap, seconds=7.5)
+    found = chosen(odd(), best if same else best - 1)
+    write_json(tmp_path / "run.json", run_document(found, answer=answer))
+    again = recall(study, REDUCED, tmp_path).answer
+    assert again == (answer if same else answer.model_copy(update={"gap": None}))
+
+
+def test_a_correlation_alone_has_no_answer(tmp_path: Path) -> None:
+    assert recall(kept(real(), tmp_path), REDUCED, tmp_path).answer is None
 
 
 def test_what_a_chain_began_with_is_read_back(tmp_path: Path) -> None:

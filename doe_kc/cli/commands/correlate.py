@@ -10,7 +10,9 @@ from doe_kc.cli._app import app
 from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.live import live_rating
 from doe_kc.cli.options import SchedulerOption
+from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
+from doe_kc.errors import RunError
 from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
@@ -35,22 +37,34 @@ def correlate(
     ] = None,
     scheduler: SchedulerOption = None,
 ) -> None:
-    """Tune the variables to the measured car; every candidate is confirmed by the true solver."""
+    """Tune the variables to the measured car; every candidate is confirmed by the true solver.
+
+    The exit code is 1 where the axle is not usable, which the first line explains; all files are written.
+    """
     found = given.read()
     reduced = study_records(found)
     correlation = correlated(
         found, reduced, method=method, budget=budget, workers=given.workers, scheduler=scheduler
     )
-    folder = found.out / "correlate"
+    folder, assessment = found.out / "correlate", assess(correlation)
     write_run(correlation, folder)
     records = reduced.measurement if reduced is not None else None
-    written = write_correlation(found, correlation, records, folder, workers=given.workers)
+    written = write_correlation(
+        found, correlation, records, folder, assessment=assessment, workers=given.workers
+    )
     if given.json is not None:
-        write_json(given.json, correlation_document(correlation, folder / "axle.toml"))
-    for line in correlation_lines(correlation):
+        write_json(given.json, correlation_document(correlation, folder / AXLE, assessment))
+    for line in correlation_lines(correlation, assessment):
         typer.echo(line)
     typer.echo(ALONE.format(axle=folder / AXLE))
     typer.echo(f"{len(written)} files in {folder}; store {found.store}", err=True)
+    leave_unless_usable(assessment)
+
+
+def leave_unless_usable(assessment: Assessment) -> None:
+    """Exit code 1 for an axle that cannot be used, so that no script goes on with it."""
+    if assessment.status == "not_usable":
+        raise typer.Exit(RunError.exit_code)
 
 
 def correlated(

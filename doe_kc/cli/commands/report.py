@@ -1,4 +1,4 @@
-"""`doe-kc report`: rebuilds workbook, tables, pictures and page of the last correlation from the store."""
+"""`doe-kc report`: rebuilds from the store what the last correlation or run handed over."""
 
 from __future__ import annotations
 
@@ -7,26 +7,49 @@ import typer
 from doe_kc.cli._app import app
 from doe_kc.cli.given import Given, takes_study
 from doe_kc.output import write_json
+from doe_kc.workflow.answer import answer_lines
+from doe_kc.workflow.answer_handover import AXLE, write_answer
+from doe_kc.workflow.compare import compare_model, write_comparison
 from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.measure import study_records
 from doe_kc.workflow.recall import recall
+
+NO_RUN = (
+    "No run is stored, only a correlation: axle.toml, index.html and summary.json in {out} were not rebuilt; "
+    "doe-kc run writes them."
+)
 
 
 @app.command("report")
 @takes_study
 def report(given: Given) -> None:
-    """Rebuild the results of the last correlation with the study's present weights; nothing is solved."""
+    """Rebuild the last correlation's results, and the answer of its run, with the study's present weights.
+
+    No design is solved again. After doe-kc correlate there is no run: the answer at the top of out is left.
+    """
     found = given.read()
     reduced = study_records(found)
     folder = found.out / "correlate"
     recalled = recall(found, reduced, folder)
-    correlation, assessment = recalled.correlation, recalled.assessment
+    correlation, assessment, answer = recalled.correlation, recalled.assessment, recalled.answer
     records = reduced.measurement if reduced is not None else None
     written = write_correlation(
         found, correlation, records, folder, assessment=assessment, workers=given.workers
     )
+    lines = correlation_lines(correlation, assessment)
+    if answer is not None and records is not None:
+        curves = correlation.best.outcome.curves
+        if curves is not None:
+            comparison = compare_model(found, curves, records)
+            written += write_comparison(
+                comparison, found.out / "compare", workers=given.workers, pictures=found.pictures
+            )
+        written += write_answer(found, correlation, assessment, answer, records)
+        lines = [*answer_lines(assessment, answer), *lines[1:], f"The answer: {found.out / AXLE}"]
+    else:
+        lines.append(NO_RUN.format(out=found.out))
     if given.json is not None:
         write_json(given.json, correlation_document(correlation, folder / "axle.toml", assessment))
-    for line in correlation_lines(correlation, assessment):
+    for line in lines:
         typer.echo(line)
-    typer.echo(f"{len(written)} files in {folder}", err=True)
+    typer.echo(f"{len(written)} files under {found.out}", err=True)

@@ -8,7 +8,7 @@ from functools import partial
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.commands.correlate import correlated
+from doe_kc.cli.commands.correlate import correlated, leave_unless_usable
 from doe_kc.cli.commands.discover import discovered
 from doe_kc.cli.commands.influence import influence_lines
 from doe_kc.cli.commands.reduce import ride_height_line
@@ -22,7 +22,7 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
-from doe_kc.workflow.answer import answer_lines, summary_document
+from doe_kc.workflow.answer import answer_lines, answer_record, summary_document
 from doe_kc.workflow.answer_handover import AXLE, write_answer
 from doe_kc.workflow.chain import Steps, follow_chain
 from doe_kc.workflow.compare import compare_model, comparison_document, write_comparison
@@ -31,13 +31,16 @@ from doe_kc.workflow.discovery_handover import write_discovery
 from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.influence import influence_document, influence_runs, study_influence, write_influence
 from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document, write_reduced
-from doe_kc.workflow.recall import write_run
+from doe_kc.workflow.recall import write_chain
 
 
 @app.command("run")
 @takes_study
 def run(given: Given, scheduler: SchedulerOption = None) -> None:
-    """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle under out."""
+    """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle under out.
+
+    The exit code is 1 where that axle is not usable, which the first line explains; all files are written.
+    """
     started = time.perf_counter()
     study, workers = given.read(), given.workers
     study.measured()
@@ -60,45 +63,47 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
         correlate=partial(_correlated, workers=workers, scheduler=scheduler),
     )
     answer = follow_chain(study, reduced, steps)
-    correlation, discovery = answer.correlation, answer.discovery
+    correlation, assessment, discovery = answer.correlation, answer.assessment, answer.discovery
     folder = study.out / "correlate"
     if discovery is not None:
         written += write_discovery(study, discovery, measurement, study.out / "discover", workers=workers)
-    write_run(correlation, folder, answer)
+    write_chain(answer, answer_record(answer, time.perf_counter() - started), folder)
     written += write_correlation(
-        study, correlation, measurement, folder, assessment=answer.assessment, workers=workers
+        study, correlation, measurement, folder, assessment=assessment, workers=workers
     )
     model = correlation.best.outcome.curves or curve_set(solution)
     comparison = compare_model(study, model, measurement)
     written += write_comparison(comparison, study.out / "compare", workers=workers, pictures=study.pictures)
-    written += write_answer(study, answer, measurement, time.perf_counter() - started)
+    record = answer_record(answer, time.perf_counter() - started)
+    write_chain(answer, record, folder)
+    written += write_answer(study, correlation, assessment, record, measurement)
 
-    total = time.perf_counter() - started
     if given.json is not None:
         write_json(
             given.json,
             {
-                **summary_document(answer, str(study.out / AXLE), total),
+                **summary_document(correlation, assessment, record, str(study.out / AXLE)),
                 "simulate": characteristics_document(solution, seconds),
                 "reduce": reduced_document(reduced),
                 "compare": comparison_document(comparison),
                 "influence": influence_document(influence.matrix),
-                "correlate": correlation_document(correlation, folder / "axle.toml", answer.assessment),
+                "correlate": correlation_document(correlation, folder / "axle.toml", assessment),
                 "discover": None
                 if discovery is None
                 else discovery_document(discovery, study.out / "discover" / "axle.toml"),
             },
         )
-    blocks = [answer_lines(answer), influence_lines(influence.matrix)]
+    blocks = [answer_lines(assessment, record), influence_lines(influence.matrix)]
     if discovery is not None:
         blocks.append(discovery_lines(discovery))
-    blocks.append(correlation_lines(correlation, answer.assessment)[1:])
+    blocks.append(correlation_lines(correlation, assessment)[1:])
     for line in [line for block in blocks for line in (*block, "")][:-1]:
         typer.echo(line)
     if reduced.ride_height is not None:
         typer.echo(ride_height_line(reduced.ride_height))
     typer.echo(f"The answer: {study.out / AXLE}, {study.out / 'index.html'}")
-    typer.echo(f"{len(written)} files under {study.out} in {total:.0f} s")
+    typer.echo(f"{len(written)} files under {study.out} in {record.seconds:.0f} s")
+    leave_unless_usable(assessment)
 
 
 def _correlated(

@@ -8,7 +8,7 @@ import pytest
 from scipy.interpolate import PchipInterpolator
 
 from doe_kc.solver.builder import Body, Builder
-from doe_kc.solver.curve import curve_values, evaluate
+from doe_kc.solver.curve import curve_values
 from doe_kc.solver.elements import bushing
 from doe_kc.solver.elements.lower_arm import ARM_AXES
 from tests.solver.elements.mini import MIRROR, about_origin, builder, number, stub, turned, wrench
@@ -146,7 +146,6 @@ def test_beyond_the_table_the_curve_is_straight(d: float, end: int) -> None:
     pchip = PchipInterpolator(X, F)
     expected = pchip(X[end]) + pchip.derivative()(X[end]) * (d - X[end])
     assert -force[0] == pytest.approx(float(expected))
-    assert evaluate(X, F, np.array([d]))[0] == pytest.approx(float(expected))
 
 
 def test_a_tabulated_torque_is_in_rad_and_n_mm() -> None:

@@ -1,0 +1,34 @@
+"""First-order expansions against differences of solved characteristics."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.axle import with_values
+from doe_kc.characteristics import reduce_all
+from doe_kc.correlation.linearization import linearize
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
+from doe_kc.typing import FloatArray
+from doe_kc.variables import VariableOptions, build_space
+from tests.discovery.cases import nominal
+
+STEP = 2e-3
+FORWARD = np.array([-25.0, 48.0, -36.0, 16.0, -3.0]) / 12.0
+"""Of five equidistant values, for the derivative at the first: exact for polynomials of degree four."""
+
+
+def test_at_a_rigid_strut_the_derivative_is_the_one_sided_one() -> None:
+    """At 0 itself: a flexibility of 0.001, whose derivative is 1e-6 to 1e-5 away, does not stand for it."""
+    space = build_space(nominal(), VariableOptions(use=["strut.flexibility"]), "test")
+    assert space.start == 0.0
+
+    def characteristics(place: float) -> FloatArray:
+        axle = with_values(nominal(), space.values(np.array([place])))
+        return np.array(list(reduce_all(curve_set(solve(axle))).values()))
+
+    differences = FORWARD @ [characteristics(k * STEP) for k in range(5)] / STEP
+    exact = linearize(nominal(), space, space.start).characteristics[:, 0]
+    moved = np.abs(differences) > 0.01
+    assert moved.sum() >= 10
+    np.testing.assert_allclose(exact[moved], differences[moved], rtol=1e-7)
