@@ -85,19 +85,21 @@ class Block:
     def __init__(self, function: ca.Function) -> None:
         pattern = function.sparsity_out(0)
         self._evaluate = Buffered(function)
-        row, col = pattern.get_triplet()
-        self._row, self._col = np.array(row, dtype=int), np.array(col, dtype=int)
+        row, col = (np.array(places, dtype=int) for places in pattern.get_triplet())
+        self._by_row = np.lexsort((col, row))
+        self._row, self._col = row[self._by_row], col[self._by_row]
         self._shape = pattern.shape
 
     def __call__(self, *arguments: FloatArray) -> FloatArray:
         """The dense block at one point."""
         out = np.zeros(self._shape, order="F")
-        out[self._row, self._col] = self._evaluate(*arguments)
+        out[self._row, self._col] = self._evaluate(*arguments)[self._by_row]
         return out
 
     def at(self, points: Points) -> FloatArray:
-        """(n, nonzeros) at many points: one block after the other keeps its long code in the cache."""
-        return np.array([self._evaluate(*point).copy() for point in points]).reshape(len(points), -1)
+        """(n, nonzeros) by row at many points: one block after the other keeps its long code in the cache."""
+        values = [self._evaluate(*point)[self._by_row] for point in points]
+        return np.array(values).reshape(len(points), -1)
 
     def dense(self, points: Points) -> FloatArray:
         """(n, rows, columns) at many points."""
@@ -108,20 +110,22 @@ class Block:
     def times(self, points: Points, right: sparse.csr_array) -> FloatArray:
         """(n, rows, m) products of the blocks at many points with one sparse matrix (columns, m)."""
         n, (rows, columns) = len(points), self._shape
-        stacked = self._assembled(self.at(points), np.zeros((n, 1), dtype=int), (n * rows, columns))
+        stacked = self._assembled(self.at(points), 0, columns)
         return np.asarray((stacked @ right).toarray()).reshape(n, rows, right.shape[1])
 
     def times_each(self, points: Points, right: FloatArray) -> FloatArray:
         """(n, rows, m) products of the blocks at many points with a dense matrix each, (n, columns, m)."""
         n, (rows, columns) = len(points), self._shape
-        start = columns * np.arange(n)[:, None]
-        diagonal = self._assembled(self.at(points), start, (n * rows, n * columns))
+        diagonal = self._assembled(self.at(points), columns, n * columns)
         return np.asarray(diagonal @ right.reshape(n * columns, -1)).reshape(n, rows, right.shape[2])
 
-    def _assembled(self, values: FloatArray, start: np.ndarray, shape: tuple[int, int]) -> sparse.csr_array:
-        """Blocks (n, nonzeros) below each other, each from its column of `start` (n, 1)."""
-        row = (self._row + self._shape[0] * np.arange(len(values))[:, None]).ravel()
-        return sparse.csr_array((values.ravel(), (row, (self._col + start).ravel())), shape=shape)
+    def _assembled(self, values: FloatArray, shift: int, columns: int) -> sparse.csr_array:
+        """Blocks (n, nonzeros) below each other, each `shift` columns to the right of the one before."""
+        (n, count), rows = values.shape, self._shape[0]
+        ends = np.cumsum(np.bincount(self._row, minlength=rows))
+        start = np.concatenate([[0], (ends + count * np.arange(n)[:, None]).ravel()])
+        column = (self._col + shift * np.arange(n)[:, None]).ravel()
+        return sparse.csr_array((values.ravel(), column, start), shape=(n * rows, columns))
 
 
 def equilibrium_change(k: Kernel, matrix: FloatArray, right: FloatArray) -> FloatArray:

@@ -180,7 +180,7 @@ def library_of(
     Generating them takes longer than loading: an entry of the cache says which library follows from the
     topology and the package's own sources. CompileError as `build`.
     """
-    origin = (kind, repr(topology), ca.__version__, _origins())
+    origin = (kind, repr(topology), ca.CasadiMeta.version(), _origins())
     entry = cache_folder() / f"{_digest(_compiler(), flags, *origin)}.txt"
     with suppress(OSError, ValueError):
         path = entry.with_name(entry.read_text(encoding="utf-8"))
