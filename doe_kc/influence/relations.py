@@ -6,7 +6,7 @@ measurements, Chalmers 2013, section 5.2.1 and Table 2.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -153,7 +153,7 @@ def _groups(influence: Influence, together: float) -> Iterator[Together]:
         )
 
 
-def _clusters(r: FloatArray, together: float) -> list[Sequence[int]]:
+def _clusters(r: FloatArray, together: float) -> list[list[int]]:
     """Groups of two and more by complete linkage, so that no pair of a group is below the limit."""
     groups = [[j] for j in range(len(r))]
     weakest = np.abs(r)

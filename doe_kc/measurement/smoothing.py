@@ -32,5 +32,4 @@ def local_weights(samples: FloatArray, grid: FloatArray, half_width: float) -> F
     order = np.arange(DEGREE + 1)
     moments = sums[order[:, None] + order].transpose(2, 0, 1)
     first = np.linalg.pinv(moments, hermitian=True)[:, 0, :]
-    weights: FloatArray = sum(first[:, i, None] * weighted[i] for i in order)
-    return weights
+    return np.asarray(sum(first[:, i, None] * weighted[i] for i in order))
