@@ -11,6 +11,7 @@ from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.live import live_rating
 from doe_kc.cli.options import SchedulerOption
 from doe_kc.correlation.result import Correlation
+from doe_kc.influence.selection_result import Selection
 from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
@@ -58,6 +59,7 @@ def correlated(
     reduced: Reduced | None,
     *,
     adoption: Adoption | None = None,
+    selection: Selection | None = None,
     method: str | None = None,
     budget: int | None = None,
     workers: int | None = None,
@@ -69,6 +71,7 @@ def correlated(
             study,
             reduced,
             adoption=adoption,
+            selection=selection,
             method=method,
             budget=budget,
             workers=workers,
