@@ -47,11 +47,13 @@ class Composite:
         scalar = self._objectives.value(y) + self._constraints.value(y) + self._limits.value(y)
         return np.asarray(scalar + self._curves.value(s))
 
-    def gradient(self, h: FloatArray) -> FloatArray:
-        """(p, m) derivative of the rating, corners rounded within a thousandth of Norm."""
+    def rating_and_gradient(self, h: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """(p,) rating and its (p, m) derivative, corners of the latter rounded within 1/1000 of Norm."""
         y, s = h[:, : self._k], h[:, self._k :]
-        scalar = self._objectives.slope(y) + self._constraints.slope(y) + self._limits.slope(y)
-        return np.hstack([scalar, self._curves.slope(s)])
+        terms = (self._objectives, self._constraints, self._limits)
+        scalar, push = sum(t.value(y) for t in terms), sum(t.slope(y) for t in terms)
+        value, slope = self._curves.value_and_slope(s)
+        return np.asarray(scalar + value), np.hstack([push, slope])
 
     def expected(self, mean: FloatArray, variance: FloatArray) -> FloatArray:
         """(p,) expected rating of Gaussian outputs, mean (p, m), variance (m,) or (p, m)."""

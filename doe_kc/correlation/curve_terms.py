@@ -52,19 +52,20 @@ class CurveTerms:
         return np.asarray(self.a @ s.T)
 
     def _squares(self, s: FloatArray, products: FloatArray) -> FloatArray:
-        out = (products * s.T).sum(axis=1).T + 2.0 * s @ self.b.T + self.e
+        out = np.einsum("cqp,pq->pc", products, s) + 2.0 * s @ self.b.T + self.e
         return np.asarray(np.maximum(out, 0.0))
 
     def value(self, s: FloatArray) -> FloatArray:
         """(p,) sum of the curves' terms of equation 2.2."""
         return self._value(self.squares(s))
 
-    def slope(self, s: FloatArray) -> FloatArray:
-        """(p, q) derivative of `value`."""
+    def value_and_slope(self, s: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """`value` and its derivative (p, q), which share the products."""
         products = self._products(s)
-        weight = self._weight(self._squares(s, products))
-        push = products + self.b[:, :, None]
-        return np.asarray(-(weight.T[:, None, :] * push).sum(axis=0).T)
+        square = self._squares(s, products)
+        weight = self._weight(square)
+        slope = -np.einsum("pc,cqp->pq", weight, products) - weight @ self.b
+        return self._value(square), np.asarray(slope)
 
     def expected(self, s: FloatArray, variance: FloatArray) -> FloatArray:
         """(p,) terms at the expected squares, scores (p, q) with independent variances (q,) or (p, q)."""

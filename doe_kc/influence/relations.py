@@ -6,13 +6,11 @@ measurements, Chalmers 2013, section 5.2.1 and Table 2.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
-from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import squareform
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
@@ -151,12 +149,17 @@ def _groups(influence: Influence, together: float) -> Iterator[Together]:
         )
 
 
-def _clusters(r: FloatArray, together: float) -> list[Sequence[int]]:
+def _clusters(r: FloatArray, together: float) -> list[list[int]]:
     """Groups of two and more by complete linkage, so that no pair of a group is below the limit."""
-    if len(r) < 2:
-        return []
-    distance = squareform(1.0 - np.abs(r), checks=False)
-    # A pair exactly at the limit belongs together, whatever the rounding of 1 - |r|.
-    names = fcluster(linkage(distance, "complete"), 1.0 - together + 1e-12, "distance")
-    clusters = [np.flatnonzero(names == name).tolist() for name in dict.fromkeys(names.tolist())]
-    return [c for c in clusters if len(c) > 1]
+    groups = [[j] for j in range(len(r))]
+    weakest = np.abs(r)
+    while len(groups) > 1:
+        pairs = np.triu(weakest, k=1)
+        a, b = np.unravel_index(int(np.argmax(pairs)), pairs.shape)
+        # A pair exactly at the limit belongs together, whatever the rounding of |r|.
+        if pairs[a, b] < together - 1e-12:
+            break
+        groups[a] = sorted(groups[a] + groups.pop(b))
+        weakest[a] = weakest[:, a] = np.minimum(weakest[a], weakest[b])
+        weakest = np.delete(np.delete(weakest, b, axis=0), b, axis=1)
+    return sorted(group for group in groups if len(group) > 1)

@@ -10,6 +10,7 @@ import numpy as np
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.measurement.reduction import Measurement
+from doe_kc.typing import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,24 +51,23 @@ def measurement_to_frames(measurement: Measurement) -> MeasurementFrames:
 def _curves(measurement: Measurement) -> pd.DataFrame:
     import pandas as pd
 
-    parts = []
+    labels: list[tuple[str, str, str, str, str]] = []
+    sizes: list[int] = []
+    numbers: list[tuple[FloatArray, ...]] = []
     for name, case in measurement.curves.cases.items():
         for response, curve in case.mean.items():
             for side, label in enumerate(SIDES):
                 variance = np.diag(measurement.noise[name][response].covariance(side=side))
-                columns = (
-                    name,
-                    case.input,
-                    case.input_unit,
-                    label,
-                    response,
-                    RESPONSE_UNITS[response],
-                    curve[side],
-                    case.half_width[response][side],
-                    np.sqrt(np.maximum(variance, 0.0)),
-                )
-                parts.append(pd.DataFrame(dict(zip(CURVE_COLUMNS, columns, strict=True))))
-    return pd.concat(parts, ignore_index=True)
+                sd = np.sqrt(np.maximum(variance, 0.0))
+                labels.append((name, case.input_unit, label, response, RESPONSE_UNITS[response]))
+                sizes.append(case.input.size)
+                numbers.append((case.input, curve[side], case.half_width[response][side], sd))
+    names = ("load_case", "input_unit", "side", "response", "unit")
+    texts = zip(names, zip(*labels, strict=True), strict=True)
+    columns: dict[str, Any] = {n: np.repeat(np.array(t, dtype=object), sizes) for n, t in texts}
+    values = zip(("input", "mean", "half_width", "sd"), zip(*numbers, strict=True), strict=True)
+    columns |= {n: np.concatenate(v) for n, v in values}
+    return pd.DataFrame(columns, columns=list(CURVE_COLUMNS))
 
 
 def _characteristics(measurement: Measurement) -> pd.DataFrame:

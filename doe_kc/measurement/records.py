@@ -11,7 +11,7 @@ import numpy as np
 from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.errors import InputError
 from doe_kc.measurement.channels import TIME, locate
-from doe_kc.measurement.tables import Table, number_at, read_csv_table
+from doe_kc.measurement.tables import Table, column_numbers, read_csv_table
 from doe_kc.measurement.workbook import read_sheet_table
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.typing import FloatArray
@@ -70,15 +70,11 @@ def record_from_table(table: Table, load_case: str) -> Record:
             f"{table.label}: has {len(table.rows)} samples, expected at least {MIN_SAMPLES} in a loop; "
             "record at a higher rate or export the whole loop."
         )
-    values = {role: _column(table, column) for role, column in columns.items()}
+    values = {role: column_numbers(table, column) for role, column in columns.items()}
     _check_time(table, values[TIME])
     _check_sweep(table.label, case, values["input"])
     channels = {r: np.stack([values[f"{r}_{s}"] for s in SIDES]) for r in RIG_RESPONSES}
     return Record(table.label, case, values[TIME], values["input"], channels)
-
-
-def _column(table: Table, column: int) -> FloatArray:
-    return np.array([number_at(table, row, column) for row in range(len(table.rows))])
 
 
 def _check_time(table: Table, time: FloatArray) -> None:

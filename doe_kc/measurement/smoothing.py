@@ -23,10 +23,13 @@ def local_weights(samples: FloatArray, grid: FloatArray, half_width: float) -> F
     nearest = np.sort(np.abs(distance), axis=1)[:, min(MIN_NEIGHBOURS, samples.size) - 1]
     width = np.maximum(half_width, 1.05 * nearest)[:, None]
     scaled = distance / width
-    kernel = np.where(np.abs(scaled) < 1.0, (1.0 - np.abs(scaled) ** 3) ** 3, 0.0)
-    basis = scaled[:, :, None] ** np.arange(DEGREE + 1)
-    weighted = kernel[:, :, None] * basis
-    moments = np.einsum("nmi,nmj->nij", basis, weighted)
+    size = np.minimum(np.abs(scaled), 1.0)
+    inside = 1.0 - size * size * size
+    weighted = [inside * inside * inside]
+    while len(weighted) <= 2 * DEGREE:
+        weighted.append(weighted[-1] * scaled)
+    sums = np.array([w.sum(axis=1) for w in weighted])
+    order = np.arange(DEGREE + 1)
+    moments = sums[order[:, None] + order].transpose(2, 0, 1)
     first = np.linalg.pinv(moments, hermitian=True)[:, 0, :]
-    weights: FloatArray = np.einsum("ni,nmi->nm", first, weighted)
-    return weights
+    return np.asarray(sum(first[:, i, None] * weighted[i] for i in order))

@@ -8,13 +8,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from doe_kc.errors import InputError
+from doe_kc.typing import FloatArray
 
 Cell = str | float | None
 
 ZIP_MAGIC = b"PK\x03\x04"
 OLE_MAGIC = b"\xd0\xcf\x11\xe0"
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_NUMBER = re.compile(_DECIMAL)
+_NUMBERS = re.compile(rf"(?:{_DECIMAL}\n)*+")
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,8 @@ def read_csv_table(path: Path) -> Table:
 
 
 def _cells(line: str, separator: str) -> list[str]:
+    if '"' not in line and len(line.split()) == 1:  # nothing to strip
+        return line.split(separator)
     return [cell.strip().strip('"').strip() for cell in line.split(separator)]
 
 
@@ -112,6 +119,29 @@ def _refuse_ragged(path: Path, headings: Sequence[str], rows: Sequence[tuple[int
             f"{path}: row {number} has {len(row)} columns, expected {len(headings)} as in the heading; "
             "look for a decimal comma or a missing separator there."
         )
+
+
+def column_numbers(table: Table, column: int) -> FloatArray:
+    """(n,) finite numbers of a column; InputError as `number_at` for the first cell that holds none."""
+    cells = [row[column] for row in table.rows]
+    values = _plain_numbers(cells, table.decimal_comma)
+    if values is not None and np.isfinite(values).all():
+        return values
+    return np.array([number_at(table, row, column) for row in range(len(cells))])
+
+
+def _plain_numbers(cells: Sequence[Cell], decimal_comma: bool) -> FloatArray | None:
+    """All cells at once where every one is a number or every one the text of a number, else None."""
+    kinds = set(map(type, cells))
+    if kinds <= {float, int}:
+        return np.array(cells, dtype=float)
+    if kinds != {str}:
+        return None
+    text = "\n".join([*cells, ""])  # type: ignore[list-item]  # the kinds say that they are texts
+    text = text.replace(",", ".") if decimal_comma else text
+    if not _NUMBERS.fullmatch(text) or text.count("\n") != len(cells):
+        return None
+    return np.array(text.split(), dtype=float)
 
 
 def number_at(table: Table, row: int, column: int) -> float:

@@ -219,6 +219,7 @@ def _merged(ws: Worksheet, row: int, names: list[str]) -> None:
 
 
 def _labels(ws: Worksheet, influence: Influence, at: Layout) -> None:
+    last = max(at.last_column + 1, ws.max_column)
     for r, i in enumerate(at.rows, start=FIRST):
         parameter = influence.parameters[i]
         first = r in at.row_breaks
@@ -227,7 +228,6 @@ def _labels(ws: Worksheet, influence: Influence, at: Layout) -> None:
         put(ws, r, 2, parameter.path.replace(".", " "), bold=True)
         put(ws, r, 3, parameter.path, color=MUTED)
         put(ws, r, 4, step_text(influence, i), horizontal="right")
-        last = max(at.last_column + 1, ws.max_column)
         put(ws, r, last, _remark(influence, i), color=MUTED)
 
 

@@ -2,35 +2,80 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 from scipy import sparse
-from scipy.linalg import lapack
 
+from doe_kc.solver.compiled import (
+    COMPILE_VARIABLE,
+    CompileError,
+    compiled_kernel,
+    generate,
+    library_of,
+)
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
 from doe_kc.solver.topology import KEPT, Topology
 from doe_kc.typing import FloatArray
 
+Points = Sequence[tuple[FloatArray, ...]]
+"""(x, c, u, z) of equilibria."""
+FLAGS = "-O0"
+"""Long functions: at -O1 they take three times as long to compile and no less to run."""
+
 
 @lru_cache(maxsize=KEPT)
 def blocks(topology: Topology) -> Mapping[str, ca.Function]:
-    """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on."""
+    """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on.
+
+    Compiled where that can be done: interpreted they take four times as long.
+    """
+    if os.environ.get(COMPILE_VARIABLE) == "0":
+        return interpreted_blocks(topology)
+    names = _names(kernel(topology).nz > 0)
+
+    def sources() -> dict[str, str]:
+        functions = interpreted_blocks(topology)
+        return {_function(name): generate(functions[name]) for name in names}
+
+    try:
+        own = str(library_of(topology, "blocks", sources, {_function(name): FLAGS for name in names}))
+        jacobian = str(compiled_kernel(topology).path)
+    except CompileError:
+        return interpreted_blocks(topology)
+    out = {name: ca.external(_function(name), own) for name in names}
+    return out | {"R_x": ca.external("jacobian", jacobian)}
+
+
+def _names(states: bool) -> list[str]:
+    """Blocks but R_x, which the kernel has. states: whether there are friction states z."""
+    parts, by = ("R", "Y", "Z"), ("x", "c", "u", "z")
+    count = slice(None, None if states else -1)
+    return ["constants", *(n for p in parts[count] for d in by[count] if (n := f"{p}_{d}") != "R_x")]
+
+
+def _function(name: str) -> str:
+    return f"{name}_block"
+
+
+@lru_cache(maxsize=KEPT)
+def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
+    """The same as symbolic expressions have them."""
     k = kernel(topology)
     eq = k.equations
     symbols = [eq.x, eq.c, eq.u, eq.z]
-    parts = {"R": eq.residual, "Y": eq.outputs} | ({"Z": eq.next_state} if k.nz else {})
-    by = {"x": eq.x, "c": eq.c, "u": eq.u} | ({"z": eq.z} if k.nz else {})
+    of = {"R": eq.residual, "Y": eq.outputs, "Z": eq.next_state}
+    by = {"x": eq.x, "c": eq.c, "u": eq.u, "z": eq.z}
     out = {
-        f"{part}_{name}": ca.Function(f"{part}_{name}_block", symbols, [ca.jacobian(expression, symbol)])
-        for part, expression in parts.items()
-        for name, symbol in by.items()
-        if (part, name) != ("R", "x")
+        name: ca.Function(_function(name), symbols, [ca.jacobian(of[name[0]], by[name[2]])])
+        for name in _names(k.nz > 0)
+        if name != "constants"
     }
     out["R_x"] = k.functions["jacobian"]
-    out["constants"] = ca.Function("constants_block", [eq.p], [ca.jacobian(eq.constants, eq.p)])
+    out["constants"] = ca.Function(_function("constants"), [eq.p], [ca.jacobian(eq.constants, eq.p)])
     return out
 
 
@@ -40,34 +85,56 @@ class Block:
     def __init__(self, function: ca.Function) -> None:
         pattern = function.sparsity_out(0)
         self._evaluate = Buffered(function)
-        row, col = pattern.get_triplet()
-        self._row, self._col = np.array(row, dtype=int), np.array(col, dtype=int)
+        row, col = (np.array(places, dtype=int) for places in pattern.get_triplet())
+        self._by_row = np.lexsort((col, row))
+        self._row, self._col = row[self._by_row], col[self._by_row]
         self._shape = pattern.shape
 
     def __call__(self, *arguments: FloatArray) -> FloatArray:
         """The dense block at one point."""
         out = np.zeros(self._shape, order="F")
-        out[self._row, self._col] = self._evaluate(*arguments)
+        out[self._row, self._col] = self._evaluate(*arguments)[self._by_row]
         return out
 
-    def times(self, points: Sequence[tuple[FloatArray, ...]], right: sparse.csr_array) -> FloatArray:
-        """(n, rows, columns) products of the blocks at many points with one sparse matrix, dense."""
-        n, rows = len(points), self._shape[0]
-        values = np.array([self._evaluate(*at).copy() for at in points]).reshape(n, -1)
-        row = (self._row + rows * np.arange(n)[:, None]).ravel()
-        stacked = sparse.csr_array(
-            (values.ravel(), (row, np.tile(self._col, n))), shape=(n * rows, self._shape[1])
-        )
+    def at(self, points: Points) -> FloatArray:
+        """(n, nonzeros) by row at many points: one block after the other keeps its long code in the cache."""
+        values = [self._evaluate(*point)[self._by_row] for point in points]
+        return np.array(values).reshape(len(points), -1)
+
+    def dense(self, points: Points) -> FloatArray:
+        """(n, rows, columns) at many points."""
+        out = np.zeros((len(points), *self._shape))
+        out[:, self._row, self._col] = self.at(points)
+        return out
+
+    def times(self, points: Points, right: sparse.csr_array) -> FloatArray:
+        """(n, rows, m) products of the blocks at many points with one sparse matrix (columns, m)."""
+        n, (rows, columns) = len(points), self._shape
+        stacked = self._assembled(self.at(points), 0, columns)
         return np.asarray((stacked @ right).toarray()).reshape(n, rows, right.shape[1])
+
+    def times_each(self, points: Points, right: FloatArray) -> FloatArray:
+        """(n, rows, m) products of the blocks at many points with a dense matrix each, (n, columns, m)."""
+        n, (rows, columns) = len(points), self._shape
+        diagonal = self._assembled(self.at(points), columns, n * columns)
+        return np.asarray(diagonal @ right.reshape(n * columns, -1)).reshape(n, rows, right.shape[2])
+
+    def _assembled(self, values: FloatArray, shift: int, columns: int) -> sparse.csr_array:
+        """Blocks (n, nonzeros) below each other, each `shift` columns to the right of the one before."""
+        (n, count), rows = values.shape, self._shape[0]
+        ends = np.cumsum(np.bincount(self._row, minlength=rows))
+        start = np.concatenate([[0], (ends + count * np.arange(n)[:, None]).ravel()])
+        column = (self._col + shift * np.arange(n)[:, None]).ravel()
+        return sparse.csr_array((values.ravel(), column, start), shape=(n * rows, columns))
 
 
 def equilibrium_change(k: Kernel, matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """(nx, m) change of the unknowns -matrix^-1 right; matrix: (nx, nx) of an equilibrium, right: (nx, m).
+    """(..., nx, m) change of the unknowns -matrix^-1 right; matrix: (..., nx, nx) of equilibria.
 
-    LinAlgError where the equilibrium is singular.
+    LinAlgError where an equilibrium is singular.
     """
     scale = k.scale[:, None]
-    _, _, solved, info = lapack.dgesv(matrix / scale, -right / scale, overwrite_a=True, overwrite_b=True)
-    if info:
-        raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists")
-    return np.asarray(solved)
+    try:
+        return np.asarray(np.linalg.solve(matrix / scale, -right / scale))
+    except np.linalg.LinAlgError:
+        raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists") from None

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import ctypes
 import hashlib
+import inspect
 import os
 import platform
 import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -18,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
+from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.topology import KEPT, Topology
 from doe_kc.typing import FloatArray
@@ -36,6 +40,11 @@ COMPILE_TIMEOUT = 120.0
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
 DRIVER = Path(__file__).with_name("driver.c")
+MARCHED = ("residual", "jacobian", "outputs", "state_update")
+"""Functions of a kernel that its library holds, beside the driver."""
+PACKAGE = Path(__file__).parents[1]
+ORIGINS = ("solver/**/*.py", "solver/*.c", "axle/*.py", "curves.py")
+"""Sources of the package that generated code follows from."""
 
 
 class CompileError(Exception):
@@ -62,8 +71,9 @@ def find_compiler() -> str | None:
 
 @dataclass(frozen=True)
 class CompiledKernel:
-    """A loaded library."""
+    """A loaded library. path: where it lies."""
 
+    path: Path
     library: ctypes.CDLL
     size_iw: int
     size_w: int
@@ -147,33 +157,86 @@ def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:
 @lru_cache(maxsize=KEPT)
 def compiled_kernel(topology: Topology) -> CompiledKernel:
     """Build or load the library of a topology; CompileError when that cannot be done."""
-    functions = list(kernel(topology).functions.values())
-    sources = {f.name(): generate(f) for f in functions} | {"driver": DRIVER.read_text()}
+
+    def sources() -> dict[str, str]:
+        generated = {name: generate(kernel(topology).functions[name]) for name in MARCHED}
+        return generated | {"driver": DRIVER.read_text()}
+
+    path = library_of(topology, "kernel", sources, FLAGS)
+    functions = [ca.external(name, str(path)) for name in MARCHED]
     return CompiledKernel(
-        ctypes.CDLL(str(build(sources))),
+        path,
+        ctypes.CDLL(str(path)),
         max(f.sz_iw() for f in functions),
         max(f.sz_w() for f in functions),
     )
 
 
-def build(sources: dict[str, str]) -> Path:
-    """Shared library of C sources by part name; from the cache when it has it."""
+def library_of(
+    topology: Topology, kind: str, sources: Callable[[], dict[str, str]], flags: Mapping[str, str]
+) -> Path:
+    """Shared library of one kind of a topology's functions; sources: C by part name, asked for if need be.
+
+    Generating them takes longer than loading: an entry of the cache says which library follows from the
+    topology and the package's own sources. CompileError as `build`.
+    """
+    origin = (kind, repr(topology), ca.CasadiMeta.version(), _origins())
+    entry = cache_folder() / f"{_digest(_compiler(), flags, *origin)}.txt"
+    with suppress(OSError, ValueError):
+        path = entry.with_name(entry.read_text(encoding="utf-8"))
+        if path.stem.endswith(f"-{fingerprint(path)}"):
+            return path
+    path = build(sources(), flags)
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", dir=entry.parent, suffix=".tmp", delete=False, encoding="utf-8"
+        ) as file:
+            file.write(path.name)
+        Path(file.name).replace(entry)
+    except OSError as error:
+        raise _unusable(entry.parent, error) from error
+    return path
+
+
+@lru_cache(maxsize=1)
+def _origins() -> str:
+    """Digest of the sources that equations are assembled from, elements of other packages included."""
+    files = {file for pattern in ORIGINS for file in PACKAGE.glob(pattern)}
+    files |= {Path(inspect.getfile(type(unit))) for unit in ELEMENTS}
+    return hashlib.sha256(b"\0".join(file.read_bytes() for file in sorted(files))).hexdigest()
+
+
+def _compiler() -> str:
     compiler = find_compiler()
     if compiler is None:
         raise CompileError("no C compiler (cc, gcc or clang) is on the path")
-    identity = "\0".join([platform.machine(), compiler, repr(sorted(FLAGS.items())), *sources.values()])
-    name = hashlib.sha256(identity.encode()).hexdigest()[:24]
+    return compiler
+
+
+def _digest(compiler: str, flags: Mapping[str, str], *parts: str) -> str:
+    identity = "\0".join([platform.machine(), compiler, repr(sorted(flags.items())), *parts])
+    return hashlib.sha256(identity.encode()).hexdigest()[:24]
+
+
+def _unusable(folder: Path, error: OSError) -> CompileError:
+    return CompileError(f"the cache folder {folder} cannot be used ({error.strerror})")
+
+
+def build(sources: dict[str, str], flags: Mapping[str, str] = FLAGS) -> Path:
+    """Shared library of C sources by part name; from the cache when it has it."""
+    compiler = _compiler()
+    name = _digest(compiler, flags, *sources.values())
     folder = cache_folder()
     try:
         if found := cached(folder, name):
             return found
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            library = _compile(compiler, Path(scratch), sources)
+            library = _compile(compiler, Path(scratch), sources, flags)
             target = folder / f"{name}-{fingerprint(library)}.so"
             library.replace(target)
     except OSError as error:
-        raise CompileError(f"the cache folder {folder} cannot be used ({error.strerror})") from error
+        raise _unusable(folder, error) from error
     return target
 
 
@@ -201,13 +264,13 @@ def generate(function: ca.Function) -> str:
     return str(generator.dump())
 
 
-def _compile(compiler: str, scratch: Path, sources: dict[str, str]) -> Path:
+def _compile(compiler: str, scratch: Path, sources: dict[str, str], flags: Mapping[str, str]) -> Path:
     """All parts side by side, then one link."""
     running = []
     for part, text in sources.items():
         file = scratch / f"{part}.c"
         file.write_text(text)
-        command = [compiler, FLAGS.get(part, DEFAULT_FLAGS), "-fPIC", "-c", str(file)]
+        command = [compiler, flags.get(part, DEFAULT_FLAGS), "-fPIC", "-c", str(file)]
         running.append(_start([*command, "-o", str(file.with_suffix(".o"))]))
     messages = [_finish(process) for process in running]
     library = scratch / "library"

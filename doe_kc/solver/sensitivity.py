@@ -129,25 +129,33 @@ class _Differentiator:
 
     def _points(
         self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
-    ) -> tuple[list[FloatArray], list[FloatArray], FloatArray]:
-        """(dx, dy) of consecutive equilibria and dz after the last.
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(n, ., np) dx and dy of consecutive equilibria, and dz after the last.
 
         x, u: (n, ...); z: (n, nz) friction states before each; du: (n, nu, np); dz: before the first.
         """
+        k, block = self._kernel, self._block
         points = [(x[i], self._c, u[i], z[i]) for i in range(len(x))]
-        explicit = {p: self._block[f"{p}_c"].times(points, self._dc) for p in self._parts}
-        all_dx, all_dy = [], []
-        for i, at in enumerate(points):
-            known = {p: explicit[p][i] + self._block[f"{p}_u"](*at) @ du[i] for p in self._parts}
-            if self._kernel.nz:
-                for p in self._parts:
-                    known[p] += self._block[f"{p}_z"](*at) @ dz
-            dx = equilibrium_change(self._kernel, self._block["R_x"](*at), known["R"])
-            all_dx.append(dx)
-            all_dy.append(known["Y"] + self._block["Y_x"](*at) @ dx)
-            if self._kernel.nz:
-                dz = known["Z"] + self._block["Z_x"](*at) @ dx
-        return all_dx, all_dy, dz
+        known = {
+            p: block[f"{p}_c"].times(points, self._dc) + block[f"{p}_u"].times_each(points, du)
+            for p in self._parts
+        }
+        matrix = block["R_x"].dense(points)
+        if not k.nz:
+            dx = equilibrium_change(k, matrix, known["R"])
+            return dx, known["Y"] + block["Y_x"].times_each(points, dx), dz
+        by_state = {p: block[f"{p}_z"].dense(points) for p in self._parts}
+        change = equilibrium_change(k, matrix, np.concatenate([known["R"], by_state["R"]], axis=2))
+        total = {
+            p: np.concatenate([known[p], by_state[p]], axis=2) + block[f"{p}_x"].times_each(points, change)
+            for p in ("Y", "Z")
+        }
+        before = np.empty((len(x), *dz.shape))
+        for i, (own, carried) in enumerate(zip(*_halves(total["Z"], dz.shape[1]), strict=True)):
+            before[i] = dz
+            dz = own + carried @ dz
+        (dx, x_by_state), (dy, y_by_state) = (_halves(a, dz.shape[1]) for a in (change, total["Y"]))
+        return dx + x_by_state @ before, dy + y_by_state @ before, dz
 
     def _point(
         self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
@@ -203,7 +211,12 @@ class _Differentiator:
             else:  # friction remembers where a motion reversed inside a step
                 between = gradient_between(du, inside)
                 _, dy, dz = self._points(inside.x, inside.u, inside.z, between, dz)
-                dy = [d for d, at in zip(dy, inside.share, strict=True) if at == 1.0]
-            out.append(np.array([dy_start, *dy]))
-            dy_start = dy[-1]
+                dy = dy[inside.share == 1.0]
+            out.append(np.concatenate([dy_start[None], dy]))
+            dy_start = out[-1][-1]
         return tuple(out)
+
+
+def _halves(columns: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """The first `count` columns, which the parameters move, and the others, which earlier states move."""
+    return columns[..., :count], columns[..., count:]

@@ -23,13 +23,15 @@ def write_comparison(
     comparison: Comparison, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
     """characteristics.csv, curves.csv (RMS) and one figure a load case."""
-    from doe_kc.reporting.comparison_figures import write_comparison_figures
-
-    return [
+    written = [
         write_csv(folder / "characteristics.csv", comparison.characteristics_frame()),
         write_csv(folder / "curves.csv", comparison.curves_frame()),
-        *write_comparison_figures(comparison, folder, workers=workers, pictures=pictures),
     ]
+    if pictures == "none":
+        return written
+    from doe_kc.reporting.comparison_figures import write_comparison_figures
+
+    return written + write_comparison_figures(comparison, folder, workers=workers, pictures=pictures)
 
 
 def comparison_lines(comparison: Comparison) -> list[str]:

@@ -23,7 +23,7 @@ from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets
 from doe_kc.errors import InputError, RunError
-from doe_kc.measurement import Measurement
+from doe_kc.influence.selection_result import Selection
 from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
 from doe_kc.targets import build_targets, score
@@ -31,11 +31,9 @@ from doe_kc.threads import one_thread
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.own import AxleSolver
-from doe_kc.variables import Space, build_space
-from doe_kc.variables.build import Advice
+from doe_kc.variables import Space
 from doe_kc.workflow.adopt import Adoption
-from doe_kc.workflow.discover import discovery_space
-from doe_kc.workflow.influence import study_influence
+from doe_kc.workflow.correlation_space import correlation_space
 from doe_kc.workflow.measure import Reduced
 from doe_kc.workflow.set_first import set_first
 
@@ -52,6 +50,7 @@ def correlate(
     reduced: Reduced | None,
     *,
     adoption: Adoption | None = None,
+    selection: Selection | None = None,
     method: str | None = None,
     budget: int | None = None,
     workers: int | None = None,
@@ -60,9 +59,10 @@ def correlate(
 ) -> Correlation:
     """Run the study's correlation method (or another) against the records and the typed targets.
 
-    adoption: effects to begin with, and what the records hold that no model explains. method, budget: in
-    place of the study's own. watch: told of each round of evaluations. InputError for an unknown method, or
-    sensitivities asked of a solver that gives none.
+    adoption: effects to begin with, and what the records hold that no model explains. selection: of the
+    study's influence study, where it was made already. method, budget: in place of the study's own. watch:
+    told of each round of evaluations. InputError for an unknown method, or sensitivities asked of a solver
+    that gives none.
     """
     started = time.perf_counter()
     options, chosen = study.correlation, study_method(study, method)
@@ -75,7 +75,7 @@ def correlate(
             return partial(campaign.evaluate, origin=origin)
 
         values, steps = set_first(study, reduced, ask("set_first"))
-        space = correlation_space(study, reduced, adoption, workers).started(values)
+        space = correlation_space(study, reduced, adoption, selection, workers).started(values)
         plain = study_problem(study, reduced, space=space, adoption=adoption)
         (start,) = ask("baseline")([space.values(space.start)])
         if start.failed:
@@ -243,38 +243,6 @@ def study_problem(
         windows=study.windows,
         exact=not study.solver.command,
     )
-
-
-def correlation_space(
-    study: Study, reduced: Reduced | None, adoption: Adoption | None, workers: int | None = None
-) -> Space:
-    """The variables of a run: the study's, on the axle with the effects adopted.
-
-    After a discovery a parameter that is an effect in other words stays as it is, unless the study names it:
-    whether the car differs in it has been decided.
-    """
-    if adoption is None or study.variables.use == "selection":
-        return study_space(study, reduced, workers)
-    return discovery_space(adoption.axle, study.variables, str(study.source))
-
-
-def study_space(study: Study, reduced: Reduced | None, workers: int | None = None) -> Space:
-    """The study's variables; for `use = "selection"` those that the influence study advises.
-
-    InputError when it is asked for without records.
-    """
-    if study.variables.use != "selection":
-        return study.space
-    measurement: Measurement | None = reduced.measurement if reduced is not None else None
-    if measurement is None:
-        raise InputError(
-            f'{study.source}: variables: use = "selection" needs a measurement for the influence study to '
-            'choose for; name one, or use = ["*"].'
-        )
-    selection = study_influence(study, measurement, workers=workers).selection
-    used = selection.variables if selection is not None else ()
-    bounds = {v.parameter.path: (v.lower, v.upper) for v in used if v.used}
-    return build_space(study.axle, study.variables, str(study.source), advice=Advice(bounds))
 
 
 def sampled(campaign: Campaign, problem: Problem) -> list[tuple[Candidate, Outcome]]:

@@ -15,13 +15,11 @@ from doe_kc.measurement import Measurement
 from doe_kc.output import write_csv
 from doe_kc.reporting.correlation_characteristics import characteristic_frame, characteristic_rows
 from doe_kc.reporting.correlation_evaluations import evaluation_frame
-from doe_kc.reporting.correlation_figures import write_correlation_figures
 from doe_kc.reporting.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
 from doe_kc.reporting.correlation_summary import summary
 from doe_kc.reporting.correlation_terms import curve_frame, term_frame
 from doe_kc.reporting.correlation_workbook import write_correlation_workbook
 from doe_kc.reporting.page import write_correlation_page
-from doe_kc.reporting.pareto_figure import write_pareto_figure
 from doe_kc.study import Study
 
 TABLES = {
@@ -66,11 +64,21 @@ def write_correlation(
         *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
         write_correlation_workbook(folder / "correlation.xlsx", found, **words),
         write_correlation_page(folder / "report.html", found, measurement, **words),
-        *write_correlation_figures(
-            found, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
-        ),
+        *_write_figures(study, found, measurement, folder, workers),
         *(_write_front(found, folder, study) if found.method == "pareto" else ()),
     ]
+
+
+def _write_figures(
+    study: Study, found: Correlation, measurement: Measurement | None, folder: Path, workers: int | None
+) -> list[Path]:
+    if study.pictures == "none":
+        return []
+    from doe_kc.reporting.correlation_figures import write_correlation_figures
+
+    return write_correlation_figures(
+        found, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
+    )
 
 
 def axle_note(found: Correlation, assessment: Assessment) -> str:
@@ -83,6 +91,10 @@ def _write_front(found: Correlation, folder: Path, study: Study) -> list[Path]:
     """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
     front = front_of(found.problem.search, found.run.evaluated)
     table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
+    if study.pictures == "none":
+        return [table]
+    from doe_kc.reporting.pareto_figure import write_pareto_figure
+
     return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
 
 

@@ -19,7 +19,6 @@ from doe_kc.influence.selection_result import Selection
 from doe_kc.influence.study import influence_study
 from doe_kc.measurement import Measurement
 from doe_kc.output import write_csv
-from doe_kc.reporting.influence_figures import write_influence_figures
 from doe_kc.reporting.workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
@@ -111,6 +110,10 @@ def write_influence(
         write_csv(folder / f"influence_{name}.csv", matrix.frame(values).reset_index(names="parameter"))
         for name, values in tables.items()
     ]
+    if study.pictures == "none":
+        return [book, *csv]
+    from doe_kc.reporting.influence_figures import write_influence_figures
+
     pictures = write_influence_figures(
         matrix, folder, study=study.name, workers=workers, pictures=study.pictures
     )

@@ -67,8 +67,6 @@ def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
-    from doe_kc.reporting.rig_figures import write_rig_figures
-
     frames = measurement_to_frames(reduced.measurement)
     tables = {
         "curves.csv": frames.curves,
@@ -77,6 +75,10 @@ def write_reduced(
         "noise.csv": frames.noise,
     }
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
+    if pictures == "none":
+        return written
+    from doe_kc.reporting.rig_figures import write_rig_figures
+
     return written + write_rig_figures(reduced.measurement, folder, workers=workers, pictures=pictures)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from doe_kc.axle import Axle, Parameter, design_parameters
@@ -41,8 +43,9 @@ def vertical_scatter(axle: Axle, solution: Solution) -> dict[str, FloatArray]:
     sensitivities.
     """
     scattering = [p for p in design_parameters(axle) if one_sigma(p) > 0]
-    exact = sensitivities(axle, solution, [p.path for p in scattering])
     case = solution.cases["vertical"]
+    alone = replace(solution, cases={"vertical": case})
+    exact = sensitivities(axle, alone, [p.path for p in scattering])
     mean, _ = mean_and_half_width(case, list(exact.branches["vertical"]))
     sigma = np.array([one_sigma(p) for p in scattering])
     zero = int(np.argmin(np.abs(rising(case))))

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.reporting import comparison_figures, rig_figures
-from doe_kc.workflow import discovery_handover, handover, influence
+from doe_kc.reporting import comparison_figures, correlation_figures, influence_figures, rig_figures
+from doe_kc.workflow import discovery_handover
 
 
 @pytest.fixture(autouse=True)
@@ -23,6 +23,6 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(rig_figures, "write_rig_figures", nothing)
     monkeypatch.setattr(comparison_figures, "write_comparison_figures", nothing)
-    monkeypatch.setattr(influence, "write_influence_figures", nothing)
-    monkeypatch.setattr(handover, "write_correlation_figures", nothing)
+    monkeypatch.setattr(influence_figures, "write_influence_figures", nothing)
+    monkeypatch.setattr(correlation_figures, "write_correlation_figures", nothing)
     monkeypatch.setattr(discovery_handover, "write_discovery_figures", nothing)

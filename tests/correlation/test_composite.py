@@ -41,7 +41,9 @@ def test_rating_of_the_outputs_is_that_of_the_designs() -> None:
 def test_gradient_against_differences() -> None:
     rate, outputs = composite()
     h = outputs[2]
-    found = rate.gradient(h[None])[0]
+    value, gradient = rate.rating_and_gradient(h[None])
+    assert value[0] == pytest.approx(rate.rating(h[None])[0], rel=1e-12)
+    found = gradient[0]
     for i in range(h.size):
         step = 1e-6 * max(1.0, abs(h[i]))
         up, down = h.copy(), h.copy()

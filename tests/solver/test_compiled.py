@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import ctypes
 import logging
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from doe_kc.solver import compiled, suite
-from doe_kc.solver.compiled import CACHE_VARIABLE, CompileError, cache_folder, compiled_kernel, find_compiler
+from doe_kc.solver.compiled import (
+    CACHE_VARIABLE,
+    CompileError,
+    cache_folder,
+    compiled_kernel,
+    find_compiler,
+    library_of,
+)
 from doe_kc.solver.suite import library_for, solve
 from tests.reference import nominal
 
@@ -108,3 +116,35 @@ def test_a_truncated_library_is_replaced(
     assert again.read_bytes()[:4] == whole[:4]
     assert ctypes.CDLL(str(again)).one() == 1
     assert list(tmp_path.iterdir()) == [again]
+
+
+@needs_compiler
+def test_a_library_is_found_again_without_its_sources(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    asked = []
+
+    def sources() -> dict[str, str]:
+        asked.append(1)
+        return TINY
+
+    first = library_of(TOPOLOGY, "test", sources, {})
+    assert library_of(TOPOLOGY, "test", sources, {}) == first and len(asked) == 1
+    library_of(replace(TOPOLOGY, hub=True), "test", sources, {})
+    library_of(TOPOLOGY, "other", sources, {})
+    assert len(asked) == 3
+    monkeypatch.setattr(compiled, "_origins", lambda: "the package after a change")
+    assert library_of(TOPOLOGY, "test", sources, {}) == first and len(asked) == 4
+
+
+@needs_compiler
+def test_a_damaged_library_is_not_found_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    first = library_of(TOPOLOGY, "test", lambda: TINY, {})
+    first.write_bytes(first.read_bytes()[:100])
+    second = library_of(TOPOLOGY, "test", lambda: TINY, {})
+    assert ctypes.CDLL(str(second)).one() == 1
+    for entry in tmp_path.glob("*.txt"):
+        entry.write_text("nothing.so")
+    assert library_of(TOPOLOGY, "test", lambda: TINY, {}) == second

@@ -13,6 +13,7 @@ from doe_kc.cli.options import SchedulerOption
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.errors import RunError
+from doe_kc.influence.selection_result import Selection
 from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
@@ -72,6 +73,7 @@ def correlated(
     reduced: Reduced | None,
     *,
     adoption: Adoption | None = None,
+    selection: Selection | None = None,
     method: str | None = None,
     budget: int | None = None,
     workers: int | None = None,
@@ -83,6 +85,7 @@ def correlated(
             study,
             reduced,
             adoption=adoption,
+            selection=selection,
             method=method,
             budget=budget,
             workers=workers,

@@ -16,6 +16,7 @@ from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
 from doe_kc.correlation.result import Correlation
+from doe_kc.influence.selection_result import Selection
 from doe_kc.output import write_json
 from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.curve_set import curve_set
@@ -60,7 +61,7 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
 
     steps = Steps(
         discover=partial(discovered, workers=workers),
-        correlate=partial(_correlated, workers=workers, scheduler=scheduler),
+        correlate=partial(_correlated, selection=influence.selection, workers=workers, scheduler=scheduler),
     )
     answer = follow_chain(study, reduced, steps)
     correlation, assessment, discovery = answer.correlation, answer.assessment, answer.discovery
@@ -111,8 +112,11 @@ def _correlated(
     reduced: Reduced,
     adoption: Adoption | None,
     *,
+    selection: Selection | None,
     workers: int | None,
     scheduler: str | None,
 ) -> Correlation:
     """The correlation of the extended axle, its progress shown."""
-    return correlated(study, reduced, adoption=adoption, workers=workers, scheduler=scheduler)
+    return correlated(
+        study, reduced, adoption=adoption, selection=selection, workers=workers, scheduler=scheduler
+    )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import svd
+from scipy.linalg import qr, svd
 
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.problem import Evaluated
@@ -85,11 +85,32 @@ def principal_axes(scaled: FloatArray, targets: Targets) -> tuple[FloatArray, Fl
     if scaled.shape[1] == 0:
         return mean, np.zeros((0, 0))
     left = scaled - mean
-    u, s, basis = svd(left, full_matrices=False, lapack_driver="gesdd", check_finite=False)
+    u, s = _left_vectors(left)
     kept = int((s > 1e-9 * max(s[0], 1e-300)).sum())
+    scores = u.T @ left
+    misses = _left_out(u, scores, targets.blocks)
+    q = bisect_left(range(kept), True, key=lambda q: bool(misses[q] <= UNRESOLVED))
+    return mean, scores[:q] / s[:q, None]
 
-    def resolved(q: int) -> bool:
-        rest = left - (u[:, :q] * s[:q]) @ basis[:q]
-        return all(np.linalg.norm(rest[:, part], axis=1).max() <= UNRESOLVED for part in targets.blocks)
 
-    return mean, basis[: bisect_left(range(kept), True, key=resolved)]
+def _left_vectors(left: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Left singular vectors (m, r) and values (r,) of (m, N): those of its triangle, for N is the larger."""
+    (triangle,) = qr(left.T, mode="r", overwrite_a=False, check_finite=False)
+    u, s, _ = svd(triangle[: len(left)].T, full_matrices=False, lapack_driver="gesdd", check_finite=False)
+    return u, s
+
+
+def _left_out(u: FloatArray, scores: FloatArray, blocks: Sequence[slice]) -> FloatArray:
+    """(r,) largest RMS of a curve in the components from q on: u[:, q:] scores[q:], one block a curve.
+
+    Component by component from the last, by the products of the scores within each block: the curves
+    themselves are much longer.
+    """
+    products = np.array([scores[:, block] @ scores[:, block].T for block in blocks])
+    square = np.zeros((len(u), len(products)))
+    out = np.zeros(len(scores))
+    for q in reversed(range(len(scores))):
+        cross = u[:, q + 1 :] @ products[:, q + 1 :, q].T
+        square += u[:, q, None] * (2.0 * cross + u[:, q, None] * products[:, q, q])
+        out[q] = np.sqrt(max(float(square.max(initial=0.0)), 0.0))
+    return out

@@ -55,11 +55,12 @@ class ExpectedImprovement:
         known = self._model.predict_all(point[None])
         sd = np.sqrt(np.maximum(self._doubt * known.variance[0], 1e-24))
         h = known.mean[0] + self._z * sd
-        gain = (self._composite.rating(h) - self._best) / self._temperature
+        rating, push = self._composite.rating_and_gradient(h)
+        gain = (rating - self._best) / self._temperature
         log_soft = _log_softplus(gain)
         value = float(logsumexp(log_soft) - np.log(SAMPLES))
         share = np.exp(log_soft - logsumexp(log_soft)) * _log_softplus_slope(gain) / self._temperature
-        slope = self._composite.gradient(h) * share[:, None]
+        slope = push * share[:, None]
         sd_gradient = self._doubt * known.variance_gradient[0] / (2.0 * sd[:, None])
         gradient = slope.sum(axis=0) @ known.gradient[0] + (slope * self._z).sum(axis=0) @ sd_gradient
         penalty, pull = _nearness(point, self._failed)
