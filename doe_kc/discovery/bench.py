@@ -13,7 +13,6 @@ from doe_kc.discovery.fit import Fit, cost_of, fit
 from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.ledger import Arrays, Ledger, fingerprint, key_of
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.scan import Scan, scan
 from doe_kc.discovery.screen import Screened, screen
 from doe_kc.effects.hypothesis import Hypothesis
@@ -69,19 +68,23 @@ class Bench:
     def fitted(
         self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
     ) -> list[Fit | None]:
-        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step."""
+        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step.
+
+        They are of the very models of `starts`, wherever they were computed: whether two fits are to the
+        same errors is asked by identity.
+        """
         keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
-        out: dict[int, Fit | None] = {}
-        tasks = [
-            (m, z, tuning[:, : m.dimension], self._ledger.get(key))
-            for (m, z), key in zip(starts, keys, strict=True)
-        ]
-        for i, result in self._run(_fit_one, tasks):
-            out[i] = result
-            if tasks[i][-1] is None:
-                self._ledger.put(keys[i], _packed_fit(result))
+        known = {i: arrays for i, key in enumerate(keys) if (arrays := self._ledger.get(key)) is not None}
+        if known:
+            self.watch(what, len(known))
+        missing = [i for i in range(len(starts)) if i not in known]
+        tasks = [(*starts[i], tuning[:, : starts[i][0].dimension]) for i in missing]
+        for at, arrays in self._run(_fit_one, tasks):
+            i = missing[at]
+            known[i] = arrays
+            self._ledger.put(keys[i], arrays)
             self.watch(what, 1)
-        return [out[i] for i in range(len(starts))]
+        return [_unpacked_fit(m, known[i]) for i, (m, _) in enumerate(starts)]
 
     def held_out(self, tuned: Fit, plain: Fit, final: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
@@ -95,7 +98,7 @@ class Bench:
     def scanned(self, tuned: Fit, temper: float) -> Scan | None:
         """The generic scan at a model; None when its axle has no equilibrium with the instruments in."""
         try:
-            found = scan(tuned, projection(tuned), temper=temper)
+            found = scan(tuned, tuned.projection, temper=temper)
         except NotConverged:
             found = None
         self.watch("scanning every interface", 1)
@@ -113,34 +116,37 @@ class Bench:
 
 
 def _screen_many(found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
-    project = projection(found)
-    return [screen(found, project, h) for h in hypotheses]
+    return [screen(found, found.projection, h) for h in hypotheses]
 
 
-def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray, known: Arrays | None) -> Fit | None:
-    """The fit, from what the ledger says of it where it says anything."""
-    if known is not None:
-        if not known["z"].size:
-            return None
-        z, residual, jacobian = known["z"], known["residual"], known["jacobian"]
-        counts = int(known["evaluations"]), bool(known["converged"])
-        return Fit(model, z, residual, jacobian, cost_of(model, z, residual), *counts)
+def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Arrays:
     try:
-        return fit(model, start, tuning=tuning)
+        return _packed_fit(fit(model, start, tuning=tuning))
     except NotConverged:
-        return None
-
-
-def _packed_fit(found: Fit | None) -> Arrays:
-    if found is None:
         return {"z": np.zeros(0)}
+
+
+def _packed_fit(found: Fit) -> Arrays:
+    """Without what its model says of it, the derivatives to the differences between the sides among that."""
+    sides = range(found.model.calibrations.stop, found.model.dimension)
     return {
         "z": found.z,
         "residual": found.residual,
-        "jacobian": found.jacobian,
+        "jacobian": np.delete(found.jacobian, sides, axis=1),
         "evaluations": np.array(float(found.evaluations)),
         "converged": np.array(float(found.converged)),
     }
+
+
+def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
+    """None for one without an equilibrium."""
+    if not known["z"].size:
+        return None
+    z, residual = known["z"], known["residual"]
+    own, at = known["jacobian"], model.calibrations.stop
+    parts = [own] if model.sides is None else [own[:, :at], model.sides, own[:, at:]]
+    counts = int(known["evaluations"]), bool(known["converged"])
+    return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
 
 
 def _packed(found: Screened) -> Arrays:

@@ -8,6 +8,7 @@ half-line over that of its prior), relative to constants that all models of the 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -16,6 +17,7 @@ from scipy.special import log_ndtr
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import Projection
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
@@ -50,23 +52,42 @@ class Fit:
     evaluations: int
     converged: bool
 
-    @property
+    @cached_property
     def hessian(self) -> FloatArray:
         """(d + m, d + m) J'J + P^-2 over the data that the fit looks at."""
-        seen = self.jacobian[self.model.used]
+        seen = self._used(self.jacobian)
         return np.asarray(seen.T @ seen + np.diag(self.model.prior_sd**-2.0))
 
-    @property
+    @cached_property
     def gradient(self) -> FloatArray:
         """(d + m,) half the slope of the cost."""
-        used, model = self.model.used, self.model
+        model = self.model
         pulled = model.prior_sd**-2.0 * (self.z - model.centre)
-        return np.asarray(self.jacobian[used].T @ self.residual[used] + pulled)
+        return np.asarray(self._used(self.jacobian).T @ self._used(self.residual) + pulled)
 
-    @property
+    def _used(self, rows: FloatArray) -> FloatArray:
+        """Rows of the data that the fit looks at; no copy where it looks at all."""
+        return rows if self.model.left_out is None else rows[self.model.used]
+
+    @cached_property
     def covariance(self) -> FloatArray:
         """(d + m, d + m) of the Gaussian approximation."""
         return np.asarray(cho_solve(cho_factor(self.hessian), np.eye(self.z.size)))
+
+    @cached_property
+    def projection(self) -> Projection:
+        """What can be explained neither by tuning nor by the sizes of the effects."""
+        return self._projection(self.z.size)
+
+    @cached_property
+    def tuning_projection(self) -> Projection:
+        """What tuning cannot explain, the sizes of the effects held."""
+        return self._projection(self.model.dimension)
+
+    def _projection(self, count: int) -> Projection:
+        prior = self.model.prior_sd[:count]
+        offset = (self.z[:count] - self.model.centre[:count]) / prior
+        return Projection(self.jacobian[:, :count], prior, offset)
 
     @property
     def misfit(self) -> float:
@@ -83,7 +104,7 @@ class Fit:
         """(m,) sizes of the effects, in typical sizes."""
         return self.z[self.model.dimension :]
 
-    @property
+    @cached_property
     def evidence(self) -> float:
         """ln Z, see the module."""
         total = -0.5 * self.cost - 0.5 * float(np.linalg.slogdet(self.hessian)[1])

@@ -10,13 +10,11 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, to_errors
 from doe_kc.discovery.granted import closed, opened
 from doe_kc.discovery.leaders import compatible, leaders, overlooked
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.pruning import pruned
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
@@ -152,7 +150,7 @@ def _step(
     last: Step | None,
 ) -> Step:
     """last: the step before; its columns tell which hypotheses are worth a screening anew."""
-    project, shapes = projection(current), contrasts(current.model.likelihood)
+    project, shapes = current.projection, current.model.contrasts
     before = remaining_map(shapes, current.residual, project)
     candidates = [h for h in library if compatible(current.model, h)]
     known = _in_errors(last, current.model.likelihood) if last else ()
@@ -171,7 +169,7 @@ def _step(
     trials = stiffer_first(trials)
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
-    after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
+    after = remaining_map(shapes, trials[0].fit.residual, trials[0].fit.projection)
     temper = max(1.0, after.mean_square)
     passes = trials[0].gain / temper > least
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)

@@ -11,7 +11,6 @@ import pytest
 from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.screen import PROBE, SMALLER, follow, rescreened, screen
 from doe_kc.discovery.standing import _trusted, standings, wrong_name_chance
 from tests.discovery.cases import library, model
@@ -24,7 +23,7 @@ def tuned() -> Fit:
 
 
 def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
-    project = projection(tuned)
+    project = tuned.projection
     gains = {h.name: screen(tuned, project, h).gain for h in library("hub_compliance", "strut_friction")}
     assert gains["hub_compliance"] > 50.0
     assert gains["strut_friction"] < 3.0
@@ -32,7 +31,7 @@ def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
 
 def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
-    project = projection(tuned)
+    project = tuned.projection
     found = screen(tuned, project, hub)
     again = rescreened(tuned, project, found)
     prior = tuned.model.prior_sd
@@ -45,7 +44,7 @@ def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
 
 
 def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned: Fit) -> None:
-    project = projection(tuned)
+    project = tuned.projection
     by_name = {h.name: screen(tuned, project, h) for h in library("bushing_progression")}
     weak = by_name["bushing_progression SFR"]
     assert weak.detectability < 1.0
@@ -54,7 +53,7 @@ def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned:
 
 def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
-    project = projection(tuned)
+    project = tuned.projection
     found = screen(tuned, project, hub)
     columns = project(found.columns)
     for own, other in ((0, 1), (1, 0)):
@@ -67,7 +66,7 @@ def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) ->
 
 def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
-    found = screen(tuned, projection(tuned), friction)
+    found = screen(tuned, tuned.projection, friction)
     amounts = [not s.shape for s in friction.sizes]
     assert found.visible[amounts] == pytest.approx(found.detectability)
     assert np.isnan(found.visible[~np.array(amounts)]).all()
@@ -75,7 +74,7 @@ def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
 
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
-    project = projection(tuned)
+    project = tuned.projection
     clear = screen(tuned, project, friction)
     followed = tuned.jacobian @ np.full(tuned.z.size, 0.3)  # what parameters do, and a trace besides
     followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
