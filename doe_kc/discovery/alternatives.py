@@ -118,9 +118,9 @@ def _at_final_set(found: Search, base: Fit, without: Fit, temper: float, bench: 
     """From refits of the final set without the member and with each rival in its place."""
     own, project = _own(base, without), without.projection
     known = {s.hypothesis.name: s for s in _screened(found, without)}
-    first = rescreened(without, project, known.pop(own.hypothesis.name))
+    first = rescreened(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
-    there = [rescreened(without, project, s) for s in known.values() if _may_replace(base, s.hypothesis)]
+    there = [rescreened(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
     near = _near([first, *there], project, threshold(len(known) + 1), without, bench)
     rivals = [t for t in tried(without, near, bench) if plausible(t)]

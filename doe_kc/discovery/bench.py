@@ -14,7 +14,7 @@ from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.ledger import Arrays, Ledger, fingerprint, key_of
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.scan import Scan, scan
-from doe_kc.discovery.screen import Screened, screen
+from doe_kc.discovery.screen import Screened, effort, screen
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
@@ -54,6 +54,7 @@ class Bench:
                 missing.append(i)
             else:
                 out[i] = _unpacked(h, known)
+        missing.sort(key=lambda i: -effort(hypotheses[i]))  # the long ones first, or one worker ends alone
         parts = max(1, min(len(missing), CHUNKS * self._workers))
         groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
         tasks = [(found, [hypotheses[i] for i in part]) for part in groups]
@@ -74,7 +75,8 @@ class Bench:
         same errors is asked by identity.
         """
         keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
-        known = {i: arrays for i, key in enumerate(keys) if (arrays := self._ledger.get(key)) is not None}
+        stored = {i: self._ledger.get(key) for i, key in enumerate(keys)}
+        known: dict[int, Arrays] = {i: arrays for i, arrays in stored.items() if arrays is not None}
         if known:
             self.watch(what, len(known))
         missing = [i for i in range(len(starts)) if i not in known]
@@ -95,14 +97,19 @@ class Bench:
             self.watch("load cases held out", 1)
         return tuple(found[i] for i in range(len(cases)))
 
-    def scanned(self, tuned: Fit, temper: float) -> Scan | None:
-        """The generic scan at a model; None when its axle has no equilibrium with the instruments in."""
-        try:
-            found = scan(tuned, tuned.projection, temper=temper)
-        except NotConverged:
-            found = None
-        self.watch("scanning every interface", 1)
-        return found
+    def scanned(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
+        """Begins the generic scan at a model; what is returned waits for it.
+
+        None when its axle has no equilibrium with the instruments in.
+        """
+        future = self._executor.submit(_scan, tuned, temper)
+
+        def waited() -> Scan | None:
+            found = future.result()
+            self.watch("scanning every interface", 1)
+            return found
+
+        return waited
 
     def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
         """(place, result) of every task as it is done; in this process one is done before the next begins."""
@@ -116,7 +123,14 @@ class Bench:
 
 
 def _screen_many(found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
-    return [screen(found, found.projection, h) for h in hypotheses]
+    return [screen(found, h) for h in hypotheses]
+
+
+def _scan(tuned: Fit, temper: float) -> Scan | None:
+    try:
+        return scan(tuned, temper=temper)
+    except NotConverged:
+        return None
 
 
 def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Arrays:

@@ -67,6 +67,7 @@ def contrasts(likelihood: Likelihood) -> Contrasts:
     pairs: dict[tuple[str, str, str], list[tuple[CurveData, slice]]] = {}
     for curve, place in likelihood.slices():
         pairs.setdefault((curve.load_case, curve.response, curve.branches), []).append((curve, place))
+    size = likelihood.size
     names: list[Contrast] = []
     rows: list[csc_array] = []
     for (case, response, branches), members in pairs.items():
@@ -76,12 +77,12 @@ def contrasts(likelihood: Likelihood) -> Contrasts:
                 continue
             for wheels in WHEELS:
                 names.append(Contrast(case, response, shape, wheels))
-                rows.append(_row(likelihood.size, members, function, opposed=wheels != "both"))
+                rows.append(_row(size, members, function, opposed=wheels != "both"))
     for response in dict.fromkeys(f.response for f in likelihood.figures):
         for wheels in WHEELS:
             names.append(Contrast("static", response, "static", wheels))
             rows.append(_static_row(likelihood, response, opposed=wheels != "both"))
-    return Contrasts(tuple(names), csc_array(hstack([csc_array((likelihood.size, 0)), *rows])))
+    return Contrasts(tuple(names), csc_array(hstack([csc_array((size, 0)), *rows])))
 
 
 def _static_row(likelihood: Likelihood, response: str, *, opposed: bool) -> csc_array:

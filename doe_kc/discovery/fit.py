@@ -80,6 +80,11 @@ class Fit:
         return self._projection(self.z.size)
 
     @cached_property
+    def remainder(self) -> FloatArray:
+        """(M + d + m,) what the projection leaves of the residual."""
+        return self.projection.residual(self.residual)
+
+    @cached_property
     def tuning_projection(self) -> Projection:
         """What tuning cannot explain, the sizes of the effects held."""
         return self._projection(self.model.dimension)
@@ -117,15 +122,21 @@ class Fit:
 
 
 def fit(
-    model: EffectModel, start: FloatArray, *, steps: int = STEPS, tuning: FloatArray | None = None
+    model: EffectModel,
+    start: FloatArray,
+    *,
+    steps: int = STEPS,
+    tuning: FloatArray | None = None,
+    aged: float = np.inf,
 ) -> Fit:
     """The most probable point reached from `start` (d + m,). NotConverged when the start has no solution.
 
-    tuning: (M, d) derivatives at a model nearby, good enough for the first step.
+    tuning: (M, d) derivatives that are known. aged: decrease of the sum of squares since they were taken; by
+    default they are those of a model nearby, good enough for the first step.
     """
     z = np.clip(start, model.lower, model.upper)
     current = _expanded(model, z, model.residual(z), 1, tuning)
-    radius, aged = 1.0, np.inf if tuning is not None else 0.0
+    radius, aged = 1.0, 0.0 if tuning is None else aged
     for _ in range(steps):
         gradient, hessian = current.gradient, current.hessian
         low = np.maximum(model.lower - current.z, -radius)

@@ -62,9 +62,9 @@ def held_out(tuned: Fit, plain: Fit, final: Fit, case: str) -> HeldOut:
 
 
 def _without(found: Fit, case: str) -> Fit:
-    """The model fitted to the other load cases, from where it is."""
+    """The model fitted to the other load cases, from where it is and the derivatives there."""
     tuning = found.jacobian[:, : found.model.dimension]
-    return fit(replace(found.model, left_out=case), found.z, steps=STEPS, tuning=tuning)
+    return fit(replace(found.model, left_out=case), found.z, steps=STEPS, tuning=tuning, aged=0.0)
 
 
 def _prediction(found: Fit) -> Prediction:

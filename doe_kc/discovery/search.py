@@ -123,9 +123,10 @@ def settled(current: Fit, bench: Bench) -> Fit:
 def tune(model: EffectModel) -> Fit:
     """The best axle without a further effect, the differences between its sides linear about it."""
     first = fit(model, model.centre)
-    sided = replace(model, sides=side_differences(model, first.z))
+    sides = side_differences(model, first.z)
+    sided = replace(model, sides=sides)
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
-    return fit(sided, start)
+    return fit(sided, start, tuning=np.hstack([first.jacobian, sides]), aged=0.0)
 
 
 def threshold(count: int) -> float:
@@ -154,7 +155,7 @@ def _step(
     before = remaining_map(shapes, current.residual, project)
     candidates = [h for h in library if compatible(current.model, h)]
     known = _in_errors(last, current.model.likelihood) if last else ()
-    quick = {s.hypothesis.name: rescreened(current, project, s) for s in known}
+    quick = {s.hypothesis.name: rescreened(current, s) for s in known}
     again = [h for h in candidates if h.name not in quick or quick[h.name].gain > PROMISING]
     full = {s.hypothesis.name: s for s in bench.screened(current, again)}
     screened = [full.get(h.name) or quick[h.name] for h in candidates]

@@ -7,7 +7,7 @@ where the residual has just been.
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from doe_kc.axle.model import Axle
 from doe_kc.solver.load_cases import LoadCase

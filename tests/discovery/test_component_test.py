@@ -31,7 +31,7 @@ def tuned() -> Fit:
 @pytest.fixture(scope="module")
 def rack(tuned: Fit) -> Screened:
     (mount,) = library("rack_mount_compliance")
-    return screen(tuned, tuned.projection, mount)
+    return screen(tuned, mount)
 
 
 def shown(tuned: Fit, prior_sd: FloatArray, change: FloatArray) -> float:

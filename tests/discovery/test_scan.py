@@ -11,7 +11,7 @@ from tests.discovery.cases import model
 
 def test_the_place_is_found_without_a_library() -> None:
     tuned = fit(model("named"), model("named").centre)
-    found = scan(tuned, tuned.projection)
+    found = scan(tuned)
     assert (found.places[0].interface, found.places[0].law) == ("wheel|knuckle", "compliance")
     assert found.interface == "wheel|knuckle"
     assert sum(p.probability for p in found.places) == pytest.approx(1.0)
@@ -20,7 +20,7 @@ def test_the_place_is_found_without_a_library() -> None:
 def test_a_friction_is_told_from_everything_else() -> None:
     """Which of the steering's parts rubs, four load cases do not say."""
     tuned = fit(model("friction"), model("friction").centre)
-    found = scan(tuned, tuned.projection)
+    found = scan(tuned)
     assert found.law == "friction"
     assert {p.interface for p in found.places[:4]} & {"rack|housing", "ball joint"}
 
