@@ -223,15 +223,17 @@ def _expanded(
 def followed(found: Fit, model: EffectModel, *, steps: int = 6) -> Fit:
     """The fit of the same model to other data, by steps along the derivatives at `found`.
 
-    For small changes, such as a load case left out: no new derivatives are taken.
+    For small changes, such as a load case left out: no new derivatives are taken. Not `converged` where those
+    at `found` did not lead to an end.
     """
-    current = replace(found, model=model, cost=cost_of(model, found.z, found.residual))
+    cost = cost_of(model, found.z, found.residual)
+    current = replace(found, model=model, cost=cost, converged=False)
     for _ in range(steps):
         low, high = model.lower - current.z, model.upper - current.z
         gradient, hessian = current.gradient, current.hessian
         step = bounded_step(hessian, gradient, low, high)
         if -(2.0 * gradient @ step + step @ hessian @ step) < CONVERGED:
-            break
+            return replace(current, converged=True)
         try:
             residual = model.residual(current.z + step)
         except NotConverged:

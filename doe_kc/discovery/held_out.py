@@ -7,9 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, fit, followed
+from doe_kc.discovery.fit import Fit, cost_of, fit, followed
 from doe_kc.typing import FloatArray
 
+CLOSE = 30.0
+"""Decrease of the sum of squares up to which derivatives of the whole fit serve to the end: what the
+parameters of a right model follow of the noise in one load case."""
 STEPS = 8
 """Most steps of a refit, which begins close to where it ends."""
 LEVEL = 0.02
@@ -62,9 +65,13 @@ def held_out(tuned: Fit, plain: Fit, final: Fit, case: str) -> HeldOut:
 
 
 def _without(found: Fit, case: str) -> Fit:
-    """The model fitted to the other load cases, from where it is and the derivatives there."""
-    tuning = found.jacobian[:, : found.model.dimension]
-    return fit(replace(found.model, left_out=case), found.z, steps=STEPS, tuning=tuning, aged=0.0)
+    """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
+    model = replace(found.model, left_out=case)
+    near = followed(found, model)
+    gained = cost_of(model, found.z, found.residual) - near.cost
+    if near.converged and gained <= CLOSE:
+        return near
+    return fit(model, near.z, steps=STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
 
 
 def _prediction(found: Fit) -> Prediction:

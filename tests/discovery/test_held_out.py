@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from doe_kc.discovery.adequacy import LIMIT
-from doe_kc.discovery.held_out import Prediction, held_out
+from doe_kc.discovery.fit import fit, followed
+from doe_kc.discovery.held_out import Prediction, _without, held_out
+from doe_kc.discovery.model import EffectModel
+from doe_kc.typing import FloatArray
 from tests.discovery.cases import LOAD_CASES, discovery
 
 
@@ -31,3 +37,27 @@ def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
     search = discovery("named").search
     alike = held_out(search.tuned, search.plain, search.plain, case)
     assert alike.law_granted is alike.with_effect
+
+
+def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    search, taken = discovery("named").search, []
+    tuning = EffectModel.tuning
+
+    def counted(self: EffectModel, *at: FloatArray) -> FloatArray:
+        taken.append(self.left_out)
+        return tuning(self, *at)
+
+    monkeypatch.setattr(EffectModel, "tuning", counted)
+    near = _without(search.plain, "steer")
+    assert not taken and near.converged
+    anew = fit(near.model, search.plain.z)
+    assert np.linalg.norm((near.z - anew.z) / np.sqrt(np.diag(anew.covariance))) < 0.1
+    taken.clear()
+    assert _without(search.tuned, "steer").converged
+    assert taken
+
+
+def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
+    plain = discovery("named").search.plain
+    false = replace(plain, jacobian=-plain.jacobian, z=plain.z)
+    assert not followed(false, replace(plain.model, left_out="steer")).converged

@@ -36,3 +36,11 @@ def test_a_column_that_a_parameter_makes_is_absorbed(tuned: Fit) -> None:
 def test_the_residual_of_the_minimum_keeps_its_cost(tuned: Fit) -> None:
     seen = tuned.projection.residual(tuned.residual)
     assert float(seen @ seen) == pytest.approx(tuned.cost, rel=1e-3)
+
+
+def test_products_of_sparse_rows_are_those_of_the_projected_rows(tuned: Fit) -> None:
+    rows = tuned.model.contrasts.rows
+    seen, left = tuned.projection(rows.toarray()), tuned.remainder
+    gram, products = tuned.projection.products(rows, tuned.residual)
+    assert np.allclose(gram, seen.T @ seen, atol=1e-9)
+    assert np.allclose(products, seen.T @ left, atol=1e-6)
