@@ -55,7 +55,7 @@ class Fit:
     @cached_property
     def hessian(self) -> FloatArray:
         """(d + m, d + m) J'J + P^-2 over the data that the fit looks at."""
-        seen = self._used(self.jacobian)
+        seen = self.jacobian if self.model.left_out is None else self.jacobian[self.model.used]
         return np.asarray(seen.T @ seen + np.diag(self.model.prior_sd**-2.0))
 
     @cached_property
@@ -63,11 +63,7 @@ class Fit:
         """(d + m,) half the slope of the cost."""
         model = self.model
         pulled = model.prior_sd**-2.0 * (self.z - model.centre)
-        return np.asarray(self._used(self.jacobian).T @ self._used(self.residual) + pulled)
-
-    def _used(self, rows: FloatArray) -> FloatArray:
-        """Rows of the data that the fit looks at; no copy where it looks at all."""
-        return rows if self.model.left_out is None else rows[self.model.used]
+        return np.asarray(self.jacobian.T @ np.where(model.used, self.residual, 0.0) + pulled)
 
     @cached_property
     def covariance(self) -> FloatArray:
@@ -228,9 +224,10 @@ def followed(found: Fit, model: EffectModel, *, steps: int = 6) -> Fit:
     """
     cost = cost_of(model, found.z, found.residual)
     current = replace(found, model=model, cost=cost, converged=False)
+    hessian = current.hessian
     for _ in range(steps):
         low, high = model.lower - current.z, model.upper - current.z
-        gradient, hessian = current.gradient, current.hessian
+        gradient = current.gradient
         step = bounded_step(hessian, gradient, low, high)
         if -(2.0 * gradient @ step + step @ hessian @ step) < CONVERGED:
             return replace(current, converged=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.discovery.fit import Fit, cost_of, fit, followed
 from doe_kc.typing import FloatArray
@@ -75,11 +75,16 @@ def _without(found: Fit, case: str) -> Fit:
 
 
 def _prediction(found: Fit) -> Prediction:
-    """Of the rows that the fit did not look at."""
+    """Of the rows that the fit did not look at, r with derivatives R.
+
+    Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
+    det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
+    """
     hidden = ~found.model.used
     residual, rows = found.residual[hidden], found.jacobian[hidden]
-    covariance = np.eye(residual.size) + rows @ cho_solve(cho_factor(found.hessian), rows.T)
-    root = cholesky(covariance, lower=True)
-    reduced: FloatArray = solve_triangular(root, residual, lower=True)
-    score = -0.5 * float(reduced @ reduced) - float(np.sum(np.log(np.diag(root))))
-    return Prediction(float(np.sqrt(np.mean(reduced**2))), score, int(reduced.size))
+    before = cholesky(found.hessian, lower=True)
+    after = cholesky(found.hessian + rows.T @ rows, lower=True)
+    pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)
+    square = float(residual @ residual - pulled @ pulled)
+    score = -0.5 * square - float(np.sum(np.log(np.diag(after) / np.diag(before))))
+    return Prediction(float(np.sqrt(square / residual.size)), score, int(residual.size))

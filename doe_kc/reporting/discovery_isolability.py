@@ -55,9 +55,7 @@ def isolability(found: Discovery) -> Isolability:
     order = list(EFFECTS)
     stands = sorted(found.standings, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
     changes = _changes(found)
-    remaining = found.fitted.tuning_projection(
-        np.array([changes[s.hypothesis.name] for s in stands]).T
-    )
+    remaining = found.fitted.tuning_projection(np.array([changes[s.hypothesis.name] for s in stands]).T)
     length = np.linalg.norm(remaining, axis=0)
     scaled = remaining / np.where(length > 0.0, length, 1.0)
     correlation = np.clip(np.abs(scaled.T @ scaled), 0.0, 1.0)
