@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 from doe_kc.axle.model import (
@@ -90,6 +91,8 @@ POSITIVE = {
     *("gap", "contact", "reference"),
 }
 
+PATHS = 4096
+"""Names whose kind is remembered: a search asks for the same hundred thousands of times."""
 NOT_BELOW_ZERO = {
     *("strut.flexibility", "arb.rate", "damper.gas_force"),
     *("tie_rod.flexibility", "arb.link_flexibility", "power_assist.gain"),
@@ -179,11 +182,13 @@ def _overrides(axle: Axle, path: str) -> bool:
     return bool(_prefix(path)) or path.split(".")[0] in axle.follow
 
 
+@lru_cache(maxsize=PATHS)
 def _prefix(path: str) -> str:
     head = path.split(".")[0]
     return f"{head}." if head in SIDE_PREFIXES else ""
 
 
+@lru_cache(maxsize=PATHS)
 def _rank(path: str, internal: str) -> int:
     """Which path decides a value that several move: one set itself before one that follows, and of either
     kind one that names its side before one that moves both."""
@@ -214,6 +219,7 @@ def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[s
                 yield f"{follower}.{axis}@{each}", change
 
 
+@lru_cache(maxsize=PATHS)
 def _not_below_zero(name: str) -> bool:
     return name in NOT_BELOW_ZERO or ".cubic." in name
 
@@ -232,6 +238,7 @@ def check_value(path: str, value: float, source: str) -> None:
         )
 
 
+@lru_cache(maxsize=PATHS)
 def _must_be_positive(name: str) -> bool:
     head, _, rest = name.partition(".")
     if head in BUSHINGS:
@@ -265,6 +272,7 @@ def _internal(axle: Axle, name: str, side: str) -> str:
     return f"{name}@{side}" if f"{name}@{side}" in axle.values else name
 
 
+@lru_cache(maxsize=PATHS)
 def _is_lateral(name: str) -> bool:
     point, _, axis = name.partition(".")
     return axis == "y" and (point in HARDPOINTS or point in EXTRA_HARDPOINTS)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
+from doe_kc.solver import suite
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients, interpolated
+from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
-from doe_kc.solver.suite import solve
 from doe_kc.targets import CurveTarget
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
@@ -27,10 +28,16 @@ class Linearization:
 
 
 def linearize(
-    axle: Axle, space: Space, point: FloatArray, windows: Mapping[str, float] | None = None
+    axle: Axle,
+    space: Space,
+    point: FloatArray,
+    windows: Mapping[str, float] | None = None,
+    *,
+    solve: Callable[[Axle], Solution] = suite.solve,
 ) -> Linearization:
     """Exact sensitivities of the axle at `point` (d,), ties followed.
 
+    solve: `suite.solve`, or what gives its solution without solving again.
     NotConverged when the axle has no equilibrium there.
     """
     there = with_values(axle, space.values(point))

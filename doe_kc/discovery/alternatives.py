@@ -12,11 +12,10 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, last_member, to_errors
 from doe_kc.discovery.leaders import compatible, leaders
-from doe_kc.discovery.projection import Projection, projection
+from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.search import Search, Step, accepted_at, threshold
 from doe_kc.discovery.trials import Trial, log_odds, plausible, tried
@@ -52,8 +51,8 @@ class Alternatives:
     @cached_property
     def map(self) -> Map:
         """Where model and records disagree without it."""
-        shapes = contrasts(self.without.model.likelihood)
-        return remaining_map(shapes, self.without.residual, projection(self.without))
+        fitted = self.without
+        return remaining_map(fitted.model.contrasts, fitted.residual, fitted.projection)
 
 
 def alternatives(found: Search, temper: float, bench: Bench) -> tuple[Alternatives, ...]:
@@ -117,11 +116,11 @@ def _from_step(base: Fit, step: Step, temper: float, bench: Bench) -> Alternativ
 
 def _at_final_set(found: Search, base: Fit, without: Fit, temper: float, bench: Bench) -> Alternatives:
     """From refits of the final set without the member and with each rival in its place."""
-    own, project = _own(base, without), projection(without)
+    own, project = _own(base, without), without.projection
     known = {s.hypothesis.name: s for s in _screened(found, without)}
-    first = rescreened(without, project, known.pop(own.hypothesis.name))
+    first = rescreened(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
-    there = [rescreened(without, project, s) for s in known.values() if _may_replace(base, s.hypothesis)]
+    there = [rescreened(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
     near = _near([first, *there], project, threshold(len(known) + 1), without, bench)
     rivals = [t for t in tried(without, near, bench) if plausible(t)]

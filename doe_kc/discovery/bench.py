@@ -13,9 +13,8 @@ from doe_kc.discovery.fit import Fit, cost_of, fit
 from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.ledger import Arrays, Ledger, fingerprint, key_of
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.scan import Scan, scan
-from doe_kc.discovery.screen import Screened, screen
+from doe_kc.discovery.screen import Screened, effort, screen
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
@@ -55,6 +54,7 @@ class Bench:
                 missing.append(i)
             else:
                 out[i] = _unpacked(h, known)
+        missing.sort(key=lambda i: -effort(hypotheses[i]))  # the long ones first, or one worker ends alone
         parts = max(1, min(len(missing), CHUNKS * self._workers))
         groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
         tasks = [(found, [hypotheses[i] for i in part]) for part in groups]
@@ -69,19 +69,24 @@ class Bench:
     def fitted(
         self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
     ) -> list[Fit | None]:
-        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step."""
+        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step.
+
+        They are of the very models of `starts`, wherever they were computed: whether two fits are to the
+        same errors is asked by identity.
+        """
         keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
-        out: dict[int, Fit | None] = {}
-        tasks = [
-            (m, z, tuning[:, : m.dimension], self._ledger.get(key))
-            for (m, z), key in zip(starts, keys, strict=True)
-        ]
-        for i, result in self._run(_fit_one, tasks):
-            out[i] = result
-            if tasks[i][-1] is None:
-                self._ledger.put(keys[i], _packed_fit(result))
+        stored = {i: self._ledger.get(key) for i, key in enumerate(keys)}
+        known: dict[int, Arrays] = {i: arrays for i, arrays in stored.items() if arrays is not None}
+        if known:
+            self.watch(what, len(known))
+        missing = [i for i in range(len(starts)) if i not in known]
+        tasks = [(*starts[i], tuning[:, : starts[i][0].dimension]) for i in missing]
+        for at, arrays in self._run(_fit_one, tasks):
+            i = missing[at]
+            known[i] = arrays
+            self._ledger.put(keys[i], arrays)
             self.watch(what, 1)
-        return [out[i] for i in range(len(starts))]
+        return [_unpacked_fit(m, known[i]) for i, (m, _) in enumerate(starts)]
 
     def held_out(self, tuned: Fit, plain: Fit, final: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
@@ -92,14 +97,19 @@ class Bench:
             self.watch("load cases held out", 1)
         return tuple(found[i] for i in range(len(cases)))
 
-    def scanned(self, tuned: Fit, temper: float) -> Scan | None:
-        """The generic scan at a model; None when its axle has no equilibrium with the instruments in."""
-        try:
-            found = scan(tuned, projection(tuned), temper=temper)
-        except NotConverged:
-            found = None
-        self.watch("scanning every interface", 1)
-        return found
+    def scanned(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
+        """Begins the generic scan at a model; what is returned waits for it.
+
+        None when its axle has no equilibrium with the instruments in.
+        """
+        future = self._executor.submit(_scan, tuned, temper)
+
+        def waited() -> Scan | None:
+            found = future.result()
+            self.watch("scanning every interface", 1)
+            return found
+
+        return waited
 
     def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
         """(place, result) of every task as it is done; in this process one is done before the next begins."""
@@ -113,34 +123,44 @@ class Bench:
 
 
 def _screen_many(found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
-    project = projection(found)
-    return [screen(found, project, h) for h in hypotheses]
+    return [screen(found, h) for h in hypotheses]
 
 
-def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray, known: Arrays | None) -> Fit | None:
-    """The fit, from what the ledger says of it where it says anything."""
-    if known is not None:
-        if not known["z"].size:
-            return None
-        z, residual, jacobian = known["z"], known["residual"], known["jacobian"]
-        counts = int(known["evaluations"]), bool(known["converged"])
-        return Fit(model, z, residual, jacobian, cost_of(model, z, residual), *counts)
+def _scan(tuned: Fit, temper: float) -> Scan | None:
     try:
-        return fit(model, start, tuning=tuning)
+        return scan(tuned, temper=temper)
     except NotConverged:
         return None
 
 
-def _packed_fit(found: Fit | None) -> Arrays:
-    if found is None:
+def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Arrays:
+    try:
+        return _packed_fit(fit(model, start, tuning=tuning))
+    except NotConverged:
         return {"z": np.zeros(0)}
+
+
+def _packed_fit(found: Fit) -> Arrays:
+    """Without what its model says of it, the derivatives to the differences between the sides among that."""
+    sides = range(found.model.calibrations.stop, found.model.dimension)
     return {
         "z": found.z,
         "residual": found.residual,
-        "jacobian": found.jacobian,
+        "jacobian": np.delete(found.jacobian, sides, axis=1),
         "evaluations": np.array(float(found.evaluations)),
         "converged": np.array(float(found.converged)),
     }
+
+
+def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
+    """None for one without an equilibrium."""
+    if not known["z"].size:
+        return None
+    z, residual = known["z"], known["residual"]
+    own, at = known["jacobian"], model.calibrations.stop
+    parts = [own] if model.sides is None else [own[:, :at], model.sides, own[:, at:]]
+    counts = int(known["evaluations"]), bool(known["converged"])
+    return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
 
 
 def _packed(found: Screened) -> Arrays:

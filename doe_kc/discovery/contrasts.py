@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from scipy.sparse import csc_array, hstack
 
 from doe_kc.correlation.likelihood import CurveData, Likelihood
 from doe_kc.curves import TYRE_LOAD
@@ -55,10 +56,10 @@ class Contrast:
 
 @dataclass(frozen=True)
 class Contrasts:
-    """rows: (M, k) whitened, of unit length."""
+    """rows: (M, k) whitened, of unit length; each is of one curve and its twin."""
 
     names: tuple[Contrast, ...]
-    rows: FloatArray
+    rows: csc_array
 
 
 def contrasts(likelihood: Likelihood) -> Contrasts:
@@ -66,8 +67,9 @@ def contrasts(likelihood: Likelihood) -> Contrasts:
     pairs: dict[tuple[str, str, str], list[tuple[CurveData, slice]]] = {}
     for curve, place in likelihood.slices():
         pairs.setdefault((curve.load_case, curve.response, curve.branches), []).append((curve, place))
+    size = likelihood.size
     names: list[Contrast] = []
-    rows: list[FloatArray] = []
+    rows: list[csc_array] = []
     for (case, response, branches), members in pairs.items():
         shapes = MEAN_SHAPES if branches == "mean" else LOOP_SHAPES
         for shape, function in shapes.items():
@@ -75,21 +77,21 @@ def contrasts(likelihood: Likelihood) -> Contrasts:
                 continue
             for wheels in WHEELS:
                 names.append(Contrast(case, response, shape, wheels))
-                rows.append(_row(likelihood.size, members, function, opposed=wheels != "both"))
+                rows.append(_row(size, members, function, opposed=wheels != "both"))
     for response in dict.fromkeys(f.response for f in likelihood.figures):
         for wheels in WHEELS:
             names.append(Contrast("static", response, "static", wheels))
             rows.append(_static_row(likelihood, response, opposed=wheels != "both"))
-    return Contrasts(tuple(names), np.array(rows).T)
+    return Contrasts(tuple(names), csc_array(hstack([csc_array((size, 0)), *rows])))
 
 
-def _static_row(likelihood: Likelihood, response: str, *, opposed: bool) -> FloatArray:
+def _static_row(likelihood: Likelihood, response: str, *, opposed: bool) -> csc_array:
     row = np.zeros(likelihood.size)
     first = sum(c.size for c in likelihood.curves)
     for i, figure in enumerate(likelihood.figures):
         if figure.response == response:
             row[first + i] = (-1.0 if opposed and figure.side else 1.0) / figure.sd
-    return np.asarray(row / np.linalg.norm(row))
+    return csc_array((row / np.linalg.norm(row))[:, None])
 
 
 def _row(
@@ -98,10 +100,10 @@ def _row(
     function: Callable[[FloatArray], FloatArray],
     *,
     opposed: bool,
-) -> FloatArray:
+) -> csc_array:
     row = np.zeros(size)
     for curve, place in members:
         relative = curve.input / np.abs(curve.input).max()
         sign = -1.0 if opposed and curve.side else 1.0
         row[place] = sign * curve.whitened(np.asarray(function(relative), dtype=float))
-    return np.asarray(row / np.linalg.norm(row))
+    return csc_array((row / np.linalg.norm(row))[:, None])

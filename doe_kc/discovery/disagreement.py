@@ -73,17 +73,16 @@ class Map:
 
 def raw_map(found: Contrasts, residual: FloatArray) -> Map:
     """Of a residual (M,) as it is, in units of the records' noise."""
-    return _map(found, found.rows, found.rows.T @ residual)
+    return _map(found, (found.rows.T @ found.rows).toarray(), found.rows.T @ residual)
 
 
 def remaining_map(found: Contrasts, residual: FloatArray, project: Projection) -> Map:
     """Of a fitted residual (M,): what re-tuning cannot absorb."""
-    rows = project(found.rows)
-    return _map(found, rows, rows.T @ project.residual(residual))
+    return _map(found, *project.products(found.rows, residual))
 
 
-def _map(found: Contrasts, rows: FloatArray, products: FloatArray) -> Map:
-    gram = rows.T @ rows
+def _map(found: Contrasts, gram: FloatArray, products: FloatArray) -> Map:
+    """gram: (k, k) of the contrasts. products: (k,) of them with the residual."""
     gram = gram + DOUBT * np.diag(np.diag(gram))
     length = np.sqrt(np.diag(gram))
     seen = length**2 > SEEN

@@ -10,14 +10,12 @@ import numpy as np
 from doe_kc.discovery.adequacy import Adequacy, adequacy
 from doe_kc.discovery.alternatives import Alternatives, alternatives
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import raw_map, remaining_map
 from doe_kc.discovery.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.findings import findings
 from doe_kc.discovery.gaps import gaps, returned
 from doe_kc.discovery.granted import sticks
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import Search, accepted_at, threshold
@@ -41,17 +39,17 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     bench = bench or Bench()
     found, widened = searched(model, library, bench)
     nominal = model.residual(model.centre)
-    project = projection(found.final)
-    remaining = remaining_map(contrasts(found.final.model.likelihood), found.final.residual, project)
-    shapes = contrasts(model.likelihood)
-    before = remaining_map(shapes, found.tuned.residual, projection(found.tuned))
+    final, tuned = found.final, found.tuned
+    remaining = remaining_map(final.model.contrasts, final.residual, final.projection)
+    before = remaining_map(tuned.model.contrasts, tuned.residual, tuned.projection)
     compared = alternatives(found, max(1.0, remaining.mean_square), bench)
     every = findings(found, compared)
     relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
+    scanned = None if before.agrees else bench.scanned(tuned, max(1.0, remaining.mean_square))
     predicted = bench.held_out(found.tuned, found.plain, found.final) if relevant else ()
     judged = verdict(relevant, remaining, predicted, found.tuned, found.plain)
     holds = adequacy(remaining, predicted)
-    somewhere = None if before.agrees else bench.scanned(found.tuned, max(1.0, remaining.mean_square))
+    somewhere = None if scanned is None else scanned()
     decoy = best_decoy(compared, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
     traces = shown_traces(every, holds)
@@ -71,7 +69,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         search=found,
         decoy=decoy,
         nominal=nominal,
-        raw=raw_map(shapes, nominal),
+        raw=raw_map(tuned.model.contrasts, nominal),
         tuned=before,
         final=remaining,
         gap=whole,
@@ -142,4 +140,4 @@ def _standings(
         members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
-    return standings(last, projection(last, effects=False), others, members, critical, resolved=resolved)
+    return standings(last, last.tuning_projection, others, members, critical, resolved=resolved)

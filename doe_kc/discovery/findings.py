@@ -14,7 +14,6 @@ from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.disagreement import NOISE
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Estimate, Finding, Rival
 from doe_kc.discovery.search import Search
 from doe_kc.discovery.standing import wrong_name_chance
@@ -163,7 +162,7 @@ def _detectability(final: Fit, place: slice) -> float:
 
 def _wrong_names(own: Alternatives, detectability: float) -> dict[str, float]:
     """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
-    project = projection(own.without)
+    project = own.without.projection
     first, *others = own.screened
     direction = _unit(project(first.change))
     out: dict[str, float] = {}

@@ -8,6 +8,7 @@ half-line over that of its prior), relative to constants that all models of the 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -16,6 +17,7 @@ from scipy.special import log_ndtr
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import Projection
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
@@ -51,23 +53,43 @@ class Fit:
     evaluations: int
     converged: bool
 
-    @property
+    @cached_property
     def hessian(self) -> FloatArray:
         """(d + m, d + m) J'J + P^-2 over the data that the fit looks at."""
-        seen = self.jacobian[self.model.used]
+        seen = self.jacobian if self.model.left_out is None else self.jacobian[self.model.used]
         return np.asarray(seen.T @ seen + np.diag(self.model.prior_sd**-2.0))
 
-    @property
+    @cached_property
     def gradient(self) -> FloatArray:
         """(d + m,) half the slope of the cost."""
-        used, model = self.model.used, self.model
+        model = self.model
         pulled = model.prior_sd**-2.0 * (self.z - model.centre)
-        return np.asarray(self.jacobian[used].T @ self.residual[used] + pulled)
+        return np.asarray(self.jacobian.T @ np.where(model.used, self.residual, 0.0) + pulled)
 
-    @property
+    @cached_property
     def covariance(self) -> FloatArray:
         """(d + m, d + m) of the Gaussian approximation."""
         return np.asarray(cho_solve(cho_factor(self.hessian), np.eye(self.z.size)))
+
+    @cached_property
+    def projection(self) -> Projection:
+        """What can be explained neither by tuning nor by the sizes of the effects."""
+        return self._projection(self.z.size)
+
+    @cached_property
+    def remainder(self) -> FloatArray:
+        """(M + d + m,) what the projection leaves of the residual."""
+        return self.projection.residual(self.residual)
+
+    @cached_property
+    def tuning_projection(self) -> Projection:
+        """What tuning cannot explain, the sizes of the effects held."""
+        return self._projection(self.model.dimension)
+
+    def _projection(self, count: int) -> Projection:
+        prior = self.model.prior_sd[:count]
+        offset = (self.z[:count] - self.model.centre[:count]) / prior
+        return Projection(self.jacobian[:, :count], prior, offset)
 
     @property
     def misfit(self) -> float:
@@ -84,7 +106,7 @@ class Fit:
         """(m,) sizes of the effects, in typical sizes."""
         return self.z[self.model.dimension :]
 
-    @property
+    @cached_property
     def evidence(self) -> float:
         """ln Z, see the module."""
         total = -0.5 * self.cost - 0.5 * float(np.linalg.slogdet(self.hessian)[1])
@@ -97,15 +119,21 @@ class Fit:
 
 
 def fit(
-    model: EffectModel, start: FloatArray, *, steps: int = STEPS, tuning: FloatArray | None = None
+    model: EffectModel,
+    start: FloatArray,
+    *,
+    steps: int = STEPS,
+    tuning: FloatArray | None = None,
+    aged: float = np.inf,
 ) -> Fit:
     """The most probable point reached from `start` (d + m,). NotConverged when the start has no solution.
 
-    tuning: (M, d) derivatives at a model nearby, good enough for the first step.
+    tuning: (M, d) derivatives that are known. aged: decrease of the sum of squares since they were taken; by
+    default they are those of a model nearby, good enough for the first step.
     """
     z = np.clip(start, model.lower, model.upper)
     current = _expanded(model, z, model.residual(z), 1, tuning)
-    radius, aged = 1.0, np.inf if tuning is not None else 0.0
+    radius, aged = 1.0, 0.0 if tuning is None else aged
     for _ in range(steps):
         gradient, hessian = current.gradient, current.hessian
         low = np.maximum(model.lower - current.z, -radius)
@@ -192,15 +220,18 @@ def _expanded(
 def followed(found: Fit, model: EffectModel) -> Fit:
     """The fit of the same model to other data, by steps along the derivatives at `found`.
 
-    For small changes, such as a load case left out: no new derivatives are taken.
+    For small changes, such as a load case left out: no new derivatives are taken. Not `converged` where those
+    at `found` did not lead to an end.
     """
-    current = replace(found, model=model, cost=cost_of(model, found.z, found.residual))
+    cost = cost_of(model, found.z, found.residual)
+    current = replace(found, model=model, cost=cost, converged=False)
+    hessian = current.hessian
     for _ in range(FOLLOWED_STEPS):
         low, high = model.lower - current.z, model.upper - current.z
-        gradient, hessian = current.gradient, current.hessian
+        gradient = current.gradient
         step = bounded_step(hessian, gradient, low, high)
         if -(2.0 * gradient @ step + step @ hessian @ step) < CONVERGED:
-            break
+            return replace(current, converged=True)
         try:
             residual = model.residual(current.z + step)
         except NotConverged:

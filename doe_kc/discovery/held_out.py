@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, fit, followed
+from doe_kc.discovery.fit import Fit, cost_of, fit, followed
 from doe_kc.typing import FloatArray
 
+CLOSE = 30.0
+"""Decrease of the sum of squares up to which derivatives of the whole fit serve to the end: what the
+parameters of a right model follow of the noise in one load case."""
 STEPS = 8
 """Most steps of a refit, which begins close to where it ends."""
 LEVEL = 0.02
@@ -62,17 +65,26 @@ def held_out(tuned: Fit, plain: Fit, final: Fit, case: str) -> HeldOut:
 
 
 def _without(found: Fit, case: str) -> Fit:
-    """The model fitted to the other load cases, from where it is."""
-    tuning = found.jacobian[:, : found.model.dimension]
-    return fit(replace(found.model, left_out=case), found.z, steps=STEPS, tuning=tuning)
+    """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
+    model = replace(found.model, left_out=case)
+    near = followed(found, model)
+    gained = cost_of(model, found.z, found.residual) - near.cost
+    if near.converged and gained <= CLOSE:
+        return near
+    return fit(model, near.z, steps=STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
 
 
 def _prediction(found: Fit) -> Prediction:
-    """Of the rows that the fit did not look at."""
+    """Of the rows that the fit did not look at, r with derivatives R.
+
+    Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
+    det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
+    """
     hidden = ~found.model.used
     residual, rows = found.residual[hidden], found.jacobian[hidden]
-    covariance = np.eye(residual.size) + rows @ cho_solve(cho_factor(found.hessian), rows.T)
-    root = cholesky(covariance, lower=True)
-    reduced: FloatArray = solve_triangular(root, residual, lower=True)
-    score = -0.5 * float(reduced @ reduced) - float(np.sum(np.log(np.diag(root))))
-    return Prediction(float(np.sqrt(np.mean(reduced**2))), score, int(reduced.size))
+    before = cholesky(found.hessian, lower=True)
+    after = cholesky(found.hessian + rows.T @ rows, lower=True)
+    pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)
+    square = float(residual @ residual - pulled @ pulled)
+    score = -0.5 * square - float(np.sum(np.log(np.diag(after) / np.diag(before))))
+    return Prediction(float(np.sqrt(square / residual.size)), score, int(residual.size))

@@ -22,6 +22,9 @@ Arrays = Mapping[str, FloatArray]
 BYTES = 8
 """Of a number."""
 TABLE = "packed_results"
+FORMAT = "2"
+"""Of what is stored: raise it with every change of what a result means, of how it is computed so far that its
+numbers differ, or of what is packed. Results of another format are not taken up, and computed anew."""
 
 
 class Ledger:
@@ -92,8 +95,8 @@ def unpacked(data: bytes) -> dict[str, FloatArray]:
 
 
 def fingerprint(model: EffectModel) -> str:
-    """Of everything that the model's answers depend on: axle, parameters, records, version."""
-    digest = hashlib.sha256(__version__.encode())
+    """Of everything that the model's answers depend on: axle, parameters, records, version, FORMAT."""
+    digest = hashlib.sha256(f"{__version__} {FORMAT}".encode())
     axle = model.axle
     for text in (sorted(axle.values.items()), axle.topology, axle.load_cases, model.space, model.left_out):
         digest.update(repr(text).encode())

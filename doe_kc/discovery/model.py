@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,11 +15,12 @@ from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.calibration import calibrated
+from doe_kc.discovery.contrasts import Contrasts, contrasts
+from doe_kc.discovery.solutions import Solutions
 from doe_kc.effects import apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.suite import solve
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
@@ -39,7 +40,8 @@ class EffectModel:
     """axle: nominal, without the hypotheses. space: tunable parameters. members: effects in it.
 
     left_out: load case whose records are held back from fits, None for none. sides: (M, k) change of the
-    residual by each difference between the sides, in its standard deviation.
+    residual by each difference between the sides, in its standard deviation. solutions: solves its axles, the
+    same for all models that come of one another.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides, which are linear), d together, then m amplitudes of all members'
@@ -53,6 +55,7 @@ class EffectModel:
     members: tuple[Hypothesis, ...] = ()
     left_out: str | None = None
     sides: FloatArray | None = None
+    solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
 
     @cached_property
     def used(self) -> NDArray[np.bool_]:
@@ -61,6 +64,11 @@ class EffectModel:
         for curve, place in self.likelihood.slices():
             out[place] = curve.load_case != self.left_out
         return out
+
+    @cached_property
+    def contrasts(self) -> Contrasts:
+        """Of the data."""
+        return contrasts(self.likelihood)
 
     @cached_property
     def sizes(self) -> tuple[Size, ...]:
@@ -155,7 +163,7 @@ class EffectModel:
 
     def _read(self, axle: Axle, z: FloatArray) -> CurveSet:
         driven = self._driven(axle, z)
-        return observed(driven, curve_set(solve(driven)))
+        return observed(driven, curve_set(self.solutions(driven)))
 
     def _driven(self, axle: Axle, z: FloatArray) -> Axle:
         return calibrated(axle, self.cases, z[self.calibrations])
@@ -173,7 +181,8 @@ class EffectModel:
 
     def tuning(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, d) derivative of the residual to parameters (exact) and nuisances. residual: at z."""
-        expansion = linearize(self._driven(self.with_effects(z), z), self.space, z[: self.parameters])
+        axle = self._driven(self.with_effects(z), z)
+        expansion = linearize(axle, self.space, z[: self.parameters], solve=self.solutions)
         found = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
         columns = [found, self._stretched(z, residual)]
         return np.hstack(columns if self.sides is None else [*columns, self.sides])

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from scipy.linalg import qr
+from scipy.linalg import cholesky, solve_triangular
+from scipy.sparse import csc_array
 
-from doe_kc.discovery.fit import Fit
 from doe_kc.typing import FloatArray
 
 
@@ -17,31 +18,48 @@ class Projection:
 
     In the rows of the data, (M,), followed by those of the prior, (d,). Inner products of projected rows
     are those of C^-1, C = S + J P P J' the covariance of the data with the parameters marginalized.
-    basis: (M + d, d) orthonormal. offset: (d,) of the fitted point from the prior's mean, in its sd.
+    jacobian: (M, d) of what can be moved; parameters held at a bound still count as free. prior_sd: (d,).
+    offset: (d,) of the fitted point from the prior's mean, in its sd.
     """
 
-    basis: FloatArray
+    jacobian: FloatArray
+    prior_sd: FloatArray
     offset: FloatArray
+
+    @cached_property
+    def _root(self) -> FloatArray:
+        """(d, d) lower Cholesky factor L of J'J + P^-2: [J; P^-1] L'^-1 is an orthonormal basis.
+
+        The normal equations serve: the prior bounds their condition, and the factor takes a quarter of the
+        time and none of the memory of a QR decomposition.
+        """
+        gram = self.jacobian.T @ self.jacobian + np.diag(self.prior_sd**-2.0)
+        return np.asarray(cholesky(gram, lower=True))
 
     def __call__(self, rows: FloatArray) -> FloatArray:
         """(M + d, ...) of changes of the residual (M,) or (M, k)."""
-        return self._complement(np.concatenate([rows, np.zeros((self.offset.size, *rows.shape[1:]))]))
+        return self._complement(rows, np.zeros((self.offset.size, *rows.shape[1:])))
 
     def residual(self, rows: FloatArray) -> FloatArray:
         """(M + d,) of a residual (M,) itself; its square is the cost after re-tuning."""
-        return self._complement(np.concatenate([rows, self.offset]))
+        return self._complement(rows, self.offset)
 
-    def _complement(self, padded: FloatArray) -> FloatArray:
-        return np.asarray(padded - self.basis @ (self.basis.T @ padded))
+    def products(self, rows: csc_array, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Inner products (k, k) of projected sparse changes (M, k), and (k,) of them with a residual (M,).
 
+        Without the projected rows, which are dense.
+        """
+        absorbed = self._coordinates((rows.T @ self.jacobian).T)
+        slope = self._coordinates(self.jacobian.T @ residual + self.offset / self.prior_sd)
+        gram = (rows.T @ rows).toarray() - absorbed.T @ absorbed
+        return np.asarray(gram), np.asarray(rows.T @ residual - absorbed.T @ slope)
 
-def projection(fit: Fit, *, effects: bool = True) -> Projection:
-    """About a fitted model; parameters held at a bound still count as free.
+    def _coordinates(self, pulled: FloatArray) -> FloatArray:
+        """(d, ...) in the orthonormal basis, of [J; P^-1]' times rows."""
+        return np.asarray(solve_triangular(self._root, pulled, lower=True))
 
-    effects: whether the sizes of its effects are free too, or only the tunable parameters.
-    """
-    count = fit.z.size if effects else fit.model.dimension
-    prior = fit.model.prior_sd[:count]
-    stacked = np.vstack([fit.jacobian[:, :count], np.diag(1.0 / prior)])
-    basis, _ = qr(stacked, mode="economic")
-    return Projection(np.asarray(basis), (fit.z[:count] - fit.model.centre[:count]) / prior)
+    def _complement(self, rows: FloatArray, prior: FloatArray) -> FloatArray:
+        weight = (1.0 / self.prior_sd).reshape(-1, *[1] * (rows.ndim - 1))
+        coordinates = self._coordinates(self.jacobian.T @ rows + weight * prior)
+        move = solve_triangular(self._root, coordinates, lower=True, trans="T")
+        return np.concatenate([rows - self.jacobian @ move, prior - weight * move])

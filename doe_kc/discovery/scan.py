@@ -19,7 +19,6 @@ from doe_kc.solver.interface_columns import law_columns
 from doe_kc.solver.interface_laws import LAWS
 from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.probe import Probe
-from doe_kc.solver.suite import solve
 from doe_kc.typing import FloatArray
 
 SIGNED = ("offset", "stiffness")
@@ -66,11 +65,12 @@ class Scan:
     law: str | None
 
 
-def scan(tuned: Fit, project: Projection, *, temper: float = 1.0) -> Scan:
+def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
     """At a model without the effect. temper: what ln evidence is divided by; NotConverged as `solve`."""
     axle = tuned.model.axle_at(tuned.z)
-    influences = interface_influences(axle, solve(axle))
-    residual = project.residual(tuned.residual)
+    influences = interface_influences(axle, tuned.model.solutions(axle))
+    residual = tuned.remainder
+    project = tuned.projection
     found: list[tuple[Place, float]] = []
     for law in LAWS:
         found += _of_law(law, influences, tuned, project, residual)

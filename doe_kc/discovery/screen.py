@@ -16,7 +16,6 @@ from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import Projection
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
@@ -67,12 +66,12 @@ class Screened:
         return replace(self, change=change, columns=rewhitened(self.columns, before, after))
 
 
-def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
+def screen(found: Fit, hypothesis: Hypothesis) -> Screened:
     """The hypothesis on its own; one without equilibria comes back as failed."""
     model = found.model.extended(hypothesis)
     try:
         starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, SMALLER * PROBE), strict=True)
-        results = [follow(model, found, project, *s) for s in starts]
+        results = [follow(model, found, *s) for s in starts]
         change = _typical(model, found, hypothesis)
     except NotConverged as error:
         empty = np.zeros(len(hypothesis.sizes))
@@ -91,7 +90,7 @@ def screen(found: Fit, project: Projection, hypothesis: Hypothesis) -> Screened:
             str(error),
         )
     best = min(results, key=lambda r: r.cost)
-    return _summary(found, project, hypothesis, best, change)
+    return _summary(found, hypothesis, best, change)
 
 
 def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArray:
@@ -102,6 +101,11 @@ def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArr
     except NotConverged:
         small = model.residual(np.concatenate([found.z, PROBE * amplitudes])) - found.residual
         return np.asarray(small / PROBE)
+
+
+def effort(hypothesis: Hypothesis) -> int:
+    """About how much work its screening is, relative to others: starts times solutions of a step."""
+    return len(_starts(hypothesis, PROBE)) * (1 + len(hypothesis.sizes))
 
 
 def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
@@ -117,22 +121,22 @@ def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
 
 @dataclass(frozen=True)
 class _Followed:
-    """amplitudes (m,), columns (M, m) and change (M,) there; reduced: (M + d,) what re-tuning leaves.
+    """amplitudes (m,), columns (M, m) and change (M,) there; reduced: (M + d,) what re-tuning leaves of the
+    residual, projected: (M + d, m) of the columns.
 
     followed: False where amplitudes and cost are those that a first step promises, which is nothing.
     """
 
     amplitudes: FloatArray
     columns: FloatArray
+    projected: FloatArray
     change: FloatArray
     reduced: FloatArray
     cost: float
     followed: bool = True
 
 
-def follow(
-    model: EffectModel, found: Fit, project: Projection, start: FloatArray, smaller: FloatArray
-) -> _Followed:
+def follow(model: EffectModel, found: Fit, start: FloatArray, smaller: FloatArray) -> _Followed:
     """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing.
 
     A promise that is worse than the model without the effect is none: along a straight line the effect could
@@ -140,36 +144,32 @@ def follow(
     """
     place = slice(found.z.size, found.z.size + start.size)
     low, high = model.lower[place], model.upper[place]
-    plain = project.residual(found.residual)
-    without = float(plain @ plain)
-    best = _solved(model, found, project, start, place, None)
+    without = float(found.remainder @ found.remainder)
+    best = _derived(model, found, _solved(model, found, start), place)
     for k in range(STEPS if start.size else 0):
-        projected = project(best.columns)
-        hessian = projected.T @ projected + np.eye(start.size)
-        slope = projected.T @ best.reduced + best.amplitudes
+        hessian = best.projected.T @ best.projected + np.eye(start.size)
+        slope = best.projected.T @ best.reduced + best.amplitudes
         step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
         predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
         if k == 0 and predicted > without + 2.0 * HOPELESS and not np.array_equal(start, smaller):
-            return follow(model, found, project, smaller, smaller)
+            return follow(model, found, smaller, smaller)
         if without - predicted < 2.0 * HOPELESS:
             return replace(best, amplitudes=best.amplitudes + step, cost=predicted, followed=False)
-        trial = _better(model, found, project, best, step, place)
+        trial = _better(model, found, best, step)
         if trial is None:
             break
         gained, best = best.cost - trial.cost, trial
         if gained < ENOUGH:
             break
-        best = _solved(model, found, project, best.amplitudes, place, None, known=best)
+        best = _derived(model, found, best, place)
     return best
 
 
-def _better(
-    model: EffectModel, found: Fit, project: Projection, best: _Followed, step: FloatArray, place: slice
-) -> _Followed | None:
+def _better(model: EffectModel, found: Fit, best: _Followed, step: FloatArray) -> _Followed | None:
     """The longest of the shortened steps that gains, None when none does or has an equilibrium."""
     for share in SHARES:
         try:
-            trial = _solved(model, found, project, best.amplitudes + share * step, place, best.columns)
+            trial = _solved(model, found, best.amplitudes + share * step, best)
         except NotConverged:
             continue
         if trial.cost < best.cost:
@@ -178,32 +178,28 @@ def _better(
 
 
 def _solved(
-    model: EffectModel,
-    found: Fit,
-    project: Projection,
-    amplitudes: FloatArray,
-    place: slice,
-    columns: FloatArray | None,
-    known: _Followed | None = None,
+    model: EffectModel, found: Fit, amplitudes: FloatArray, near: _Followed | None = None
 ) -> _Followed:
-    """The true solution at some amplitudes; columns: None has them computed."""
-    z = np.concatenate([found.z, amplitudes])
-    residual = known.change + found.residual if known is not None else model.residual(z)
-    if columns is None:
-        columns = model.growth(z, residual, which=place)
-    reduced = known.reduced if known is not None else project.residual(residual)
+    """The true solution at some amplitudes, its columns those of a point that is near or still none."""
+    residual = model.residual(np.concatenate([found.z, amplitudes]))
+    reduced = found.projection.residual(residual)
     cost = float(reduced @ reduced + amplitudes @ amplitudes)
-    return _Followed(amplitudes, columns, residual - found.residual, reduced, cost)
+    none = np.zeros((0, amplitudes.size))
+    columns, projected = (none, none) if near is None else (near.columns, near.projected)
+    return _Followed(amplitudes, columns, projected, residual - found.residual, reduced, cost)
 
 
-def _summary(
-    found: Fit, project: Projection, hypothesis: Hypothesis, best: _Followed, change: FloatArray
-) -> Screened:
-    plain = project.residual(found.residual)
-    projected = project(best.columns)
-    hessian = projected.T @ projected + np.eye(best.amplitudes.size)
-    seen, whole = project(change), float(change @ change)
-    without = float(plain @ plain)
+def _derived(model: EffectModel, found: Fit, best: _Followed, place: slice) -> _Followed:
+    """The same with columns taken there. place: of the amplitudes in z."""
+    z, residual = np.concatenate([found.z, best.amplitudes]), found.residual + best.change
+    columns = model.growth(z, residual, which=place)
+    return replace(best, columns=columns, projected=found.projection(columns))
+
+
+def _summary(found: Fit, hypothesis: Hypothesis, best: _Followed, change: FloatArray) -> Screened:
+    hessian = best.projected.T @ best.projected + np.eye(best.amplitudes.size)
+    seen, whole = found.projection(change), float(change @ change)
+    without = float(found.remainder @ found.remainder)
     fitted = best.cost - float(best.amplitudes @ best.amplitudes)
     return Screened(
         hypothesis,
@@ -215,7 +211,7 @@ def _summary(
         change,
         float(np.linalg.norm(seen)),
         1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
-        visible(hypothesis, projected, seen),
+        visible(hypothesis, best.projected, seen),
     )
 
 
@@ -232,7 +228,7 @@ def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> 
     return out
 
 
-def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
+def rescreened(found: Fit, known: Screened) -> Screened:
     """The score test at another model with the columns known from an earlier one: no new solution.
 
     known: its changes in the other model's errors. amplitudes and gain to first order; hypotheses without
@@ -240,7 +236,8 @@ def rescreened(found: Fit, project: Projection, known: Screened) -> Screened:
     """
     if known.failed:
         return known
-    plain, seen = project.residual(found.residual), project(known.change)
+    project, plain = found.projection, found.remainder
+    seen = project(known.change)
     columns = project(known.columns if known.amplitudes.size else known.change[:, None])
     hessian = columns.T @ columns + np.eye(columns.shape[1])
     slope = columns.T @ plain

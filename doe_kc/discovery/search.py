@@ -10,13 +10,11 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, to_errors
 from doe_kc.discovery.granted import closed, opened
 from doe_kc.discovery.leaders import compatible, leaders, overlooked
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.pruning import pruned
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
@@ -125,9 +123,10 @@ def settled(current: Fit, bench: Bench) -> Fit:
 def tune(model: EffectModel) -> Fit:
     """The best axle without a further effect, the differences between its sides linear about it."""
     first = fit(model, model.centre)
-    sided = replace(model, sides=side_differences(model, first.z))
+    sides = side_differences(model, first.z)
+    sided = replace(model, sides=sides)
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
-    return fit(sided, start)
+    return fit(sided, start, tuning=np.hstack([first.jacobian, sides]), aged=0.0)
 
 
 def threshold(count: int) -> float:
@@ -152,11 +151,11 @@ def _step(
     last: Step | None,
 ) -> Step:
     """last: the step before; its columns tell which hypotheses are worth a screening anew."""
-    project, shapes = projection(current), contrasts(current.model.likelihood)
+    project, shapes = current.projection, current.model.contrasts
     before = remaining_map(shapes, current.residual, project)
     candidates = [h for h in library if compatible(current.model, h)]
     known = _in_errors(last, current.model.likelihood) if last else ()
-    quick = {s.hypothesis.name: rescreened(current, project, s) for s in known}
+    quick = {s.hypothesis.name: rescreened(current, s) for s in known}
     again = [h for h in candidates if h.name not in quick or quick[h.name].gain > PROMISING]
     full = {s.hypothesis.name: s for s in bench.screened(current, again)}
     screened = [full.get(h.name) or quick[h.name] for h in candidates]
@@ -171,7 +170,7 @@ def _step(
     trials = stiffer_first(trials)
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
-    after = remaining_map(shapes, trials[0].fit.residual, projection(trials[0].fit))
+    after = remaining_map(shapes, trials[0].fit.residual, trials[0].fit.projection)
     temper = max(1.0, after.mean_square)
     passes = trials[0].gain / temper > least
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)

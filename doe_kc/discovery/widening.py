@@ -12,11 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.discovery.bench import Bench
-from doe_kc.discovery.contrasts import contrasts
 from doe_kc.discovery.disagreement import remaining_map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.search import Search, search
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
@@ -49,9 +47,9 @@ def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) ->
 
 def asked(final: Fit, bench: Bench) -> float:
     """By how much wider the ranges are with the largest evidence, 1 unless it is clear."""
-    shapes = contrasts(final.model.likelihood)
+    shapes = final.model.contrasts
     few = np.mean(at_bounds(final)) < HELD
-    if few or not remaining_map(shapes, final.residual, projection(final)).agrees:
+    if few or not remaining_map(shapes, final.residual, final.projection).agrees:
         return 1.0
     best, most = 1.0, final.evidence + ASKED
     for factor in FACTORS:

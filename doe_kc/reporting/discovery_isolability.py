@@ -11,7 +11,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.correlation.likelihood import rewhitened
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.standing import Status
 from doe_kc.effects import EFFECTS
@@ -58,9 +57,7 @@ def isolability(found: Discovery) -> Isolability:
     order = list(EFFECTS)
     stands = sorted(found.standings, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
     changes = _changes(found)
-    remaining = projection(found.fitted, effects=False)(
-        np.array([changes[s.hypothesis.name] for s in stands]).T
-    )
+    remaining = found.fitted.tuning_projection(np.array([changes[s.hypothesis.name] for s in stands]).T)
     length = np.linalg.norm(remaining, axis=0)
     scaled = remaining / np.where(length > 0.0, length, 1.0)
     correlation = np.clip(np.abs(scaled.T @ scaled), 0.0, 1.0)

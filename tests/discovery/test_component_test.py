@@ -11,7 +11,6 @@ from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.component_test import ENOUGH, MOST, accuracy, component_tests
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.screen import Screened, screen
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
@@ -32,7 +31,7 @@ def tuned() -> Fit:
 @pytest.fixture(scope="module")
 def rack(tuned: Fit) -> Screened:
     (mount,) = library("rack_mount_compliance")
-    return screen(tuned, projection(tuned), mount)
+    return screen(tuned, mount)
 
 
 def shown(tuned: Fit, prior_sd: FloatArray, change: FloatArray) -> float:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import pytest
 
 from doe_kc.discovery.fit import fit
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.scan import Place, scan
 from tests.discovery.cases import model
 
 
 def test_the_place_is_found_without_a_library() -> None:
     tuned = fit(model("named"), model("named").centre)
-    found = scan(tuned, projection(tuned))
+    found = scan(tuned)
     assert (found.places[0].interface, found.places[0].law) == ("wheel|knuckle", "compliance")
     assert found.interface == "wheel|knuckle"
     assert sum(p.probability for p in found.places) == pytest.approx(1.0)
@@ -21,7 +20,7 @@ def test_the_place_is_found_without_a_library() -> None:
 def test_a_friction_is_told_from_everything_else() -> None:
     """Which of the steering's parts rubs, four load cases do not say."""
     tuned = fit(model("friction"), model("friction").centre)
-    found = scan(tuned, projection(tuned))
+    found = scan(tuned)
     assert found.law == "friction"
     assert {p.interface for p in found.places[:4]} & {"rack|housing", "ball joint"}
 

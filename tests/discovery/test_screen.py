@@ -11,7 +11,6 @@ import pytest
 from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
-from doe_kc.discovery.projection import projection
 from doe_kc.discovery.screen import PROBE, SMALLER, follow, rescreened, screen
 from doe_kc.discovery.standing import _trusted, standings, wrong_name_chance
 from tests.discovery.cases import library, model
@@ -24,17 +23,15 @@ def tuned() -> Fit:
 
 
 def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
-    project = projection(tuned)
-    gains = {h.name: screen(tuned, project, h).gain for h in library("hub_compliance", "strut_friction")}
+    gains = {h.name: screen(tuned, h).gain for h in library("hub_compliance", "strut_friction")}
     assert gains["hub_compliance"] > 50.0
     assert gains["strut_friction"] < 3.0
 
 
 def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
-    project = projection(tuned)
-    found = screen(tuned, project, hub)
-    again = rescreened(tuned, project, found)
+    found = screen(tuned, hub)
+    again = rescreened(tuned, found)
     prior = tuned.model.prior_sd
     marginal = np.eye(tuned.residual.size) + (tuned.jacobian * prior**2) @ tuned.jacobian.T
     weighted = np.linalg.solve(marginal, found.columns)
@@ -45,8 +42,7 @@ def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
 
 
 def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned: Fit) -> None:
-    project = projection(tuned)
-    by_name = {h.name: screen(tuned, project, h) for h in library("bushing_progression")}
+    by_name = {h.name: screen(tuned, h) for h in library("bushing_progression")}
     weak = by_name["bushing_progression SFR"]
     assert weak.detectability < 1.0
     assert 0.0 <= weak.absorbed <= 1.0
@@ -54,20 +50,20 @@ def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned:
 
 def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
-    project = projection(tuned)
-    found = screen(tuned, project, hub)
+    project = tuned.projection
+    found = screen(tuned, hub)
     columns = project(found.columns)
     for own, other in ((0, 1), (1, 0)):
         share = columns[:, own] @ columns[:, other] / (columns[:, other] @ columns[:, other])
         rest = columns[:, own] - share * columns[:, other]
         assert found.visible[own] == pytest.approx(np.linalg.norm(rest), rel=1e-4)
-    assert (rescreened(tuned, project, found).visible == found.visible).all()
+    assert (rescreened(tuned, found).visible == found.visible).all()
     assert found.visible.min() < found.detectability
 
 
 def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
-    found = screen(tuned, projection(tuned), friction)
+    found = screen(tuned, friction)
     amounts = [not s.shape for s in friction.sizes]
     assert found.visible[amounts] == pytest.approx(found.detectability)
     assert np.isnan(found.visible[~np.array(amounts)]).all()
@@ -75,8 +71,8 @@ def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
 
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
-    project = projection(tuned)
-    clear = screen(tuned, project, friction)
+    project = tuned.projection
+    clear = screen(tuned, friction)
     followed = tuned.jacobian @ np.full(tuned.z.size, 0.3)  # what parameters do, and a trace besides
     followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
     hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(project(followed))))
@@ -136,11 +132,12 @@ class Untuned:
 
 def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() -> None:
     model: Any = Saturating(true=0.03)
-    found: Any = SimpleNamespace(z=model.z, residual=model.residual_of)
-    untuned: Any = Untuned()
-    given_up = follow(model, found, untuned, np.array([PROBE]), np.array([PROBE]))
+    found: Any = SimpleNamespace(
+        z=model.z, residual=model.residual_of, remainder=model.residual_of, projection=Untuned()
+    )
+    given_up = follow(model, found, np.array([PROBE]), np.array([PROBE]))
     assert not given_up.followed
-    followed = follow(model, found, untuned, np.array([PROBE]), np.array([SMALLER * PROBE]))
+    followed = follow(model, found, np.array([PROBE]), np.array([SMALLER * PROBE]))
     assert followed.followed
     assert followed.amplitudes == pytest.approx([0.03], abs=1e-3)
 

@@ -1,0 +1,94 @@
+"""Where discoveries compute: workers' results are those of this process, and stored ones those computed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from doe_kc.campaign.executors import processes
+from doe_kc.discovery import ledger as ledgers
+from doe_kc.discovery.bench import Bench, _packed_fit, _unpacked_fit
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.ledger import Ledger
+from doe_kc.discovery.screen import effort
+from doe_kc.discovery.search import tune
+from tests.discovery.cases import library, model
+
+
+@pytest.fixture(scope="module")
+def tuned() -> Fit:
+    return tune(model("named"))
+
+
+def start(tuned: Fit) -> tuple[object, np.ndarray]:
+    (hub,) = library("hub_compliance")
+    return tuned.model.extended(hub), np.concatenate([tuned.z, [0.5, 0.5]])
+
+
+def test_a_fit_of_a_worker_is_of_the_very_model_and_errors_of_its_start(tuned: Fit) -> None:
+    extended, z = start(tuned)
+    with processes(2) as executor:
+        (there,) = Bench(executor, workers=2).fitted([(extended, z)], "", tuned.jacobian)
+    (here,) = Bench().fitted([(extended, z)], "", tuned.jacobian)
+    assert there is not None and here is not None
+    assert there.model is extended and there.model.likelihood is tuned.model.likelihood
+    assert np.array_equal(there.z, here.z) and np.array_equal(there.jacobian, here.jacobian)
+
+
+def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
+    begun, steps = [start(tuned)], []
+    fits = []
+    for _ in range(2):
+        with Ledger(tmp_path / "discovery.sqlite") as ledger:
+            bench = Bench(ledger=ledger, watch=lambda *step: steps.append(step))
+            fits += bench.fitted(begun, "refitting", tuned.jacobian)
+    computed, stored = fits
+    for name in ("z", "residual", "jacobian", "cost", "evaluations", "converged", "evidence"):
+        assert np.array_equal(getattr(computed, name), getattr(stored, name)), name
+    assert steps == [("refitting", 1), ("refitting", 1)]
+
+
+def test_what_the_model_says_is_not_stored_and_comes_back_in_its_place(tuned: Fit) -> None:
+    packed = _packed_fit(tuned)
+    sides = tuned.model.sides
+    assert sides is not None
+    assert packed["jacobian"].shape[1] == tuned.z.size - sides.shape[1]
+    again = _unpacked_fit(tuned.model, packed)
+    assert again is not None
+    assert np.array_equal(again.jacobian, tuned.jacobian)
+
+
+def test_results_of_another_format_are_not_taken_up(
+    tuned: Fit, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hypotheses = library("hub_compliance")
+    stored: list[int] = []
+    for tag in ("one", "one", "two"):
+        monkeypatch.setattr(ledgers, "FORMAT", tag)
+        with Ledger(tmp_path / "discovery.sqlite") as ledger:
+            put = ledger.put
+            monkeypatch.setattr(ledger, "put", lambda *a, put=put, tag=tag: (stored.append(tag), put(*a)))
+            Bench(ledger=ledger).screened(tuned, hypotheses)
+    assert stored == ["one", "two"]
+
+
+def test_the_longest_screenings_begin_first(tuned: Fit) -> None:
+    begun: list[str] = []
+
+    class Order(Ledger):
+        def put(self, key: str, arrays: object) -> None:
+            begun.append(key)
+
+    hypotheses = library("rig_channel_gain", "steering_friction")
+    efforts = [effort(h) for h in hypotheses]
+    assert efforts[-1] > max(efforts[:-1])
+    bench = Bench(ledger=Order(None))
+    found = bench.screened(tuned, hypotheses)
+    assert [s.hypothesis for s in found] == hypotheses
+    alone = Order(None)
+    first = begun[0]
+    begun.clear()
+    Bench(ledger=alone).screened(tuned, hypotheses[-1:])
+    assert begun == [first]
