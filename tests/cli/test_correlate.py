@@ -72,7 +72,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Correlated:
     study = study_in(tmp_path_factory.mktemp("example"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DOE_KC_COMPILE", "0")
-        patch.setattr("doe_kc.workflow.handover.write_correlation_figures", lambda *_, **__: [])
+        patch.setattr("doe_kc.reporting.correlation_figures.write_correlation_figures", lambda *_, **__: [])
         return Correlated(study, document_of(study))
 
 
