@@ -26,7 +26,7 @@ from doe_kc.effects import apply_effect
 from doe_kc.sampling import sample
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.kernel import Buffered, kernel
-from doe_kc.solver.march import Path, Settings
+from doe_kc.solver.march import March, NewtonSettings
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.static import static_state
 from doe_kc.solver.suite import library_for, solve
@@ -82,7 +82,7 @@ def first_call_seconds() -> float:
 
 def time_by_part() -> list[str]:
     """Where a compiled design's time goes, ms."""
-    axle, settings = example_axle(), Settings()
+    axle, settings = example_axle(), NewtonSettings()
     k, library = kernel(axle.topology), library_for(axle.topology, True)
     values = dict(axle.values)
     c = k.constant_values(values)
@@ -92,7 +92,7 @@ def time_by_part() -> list[str]:
     for case in axle.load_cases:
         alone = median_ms(lambda case=case: solve(axle, [case]), 31)
         out.append(f"{case} {alone:.2f}")
-    assert not isinstance(static, Path)
+    assert not isinstance(static, March)
     return [
         "- compiled, ms by part (a load case alone includes constants and static state): " + ", ".join(out)
     ]

@@ -21,8 +21,8 @@ from doe_kc.surrogates.folds import refit_folds
 from doe_kc.surrogates.interface import Fitted, Surrogate
 from doe_kc.surrogates.learning import Learning
 from doe_kc.surrogates.models import make
-from doe_kc.surrogates.models.gp import GaussianProcess, Trend
-from doe_kc.surrogates.validation import WIDTH, quality_on
+from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
+from doe_kc.surrogates.validation import NOMINAL_WIDTH, quality_on
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space, VariableOptions, build_space
@@ -113,7 +113,7 @@ def named(*names: str) -> list[tuple[str, Callable[[], Surrogate]]]:
 
 def variants(known: Truth) -> list[tuple[str, Callable[[], Surrogate]]]:
     """What `gp` would be with less."""
-    trend = Trend(known.start, known.value, known.slope)
+    trend = FirstOrderTrend(known.start, known.value, known.slope)
     return [
         ("gp", GaussianProcess),
         ("nothing learnt: all variables alike", lambda: GaussianProcess(learning=Learning(steps=0))),
@@ -134,7 +134,7 @@ def coverage_table(known: Truth) -> list[str]:
         total = np.square(y - y.mean(axis=0)).sum(axis=0)
         q2 = [float((1 - np.square(h.residual).sum(axis=0) / total).mean()) for h in (held, refitted)]
         error = np.abs(known.test[1] - fitted.predict(known.test[0]))
-        sd = WIDTH * np.sqrt(fitted.variance(known.test[0]))
+        sd = NOMINAL_WIDTH * np.sqrt(fitted.variance(known.test[0]))
         factors = (np.ones(y.shape[1]), calibration_factors(held), calibration_factors(refitted))
         covered = " | ".join(f"{(error <= sd * np.sqrt(f)).mean():.3f}" for f in factors)
         test = quality_on(fitted, *known.test).q2.mean()

@@ -17,7 +17,7 @@ import numpy as np
 from report_text import number, table
 
 from doe_kc.correlation.assessment import STATUS_LABELS, harmed, inside
-from doe_kc.correlation.posterior import AT_BOUND
+from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.rounding import with_sd
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
@@ -86,7 +86,7 @@ def _row(car: str, answer: Answer) -> list[str]:
     found, gap = answer.correlation, answer.gap
     entries = found.improvements
     point = found.best.point
-    ended = int(((point <= AT_BOUND) | (point >= 1.0 - AT_BOUND)).sum())
+    ended = int(((point <= BOUND_SHARE) | (point >= 1.0 - BOUND_SHARE)).sum())
     adopted = answer.adoption.effects if answer.adoption is not None else ()
     return [
         car,

@@ -12,8 +12,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from doe_kc.reporting.influence_figures import ANNOTATE, LINE, diverging
-from doe_kc.reporting.style import A4, CYCLE, DPI
+from doe_kc.reporting.influence_figures import ANNOTATE, LINE_COLOUR, diverging
+from doe_kc.reporting.style import A4, COLOUR_CYCLE, DPI
 from doe_kc.typing import FloatArray
 
 RC: Mapping[str, object] = {
@@ -55,7 +55,7 @@ def figure(
         FigureCanvasAgg(fig)
         axes = fig.subplots(rows, columns, squeeze=False, sharex=share_x, width_ratios=width_ratios)
     for ax in axes.flat:
-        ax.set_prop_cycle(color=CYCLE)
+        ax.set_prop_cycle(color=COLOUR_CYCLE)
     return fig, axes
 
 
@@ -81,7 +81,7 @@ def draw_matrix(ax: Axes, values: FloatArray, *, bar: bool = True) -> None:
     ax.set(xlim=(0.0, columns), ylim=(rows, 0.0), xticks=[], yticks=[])
     for i, j in np.argwhere(np.abs(np.nan_to_num(values)) >= ANNOTATE):
         number = ax.text(
-            j + 0.5, i + 0.5, f"{values[i, j]:.0f}", fontsize=5.5, color=LINE, ha="center", va="center"
+            j + 0.5, i + 0.5, f"{values[i, j]:.0f}", fontsize=5.5, color=LINE_COLOUR, ha="center", va="center"
         )
         number.set_in_layout(False)  # it lies within its cell; the layout would measure it with the rest
     if bar and ax.figure is not None:

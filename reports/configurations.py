@@ -17,7 +17,7 @@ from configurations_findings import hold
 from configurations_text import file_name, markdown
 from correlation_runs import Trace, arguments, cached_trace
 
-from doe_kc.correlation.posterior import AT_BOUND
+from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.reporting.style import save
 
 
@@ -63,7 +63,7 @@ def run_table(runs: Mapping[str, list[Trace]]) -> pd.DataFrame:
             "method": t.method,
             "seed": t.seed,
             "variables": len(t.point),
-            "at_bound": sum(u <= AT_BOUND or u >= 1.0 - AT_BOUND for u in t.point),
+            "at_bound": sum(u <= BOUND_SHARE or u >= 1.0 - BOUND_SHARE for u in t.point),
             "evaluations": t.evaluations,
             **{f"rating_{n}": t.best[min(n, t.evaluations) - 1] for n in (1, 25, 50, 100)},
             "constraints_missed": len(t.violated),

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from report_figures import legend, title
 
-from doe_kc.reporting.style import CYCLE, PALETTE
+from doe_kc.reporting.style import COLOUR_CYCLE, PALETTE
 from doe_kc.typing import FloatArray
 
 Runs = Mapping[str, Sequence[Trace]]
@@ -24,7 +24,7 @@ def convergence_figure(runs: Runs, what: str, budget: int, standard: str) -> Fig
     fig, axes = figure(1, 2, size=(9.5, 3.7), share_x=False, width_ratios=(1.4, 1.0))
     left, right = axes[0]
     for ax in (left, right):
-        colours = iter(CYCLE)
+        colours = iter(COLOUR_CYCLE)
         for name, traces in runs.items():
             _curve(ax, name, traces, PALETTE["black"] if name == standard else next(colours), budget)
         ax.set_yscale("log")

@@ -25,7 +25,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.comparison.interval import FLOOR
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.loop import Run, run_method
-from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Problem
 from doe_kc.measurement import Measurement, reduce_measurement
@@ -113,7 +113,9 @@ def solve_run(
     gradients: False as for an outside solver, which gives no exact sensitivities.
     """
     solver = AxleSolver(problem.axle, problem.windows).prepare([])
-    made = METHODS[method](problem, Settings(seed=seed, budget=budget, first=first, gradients=gradients))
+    made = METHODS[method](
+        problem, MethodSettings(seed=seed, budget=budget, first=first, gradients=gradients)
+    )
     return run_method(problem, made, lambda designs: [solver.evaluate(d) for d in designs], budget=budget)
 
 

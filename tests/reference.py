@@ -12,7 +12,7 @@ import pandas as pd
 from doe_kc.axle import Axle, parameter_value, read_axle, with_values
 from doe_kc.effects import apply_effect
 from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.load_cases.vertical import Vertical
 
 DATA = Path(__file__).parent / "data" / "reference"
@@ -75,7 +75,7 @@ def reference_cases(axle: Axle) -> dict[str, LoadCase]:
     return {
         **axle.load_cases,
         "vertical_wheel": Vertical(amplitude=80.0, steps=32, control="wheel"),
-        "roll_pads": TECHNIQUES["counter_phase"],
+        "roll_pads": ROLL_TECHNIQUES["counter_phase"],
     }
 
 

@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from doe_kc.axle import design_parameters, read_axle
 from doe_kc.campaign.executors import processes
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.influence.study import influence_study
 from doe_kc.measurement import infer_ride_height, reduce_measurement
 from doe_kc.solver.curve_set import curve_set
@@ -68,7 +68,11 @@ def test_a_ride_height() -> None:
 def correlation(watch: Callable[[object], None]) -> None:
     case = synthetic(4)
     run_method(
-        case, METHODS["ego"](case, Settings(seed=1, budget=3)), synthetic_solver(case), budget=3, watch=watch
+        case,
+        METHODS["ego"](case, MethodSettings(seed=1, budget=3)),
+        synthetic_solver(case),
+        budget=3,
+        watch=watch,
     )
 
 

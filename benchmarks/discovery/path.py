@@ -15,7 +15,7 @@ from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.march import Settings, Start, march
+from doe_kc.solver.march import NewtonSettings, Start, march
 from doe_kc.solver.result import Failure, NotConverged, StaticState
 from doe_kc.solver.static import control_matrix, static_state
 from doe_kc.solver.suite import library_for
@@ -46,7 +46,7 @@ class Bench:
         self._kernel: Kernel = kernel(self.axle.topology)
         self._library = library_for(self.axle.topology, None)
         self._constants = self._kernel.constant_values(dict(self.axle.values))
-        found = static_state(self._kernel, self._library, self._constants, self.axle, Settings())
+        found = static_state(self._kernel, self._library, self._constants, self.axle, NewtonSettings())
         if isinstance(found, Failure):
             raise NotConverged(found)
         self._static: StaticState = found

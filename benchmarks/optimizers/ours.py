@@ -8,7 +8,7 @@ from optimizers.counting import CountingSolver
 from optimizers.peer import Peer, Search
 
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Problem
 
@@ -19,7 +19,7 @@ def own(name: str, *, gradients: Gradients = "auto", continuous: bool = False) -
     """A registered method with its default settings; continuous: without the variables' levels."""
 
     def search(solver: CountingSolver, seed: int) -> str:
-        settings = Settings(seed=seed, budget=solver.budget, gradients=gradients)
+        settings = MethodSettings(seed=seed, budget=solver.budget, gradients=gradients)
         problem = _without_levels(solver.problem) if continuous else solver.problem
         method = METHODS[name](problem, settings)
         return run_method(problem, method, solver.evaluate, budget=solver.budget).stopped

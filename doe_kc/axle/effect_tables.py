@@ -13,7 +13,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.places import effect_id
 from doe_kc.effects import EFFECTS
 
-LINE = 100
+COMMENT_LENGTH = 100
 """Characters of a line of comment."""
 NO_UNIT = ("", "-")
 
@@ -41,7 +41,7 @@ def effect_table(ident: str, options: Mapping[str, Any]) -> Table:
     """A table with the effect's name and physics as comments; numbers as short as they read back exactly."""
     effect, table = EFFECTS[ident], tomlkit.table()
     table.comment(effect.label)
-    for line in wrap(effect.physics, LINE):
+    for line in wrap(effect.physics, COMMENT_LENGTH):
         table.add(tomlkit.comment(line))
     for key, value in options.items():
         table[key] = list(value) if isinstance(value, tuple) else value

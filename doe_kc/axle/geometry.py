@@ -14,7 +14,7 @@ MIN_DISTANCE = 1.0
 FARTHEST = 1e5
 """mm; no car is 100 m long: such a coordinate is in another unit."""
 
-BARS = (
+BAR_ENDS = (
     ("LWD", "UPB", "the strut axis has no length"),
     ("RIB", "ROB", "the tie rod has no length"),
     ("LWS", "UPS", "the spring has no length"),
@@ -42,7 +42,7 @@ def check_geometry(axle: Axle, source: str) -> None:
                     f"{source}: hardpoint {name} of the {word} side is more than {FARTHEST / 1000:g} m away; "
                     "expected coordinates in mm. Check its unit."
                 )
-        for first, second, why in BARS:
+        for first, second, why in BAR_ENDS:
             gap = float(np.linalg.norm(point(axle, first, side) - point(axle, second, side)))
             if gap < MIN_DISTANCE:
                 raise InputError(

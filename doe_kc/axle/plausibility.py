@@ -113,9 +113,9 @@ RANGES = (
 )
 """Wide: they catch a wrong unit or a slip of a digit, not an unusual car."""
 
-STIFFNESS = (1.0, 1e6)
+BUSHING_STIFFNESS = (1.0, 1e6)
 """N/mm of a bushing: softer than a spring it guides nothing, stiffer than 1000 kN/mm is bolted steel."""
-REACH = 1000.0
+CORNER_SIZE = 1000.0
 """mm between the wheel centre and any hardpoint of its own corner."""
 MIDDLE = 50.0
 """mm from the car's middle plane within which no hardpoint of a side lies."""
@@ -160,10 +160,10 @@ def _hardpoints(axle: Axle) -> Iterator[str]:
                     f"{where} is within {MIDDLE:g} mm of the car's middle, where no part of one wheel's "
                     "suspension is. Check its unit: coordinates are in mm."
                 )
-            elif np.linalg.norm(at - centre) > REACH:
+            elif np.linalg.norm(at - centre) > CORNER_SIZE:
                 yield (
                     f"{where} is {np.linalg.norm(at - centre):.0f} mm from the wheel centre; "
-                    f"a suspension reaches {REACH:g} mm at most. Check value and unit."
+                    f"a suspension reaches {CORNER_SIZE:g} mm at most. Check value and unit."
                 )
 
 
@@ -175,7 +175,7 @@ def _ranges(axle: Axle) -> Iterator[str]:
 
 
 def _bushings(axle: Axle) -> Iterator[str]:
-    lower, upper = STIFFNESS
+    lower, upper = BUSHING_STIFFNESS
     tables = {(name, axis) for name, axis, _ in axle.topology.tables}
     for side in _sides(axle):
         for name in BUSHINGS:

@@ -16,7 +16,7 @@ from doe_kc.errors import InputError, nearest
 from doe_kc.files import read_toml, validate
 from doe_kc.solver.curve import curve_values
 from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, LoadCase
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.topology import Topology
 
 NM_PER_DEG = 1000.0 * 180.0 / np.pi
@@ -146,7 +146,7 @@ def _changed_case(case: LoadCase, sweep: Sweep, source: str) -> LoadCase:
     if technique is not None:
         if case.id != "roll":
             raise InputError(f"{source}: [load_cases.{case.id}] technique belongs to roll only.")
-        case = TECHNIQUES[technique]
+        case = ROLL_TECHNIQUES[technique]
     for key in options:
         if not hasattr(case, key):
             raise InputError(f"{source}: [load_cases.{case.id}] has no option {key!r}; remove it.")

@@ -123,7 +123,7 @@ class Static(Strict):
     camber: Annotated[float, Field(gt=-45, lt=45, allow_inf_nan=False)]
 
 
-class Tyre(Strict):
+class TyreTable(Strict):
     rate: Positive
     static_load: Positive
 
@@ -136,13 +136,13 @@ class Damper(Strict):
     gas_force: NotNegative = 0.0
 
 
-class AntiRollBar(Strict):
+class AntiRollBarTable(Strict):
     rate: NotNegative
     radius: Positive = 11.5
     nominal_radius: Positive = 11.5
 
 
-class Steering(Strict):
+class SteeringTable(Strict):
     column: Positive
     rack_mm_per_rev: Positive
 
@@ -151,12 +151,12 @@ class ColumnBushing(Strict):
     Tz: Positive = 1.0
 
 
-class SteerArm(Strict):
+class SteerArmTable(Strict):
     radius: Positive = 14.0
     flexible: bool = False
 
 
-class Strut(Strict):
+class StrutTable(Strict):
     flexibility: NotNegative = 0.0
 
 
@@ -178,17 +178,17 @@ class AxleFile(Strict):
     hardpoints: Hardpoints
     follow: dict[str, str] = DEFAULT_FOLLOW
     static: Static
-    tyre: Tyre
+    tyre: TyreTable
     spring: Spring
     damper: Damper = Damper()
     bump_stop: Stop
     rebound_stop: Stop
-    arb: AntiRollBar
-    steering: Steering
+    arb: AntiRollBarTable
+    steering: SteeringTable
     scb: ColumnBushing = ColumnBushing()
     bushings: Bushings
-    steer_arm: SteerArm = SteerArm()
-    strut: Strut = Strut()
+    steer_arm: SteerArmTable = SteerArmTable()
+    strut: StrutTable = StrutTable()
     ride_height: Finite = 0.0
     right: dict[str, Finite] = {}
     effects: dict[str, dict[str, Any]] = {}

@@ -28,8 +28,8 @@ from doe_kc.errors import InputError, RunError
 from doe_kc.files import read_bytes, read_toml
 from doe_kc.output import write_whole
 
-HEADER = "# Written by doe_kc"
-ROUNDS = 4
+AXLE_HEADER = "# Written by doe_kc"
+WRITE_CORRECTIONS = 4
 """Corrections of a place until the axle reads as wanted: what moves with a value follows in the next."""
 NUDGES = 8
 """Neighbouring floating-point numbers tried where right = left + difference is rounded."""
@@ -56,10 +56,10 @@ def write_axle(axle: Axle, original: Path, path: Path, *, note: str = "") -> Pat
 
 
 def _with_header(text: str, original: Path, note: str) -> str:
-    line = f"{HEADER} {__version__} from {original.name}" + (f": {note}" if note else "")
+    line = f"{AXLE_HEADER} {__version__} from {original.name}" + (f": {note}" if note else "")
     line = "".join(c if c.isprintable() else " " for c in line)
     end = "\r\n" if "\r\n" in text else "\n"
-    if text.startswith(HEADER):
+    if text.startswith(AXLE_HEADER):
         text = text.partition("\n")[2]
     # Tables that were added end their lines with \n in a file of any kind.
     return f"{line}\n{text}".replace("\r\n", "\n").replace("\n", end)
@@ -78,7 +78,7 @@ def _wrong(document: tomlkit.TOMLDocument, axle: Axle) -> list[str]:
 def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
     """Change the document until it reads as the axle; False when that cannot be."""
     drivers = _drivers(document)
-    for _ in range(ROUNDS):
+    for _ in range(WRITE_CORRECTIONS):
         wrong = [n for n in _wrong(document, axle) if n not in drivers and own_place(n)]
         left = [n for n in wrong if not n.endswith("@R")]
         for name in left or wrong:
@@ -150,7 +150,7 @@ def _secant(readings: Mapping[float, float], want: float, before: Any) -> Iterat
     """Numbers to try: a neighbour to compare with, the wanted one, then where the line through two leads."""
     yield float(before) if isinstance(before, int | float) and before != want else want * 1.001 + 1e-6
     yield want
-    for _ in range(ROUNDS):
+    for _ in range(WRITE_CORRECTIONS):
         (t0, g0), (t1, g1) = list(readings.items())[-2:]
         if g1 in (want, g0) or not np.isfinite([g0, g1]).all():
             return

@@ -13,7 +13,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 TIMEOUT = "10s"
 PER_WORKER = 4
-FEWEST = 8
+PENDING_TASKS = 8
 
 
 class DaskCluster(Executor):
@@ -31,7 +31,7 @@ class DaskCluster(Executor):
     def workers(self) -> int:
         """Tasks that run at once at present, and some more so that a new worker finds work."""
         threads: list[int] = list(self._client.nthreads().values())
-        return max(FEWEST, PER_WORKER * sum(threads))
+        return max(PENDING_TASKS, PER_WORKER * sum(threads))
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """A future on the cluster."""

@@ -10,7 +10,7 @@ from typing import Literal
 import pandas as pd
 
 from doe_kc.axle.parameters import KINDS
-from doe_kc.campaign.record import Record
+from doe_kc.campaign.record import StoredEvaluation
 from doe_kc.campaign.store import Store
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import SIDES, CurveSet
@@ -69,7 +69,7 @@ def curves_frames(store: Store, windows: Mapping[str, float]) -> Iterator[pd.Dat
             yield curve_rows(record, curves)
 
 
-def curve_rows(record: Record, curves: CurveSet) -> pd.DataFrame:
+def curve_rows(record: StoredEvaluation, curves: CurveSet) -> pd.DataFrame:
     """key, load_case, side, input, input_unit, and per response its mean and `<response>_half_width`.
 
     Units as in `doe_kc.curves`; angles and wheel centre are changes from static.

@@ -9,13 +9,13 @@ from collections.abc import Mapping
 
 from doe_kc.errors import InputError
 
-DIGITS = 12
+KEY_DIGITS = 12
 """Significant digits that tell two designs apart: 0.1 + 0.2 is 0.3."""
 
 
 def rounded(value: float) -> float:
     """The value with twelve significant digits; -0 is 0."""
-    return float(f"{value:.{DIGITS}g}") + 0.0
+    return float(f"{value:.{KEY_DIGITS}g}") + 0.0
 
 
 def design_key(values: Mapping[str, float]) -> str:

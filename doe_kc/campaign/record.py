@@ -29,7 +29,7 @@ class Packed:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Record:
+class StoredEvaluation:
     """One row of the store.
 
     parameters: path -> absolute value. windows: fit windows that `packed.characteristics` were reduced
@@ -58,7 +58,7 @@ def packed_outcome(outcome: Outcome) -> Packed:
     return Packed(outcome.reason, known, block, outcome.seconds)
 
 
-def outcome_of(record: Record, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
+def outcome_of(record: StoredEvaluation, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
     """The outcome of a record, its characteristics reduced with `windows`.
 
     Curves are reduced again when the windows are others or a characteristic is new; without curves the

@@ -16,7 +16,7 @@ from doe_kc.campaign.executors import executor_for, in_process
 from doe_kc.campaign.flight import Flight
 from doe_kc.campaign.interrupts import Interrupts
 from doe_kc.campaign.key import design_key
-from doe_kc.campaign.record import Packed, Record
+from doe_kc.campaign.record import Packed, StoredEvaluation
 from doe_kc.campaign.store import Store, open_store
 from doe_kc.campaign.task import task_for
 from doe_kc.errors import DoeKcError, RunError
@@ -24,7 +24,7 @@ from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver, Values
 
 Progress = Callable[[int], None]
-FEW = 2
+IN_PROCESS_DESIGNS = 2
 """Designs of a quick solver that are run in this process."""
 
 
@@ -96,7 +96,7 @@ class Campaign:
         return out
 
     def _run(self, missing: Mapping[str, Values], origin: str, done: Callable[[str], None]) -> None:
-        few = self.solver.quick and len(missing) <= FEW
+        few = self.solver.quick and len(missing) <= IN_PROCESS_DESIGNS
         executor = self._here if few else self.executor
         interrupts = Interrupts()
         flight = Flight(executor, task_for(self.solver), missing, interrupts)
@@ -115,7 +115,7 @@ class Campaign:
             raise
 
     def _keep(self, key: str, values: Values, packed: Packed, origin: str) -> None:
-        record = Record(
+        record = StoredEvaluation(
             key=key,
             parameters=dict(values),
             packed=packed,

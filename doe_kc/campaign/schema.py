@@ -11,7 +11,7 @@ from doe_kc.campaign.sql_errors import REMOVE
 from doe_kc.errors import InputError
 
 SCHEMA = 1
-TABLES = """
+STORE_SCHEMA = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE evaluations (
     key TEXT PRIMARY KEY,
@@ -39,7 +39,7 @@ def create(connection: sqlite3.Connection, fingerprint: str, description: Mappin
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
     }
     connection.execute("BEGIN IMMEDIATE")
-    for statement in TABLES.strip().split(";")[:-1]:
+    for statement in STORE_SCHEMA.strip().split(";")[:-1]:
         connection.execute(statement)
     connection.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
     connection.execute("COMMIT")

@@ -13,14 +13,14 @@ from typing import Any
 from doe_kc.campaign import schema
 from doe_kc.campaign.curves_codec import DamagedCurves
 from doe_kc.campaign.lock import lock
-from doe_kc.campaign.record import Packed, Record, outcome_of
+from doe_kc.campaign.record import Packed, StoredEvaluation, outcome_of
 from doe_kc.campaign.sql_errors import REMOVE, in_words
 from doe_kc.errors import InputError
 from doe_kc.output import make_folder
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver
 
-COLUMNS = "key, parameters, reason, characteristics, windows, seconds, origin, created, versions"
+EVALUATION_COLUMNS = "key, parameters, reason, characteristics, windows, seconds, origin, created, versions"
 
 
 class Store:
@@ -39,7 +39,7 @@ class Store:
         self._where = _named(path)
         self._held = held
 
-    def put(self, record: Record) -> None:
+    def put(self, record: StoredEvaluation) -> None:
         """Store a record, in place of one with its key; RunError when the disk is full or not writable."""
         packed = record.packed
         row = (
@@ -74,13 +74,13 @@ class Store:
         """
         with in_words(self._where):
             row = self._connection.execute(
-                f"SELECT {COLUMNS}, curves FROM evaluations WHERE key = ?", (key,)
+                f"SELECT {EVALUATION_COLUMNS}, curves FROM evaluations WHERE key = ?", (key,)
             ).fetchone()
         if row is None:
             raise KeyError(key)
         return self.read(_record(row), windows, curves=curves)
 
-    def read(self, record: Record, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
+    def read(self, record: StoredEvaluation, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
         """The outcome of a record of this store; InputError when its curves are damaged."""
         try:
             return outcome_of(record, windows, curves=curves)
@@ -89,9 +89,9 @@ class Store:
                 f"{self._where}: the curves of evaluation {record.key[:12]} are damaged; {REMOVE}."
             ) from None
 
-    def records(self, origin: str = "*") -> Iterator[Record]:
+    def records(self, origin: str = "*") -> Iterator[StoredEvaluation]:
         """All records in the order of their making, of the origins that match a glob such as `sample:*`."""
-        query = f"SELECT {COLUMNS}, curves FROM evaluations WHERE origin GLOB ? ORDER BY rowid"
+        query = f"SELECT {EVALUATION_COLUMNS}, curves FROM evaluations WHERE origin GLOB ? ORDER BY rowid"
         with in_words(self._where):
             for row in self._connection.execute(query, (origin,)):
                 yield _record(row)
@@ -117,9 +117,9 @@ class Store:
         self.close()
 
 
-def _record(row: tuple[Any, ...]) -> Record:
+def _record(row: tuple[Any, ...]) -> StoredEvaluation:
     key, parameters, reason, characteristics, windows, seconds, origin, created, versions, curves = row
-    return Record(
+    return StoredEvaluation(
         key=key,
         parameters=json.loads(parameters),
         packed=Packed(reason, json.loads(characteristics), curves, seconds),

@@ -24,9 +24,9 @@ def fit_window(case: CaseCurves, half_width: float | None = None) -> NDArray[np.
 def default_window(case: CaseCurves) -> float:
     """Half-width of the default window in the unit of `case.input`."""
     if case.load_case == "roll" and case.input_unit == "mm":
-        from doe_kc.solver.load_cases.roll import TECHNIQUES
+        from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 
-        return TECHNIQUES["counter_phase"].window
+        return ROLL_TECHNIQUES["counter_phase"].window
     return LOAD_CASES[case.load_case].window
 
 

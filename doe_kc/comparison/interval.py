@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-SHARE = 0.15
+INTERVAL_SHARE = 0.15
 FLOOR = 0.005
 
 
@@ -13,5 +13,5 @@ def constraint_interval(target: float) -> tuple[float, float]:
 
     Widens the relative interval of targets close to zero.
     """
-    half = SHARE * math.sqrt(target**2 + FLOOR)
+    half = INTERVAL_SHARE * math.sqrt(target**2 + FLOOR)
     return target - half, target + half

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from typing import Literal
 
 from doe_kc.comparison.interval import constraint_interval
-from doe_kc.correlation.posterior import AT_BOUND
+from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.search_targets import hold_distance, hold_rms
 from doe_kc.targets import Improvement
 from doe_kc.targets.improvement import SIGNIFICANT
 
 Status = Literal["sound", "doubtful", "not_usable"]
-FEW = 0.1
+BOUND_COUNT_SHARE = 0.1
 """Share of the variables that may end at a bound: more of them stand in for something."""
 MISFIT = 1.2
 """Whitened RMS of the deviations from which they are more than noise; its own scatter is some 0.01."""
@@ -163,9 +163,9 @@ def _left(misfit: float | None) -> list[Objection]:
 
 def _at_bounds(correlation: Correlation) -> list[Objection]:
     point = correlation.best.point
-    ended = (point <= AT_BOUND) | (point >= 1.0 - AT_BOUND)
+    ended = (point <= BOUND_SHARE) | (point >= 1.0 - BOUND_SHARE)
     names = [v.path for v, out in zip(correlation.problem.space.variables, ended, strict=True) if out]
-    if len(names) <= max(1.0, FEW * point.size):
+    if len(names) <= max(1.0, BOUND_COUNT_SHARE * point.size):
         return []
     return [
         Objection(f"{len(names)} of {point.size} variables end at a bound: they may stand in for an effect.")

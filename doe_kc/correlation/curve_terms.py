@@ -9,7 +9,7 @@ import numpy as np
 from doe_kc.targets import LIMIT_WEIGHT, Targets
 from doe_kc.typing import FloatArray
 
-CORNER = 1e-3
+CURVE_ROUNDING = 1e-3
 """RMS over Norm at which the corner of the root is rounded for gradients."""
 
 
@@ -87,7 +87,7 @@ class CurveTerms:
 
     def _weight(self, square: FloatArray) -> FloatArray:
         """(..., c) minus twice the derivative of the terms by the squares."""
-        size = np.sqrt(square + CORNER**2)
+        size = np.sqrt(square + CURVE_ROUNDING**2)
         beyond = np.maximum(size - self.limit, 0.0)
         return np.asarray((self.linear + 2.0 * LIMIT_WEIGHT * beyond) / size + 2.0 * self.quadratic)
 

@@ -7,7 +7,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.typing import FloatArray
 
-ITERATIONS = 500
+LEAST_SQUARES_ITERATIONS = 500
 HALVINGS = 30
 SUFFICIENT = 1e-4
 """Share of the slope's promise that a step must keep (Armijo)."""
@@ -19,7 +19,7 @@ def bounded_step(
     lower: FloatArray,
     upper: FloatArray,
     *,
-    iterations: int = ITERATIONS,
+    iterations: int = LEAST_SQUARES_ITERATIONS,
 ) -> FloatArray:
     """(d,) s that minimizes 1/2 s'Hs + g's with lower <= s <= upper; H (d, d) positive definite.
 

@@ -27,7 +27,7 @@ CALIBRATION = 0.002
 """Share of a sensor's reading that its calibration leaves open: repeats cannot show it, as it is in all."""
 RIG_HYSTERESIS = 0.3
 """Share of a sensor's white noise that the rig's own friction and backlash may open a loop by."""
-BENDS = 7
+MEDIAN_WINDOW = 7
 """Second differences of which the median is the curve's own."""
 EXACT_SHARE = 0.05
 """Of Norm: standard deviation taken for a typed target that states none, a third of its interval."""
@@ -237,7 +237,7 @@ def corner_error(curve: FloatArray, sd: FloatArray) -> FloatArray:
     """
     second = np.diff(curve, 2)
     bend = np.zeros(curve.size)
-    bend[1:-1] = second - median_filter(second, BENDS, mode="mirror")
+    bend[1:-1] = second - median_filter(second, MEDIAN_WINDOW, mode="mirror")
     bend[np.abs(bend) < 4.0 * np.sqrt(6.0) * sd] = 0.0
     size = np.abs(bend)
     jump = np.where(bend[:-1] * bend[1:] < 0.0, np.minimum(size[:-1], size[1:]), 0.0)

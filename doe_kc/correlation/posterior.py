@@ -11,16 +11,16 @@ from scipy.special import ndtr, ndtri
 
 from doe_kc.typing import FloatArray
 
-VISIBLE = 0.5
+VISIBLE_SHARE = 0.5
 """A variable is visible when the measurement at least halves its prior standard deviation."""
 ONE_SD = 0.6827
 """Probability within one standard deviation of a normal distribution."""
-AT_BOUND = 0.005
+BOUND_SHARE = 0.005
 """Share of the range within which a variable counts as being at its bound: half a step of 101 levels."""
 
 
 @dataclass(frozen=True)
-class Posterior:
+class ParameterPosterior:
     """Linear Gaussian view at a design. All (d,), in places u.
 
     sd: sqrt(diag((J'J + P^-2)^-1)) times the misfit, J in standard deviations of the data, P the prior sd; no
@@ -40,7 +40,7 @@ class Posterior:
     @property
     def visible(self) -> NDArray[np.bool_]:
         """(d,) whether the measurement at least halves the prior sd."""
-        return np.asarray(self.sd <= VISIBLE * self.prior)
+        return np.asarray(self.sd <= VISIBLE_SHARE * self.prior)
 
 
 def posterior(
@@ -49,7 +49,7 @@ def posterior(
     *,
     residual: FloatArray | None = None,
     point: FloatArray | None = None,
-) -> Posterior:
+) -> ParameterPosterior:
     """Posterior of d variables from the whitened Jacobian (M, d) and the prior sd (d,).
 
     residual: (M,) whitened, by default noise. point: (d,) the design, by default between all bounds.
@@ -61,11 +61,11 @@ def posterior(
     hessian = weighted.T @ weighted + np.diag(prior**-2.0)
     covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(prior.size)))
     sd = np.sqrt(np.diag(covariance))
-    at_bound = np.where(at <= AT_BOUND, -1, np.where(at >= 1.0 - AT_BOUND, 1, 0))
+    at_bound = np.where(at <= BOUND_SHARE, -1, np.where(at >= 1.0 - BOUND_SHARE, 1, 0))
     slope = weighted.T @ (left / misfit)
     pushed = zip(at_bound, slope, sd, strict=True)
     inward = np.array([_inward(-float(b * s), float(e)) if b else np.nan for b, s, e in pushed])
-    return Posterior(sd, prior, covariance / np.outer(sd, sd), misfit, at_bound, inward)
+    return ParameterPosterior(sd, prior, covariance / np.outer(sd, sd), misfit, at_bound, inward)
 
 
 def _inward(slope: float, sd: float) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 
 from doe_kc.typing import FloatArray
 
-RIDGE = 1e-3
+PRIOR_RIDGE = 1e-3
 """Rating per squared prior standard deviation: far below what any target is worth."""
 RIDGE_MEASURED = 0.02
 """The same for a search on everything measured, where a deviation that is removed is worth 1: seventy
@@ -23,7 +23,7 @@ class Prior:
     weight: FloatArray
 
     @classmethod
-    def of(cls, start: FloatArray, prior_sd: FloatArray, ridge: float = RIDGE) -> Prior:
+    def of(cls, start: FloatArray, prior_sd: FloatArray, ridge: float = PRIOR_RIDGE) -> Prior:
         """`ridge` per squared prior sd (d,) about the start (d,)."""
         return cls(start, ridge * prior_sd**-2.0)
 

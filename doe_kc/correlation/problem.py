@@ -11,19 +11,19 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
-from doe_kc.correlation.prior import RIDGE, Prior
+from doe_kc.correlation.prior import PRIOR_RIDGE, Prior
 from doe_kc.errors import RunError
 from doe_kc.targets import Rating, Score, Targets, rate, score
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-KEPT = 4
+EXPANSION_CACHE = 4
 """Expansions that are kept, some 10 MB each."""
 
 
 @dataclass(frozen=True)
-class Prediction:
+class RatingForecast:
     """What a method expected of a candidate. values, sd: (k,) of the targets' characteristics."""
 
     values: FloatArray
@@ -38,7 +38,7 @@ class Candidate:
 
     point: FloatArray
     origin: str
-    predicted: Prediction | None = None
+    predicted: RatingForecast | None = None
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Problem:
     windows: Mapping[str, float]
     exact: bool
     sought: Targets | None = None
-    ridge: float = RIDGE
+    ridge: float = PRIOR_RIDGE
 
     @property
     def search(self) -> Targets:
@@ -110,7 +110,7 @@ class Problem:
         key = point.tobytes()
         if key not in self._expansions:
             self._expansions[key] = linearize(self.axle, self.space, point, self.windows)
-            while len(self._expansions) > KEPT:
+            while len(self._expansions) > EXPANSION_CACHE:
                 self._expansions.pop(next(iter(self._expansions)))
         return self._expansions[key]
 

@@ -14,17 +14,17 @@ from doe_kc.targets.improvement import SIGNIFICANT
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.typing import FloatArray
 
-MARGIN = 0.2
+FORECAST_MARGIN = 0.2
 """Share of a range by which a first-order forecast may be wrong before a target counts as out of reach."""
 ACTIVE = 1e-6
-QUIET = 1.0 / 3.0
+QUIET_SHARE = 1.0 / 3.0
 """Share of an interval's half-width within which a value is not harmed: forecasts are of first order."""
 PURSUED = 4.0
 """Prior standard deviations that closing a target out of reach is worth: one parameter at its bound is 1.7,
 so a bound too narrow is used up, while an effect that is missing does not bend all parameters."""
-ALIKE = 0.2
+ALIKE_SHARE = 0.2
 """Share of an interval's half-width within which two solvers describe the same axle."""
-SLACK = 1.1
+WIDENING = 1.1
 """Times the distance that is reached to first order: the widened interval."""
 
 
@@ -65,7 +65,7 @@ def answers_alike(targets: Targets, own: Outcome, other: Outcome) -> bool:
     rows = targets.rows
     half = np.array([_half_width(t) for t in targets.characteristics])
     apart = np.abs(own.characteristics[rows] - other.characteristics[rows])
-    return not own.failed and bool((apart <= ALIKE * half).all())
+    return not own.failed and bool((apart <= ALIKE_SHARE * half).all())
 
 
 def conflict(
@@ -91,7 +91,7 @@ def conflict(
         b_ub=np.concatenate([high / half - now, now - low / half]),
         bounds=[*zip(-point, 1.0 - point, strict=True), *[(0.0, None)] * m],
     )
-    if found.status != 0 or found.x is None or found.fun is None or found.fun <= MARGIN:
+    if found.status != 0 or found.x is None or found.fun is None or found.fun <= FORECAST_MARGIN:
         return None
     price = np.abs(found.ineqlin.marginals).reshape(2, m).sum(axis=0)
     missed = found.x[d:] > ACTIVE
@@ -127,7 +127,7 @@ def relaxation(
     for i in places:
         target = targets[i]
         before, after = abs(values[i] - target.value), abs(ended[i] - target.value)
-        distances[target.entry.id] = min(before, SLACK * after)
+        distances[target.entry.id] = min(before, WIDENING * after)
         towards = np.sign(target.value - values[i]) * slopes[i]
         room = np.where(towards > 0.0, 1.0 - point, point)
         order = np.argsort(-np.abs(towards) * room)[:3]
@@ -145,14 +145,14 @@ def out_of_reach(
     distance = np.abs(values - np.array([t.value for t in targets]))
     span = reaches(values, slopes, point)
     wanted = np.array([t.value for t in targets])
-    margin = MARGIN * (span[:, 1] - span[:, 0])
+    margin = FORECAST_MARGIN * (span[:, 1] - span[:, 0])
     alone = (wanted + half < span[:, 0] - margin) | (wanted - half > span[:, 1] + margin)
     alone &= distance > half
     outside = distance > half
     sd = np.array([t.sd for t in targets])
-    quiet = np.maximum(np.maximum(SIGNIFICANT * sd, distance), QUIET * half)
+    quiet = np.maximum(np.maximum(SIGNIFICANT * sd, distance), QUIET_SHARE * half)
     slack = _least_slack(values - wanted, slopes, point, np.where(outside, half, quiet), half, outside)
-    together = outside & (slack > MARGIN)
+    together = outside & (slack > FORECAST_MARGIN)
     return [int(i) for i in np.flatnonzero(alone | together)]
 
 
@@ -187,7 +187,7 @@ def _pursued(
 ) -> FloatArray:
     """(d,) the step that the prior and all targets allow."""
     wanted = np.array([t.value for t in targets])
-    error = np.array([max(t.sd, QUIET * _half_width(t)) for t in targets])
+    error = np.array([max(t.sd, QUIET_SHARE * _half_width(t)) for t in targets])
     for i in missed:
         error[i] = max(error[i], abs(values[i] - wanted[i]) / PURSUED)
     aims = np.array([_aims(t) for t in targets])

@@ -16,8 +16,8 @@ from doe_kc.correlation.answer_record import AnswerRecord
 from doe_kc.correlation.assessment import Objection
 from doe_kc.correlation.loop import Run
 from doe_kc.correlation.methods._base import best_design
-from doe_kc.correlation.posterior import Posterior
-from doe_kc.correlation.problem import Candidate, Prediction, Problem
+from doe_kc.correlation.posterior import ParameterPosterior
+from doe_kc.correlation.problem import Candidate, Problem, RatingForecast
 from doe_kc.correlation.result import Correlation
 from doe_kc.errors import InputError
 from doe_kc.files import validate
@@ -67,7 +67,7 @@ class EvaluationRecord(Strict):
 
 
 class PosteriorRecord(Strict):
-    """The fields of `Posterior` but the prior."""
+    """The fields of `ParameterPosterior` but the prior."""
 
     sd: list[float]
     correlation: list[list[float]]
@@ -118,7 +118,7 @@ class RunRecord(Strict):
 
 
 def run_document(
-    found: Correlation,
+    correlation: Correlation,
     *,
     discovered: bool = False,
     effects: Sequence[EffectRecord] = (),
@@ -128,14 +128,14 @@ def run_document(
     answer: AnswerRecord | None = None,
 ) -> dict[str, Any]:
     """The record of a correlation, for `write_json`. The rest as in `RunRecord`."""
-    space, after = found.problem.space, found.posterior
+    space, after = correlation.problem.space, correlation.posterior
     record = RunRecord(
-        method=found.method,
-        stopped=found.run.stopped,
-        best=found.run.best,
-        seconds=found.seconds,
-        steps=list(found.steps),
-        notes=list(found.notes),
+        method=correlation.method,
+        stopped=correlation.run.stopped,
+        best=correlation.run.best,
+        seconds=correlation.seconds,
+        steps=list(correlation.steps),
+        notes=list(correlation.notes),
         variables=[
             VariableRecord(**{name: getattr(v, name) for name in VariableRecord.model_fields})
             for v in space.variables
@@ -149,12 +149,12 @@ def run_document(
         objections=[ObjectionRecord(sentence=o.sentence, fatal=o.fatal) for o in objections],
         misfit=misfit,
         answer=answer,
-        evaluations=[_evaluation(e.candidate) for e in found.run.evaluated],
+        evaluations=[_evaluation(e.candidate) for e in correlation.run.evaluated],
     )
     return record.model_dump()
 
 
-def _posterior(after: Posterior) -> PosteriorRecord:
+def _posterior(after: ParameterPosterior) -> PosteriorRecord:
     return PosteriorRecord(
         sd=after.sd.tolist(),
         correlation=after.correlation.tolist(),
@@ -233,7 +233,7 @@ def recalled(
     after = None
     if record.posterior is not None and chosen == record.best:
         known = record.posterior
-        after = Posterior(
+        after = ParameterPosterior(
             np.array(known.sd),
             problem.space.prior_sd,
             np.array(known.correlation),
@@ -252,10 +252,10 @@ def recalled(
     )
 
 
-def _expected(entry: EvaluationRecord) -> Prediction | None:
+def _expected(entry: EvaluationRecord) -> RatingForecast | None:
     found = entry.predicted
     if found is None:
         return None
     values, sd = (np.array([np.nan if v is None else v for v in x]) for x in (found.values, found.sd))
     rating, spread = (np.nan if x is None else x for x in (found.rating, found.rating_sd))
-    return Prediction(values, sd, rating, spread)
+    return RatingForecast(values, sd, rating, spread)

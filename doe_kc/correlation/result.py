@@ -10,7 +10,7 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.loop import Run
-from doe_kc.correlation.posterior import Posterior
+from doe_kc.correlation.posterior import ParameterPosterior
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation
 from doe_kc.correlation.search_targets import all_measured
@@ -31,7 +31,7 @@ class Correlation:
     problem: Problem
     run: Run
     steps: tuple[str, ...]
-    posterior: Posterior | None
+    posterior: ParameterPosterior | None
     seconds: float
     notes: tuple[str, ...] = ()
     relaxation: Relaxation | None = None

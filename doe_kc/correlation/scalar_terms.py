@@ -11,7 +11,7 @@ from scipy.special import erf, ndtr
 from doe_kc.targets import LIMIT_WEIGHT, Constraint, Objective, Target
 from doe_kc.typing import FloatArray
 
-CORNER = 1e-3
+SCALAR_ROUNDING = 1e-3
 """Of Norm: width over which the corner of |e| is rounded for gradients."""
 SHARP = 1e-7
 """Of Norm: standard deviation that stands for none."""
@@ -53,7 +53,9 @@ class ObjectiveTerms:
     def slope(self, y: FloatArray) -> FloatArray:
         """(p, k) derivative, corners rounded."""
         e = y - self.target
-        distance = -self.linear * e / np.sqrt(e**2 + (CORNER * self.norm) ** 2) - 2.0 * self.quadratic * e
+        distance = (
+            -self.linear * e / np.sqrt(e**2 + (SCALAR_ROUNDING * self.norm) ** 2) - 2.0 * self.quadratic * e
+        )
         return np.asarray(np.where(self.plain == 0.0, distance, self._plain_slope(y)))
 
     def expected(self, y: FloatArray, variance: FloatArray) -> FloatArray:
@@ -67,12 +69,12 @@ class ObjectiveTerms:
     def majorizer(self, y: FloatArray, variance: FloatArray) -> Triple:
         """Curvature and gradient of -expected, and its derivative by the variance, (k,) each."""
         e, sd = y - self.target, np.sqrt(variance + (SHARP * self.norm) ** 2)
-        width = np.sqrt(e**2 + 2.0 / np.pi * variance + (CORNER * self.norm) ** 2)
+        width = np.sqrt(e**2 + 2.0 / np.pi * variance + (SCALAR_ROUNDING * self.norm) ** 2)
         curvature = self.linear / width + 2.0 * self.quadratic
         gradient = self.linear * erf(e / (sd * np.sqrt(2.0))) + 2.0 * self.quadratic * e
         z = np.clip(e / sd, -40.0, 40.0)
         density = np.exp(-0.5 * z**2) / np.sqrt(2.0 * np.pi)
-        by_variance = self.linear * density / np.maximum(sd, CORNER * self.norm) + self.quadratic
+        by_variance = self.linear * density / np.maximum(sd, SCALAR_ROUNDING * self.norm) + self.quadratic
         plain = self.plain != 0.0
         return (
             np.where(plain, self.linear / self.norm, curvature),

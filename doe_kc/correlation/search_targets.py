@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.comparison.interval import SHARE, constraint_interval
+from doe_kc.comparison.interval import INTERVAL_SHARE, constraint_interval
 from doe_kc.correlation.first_order import most_probable_step
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization
@@ -30,7 +30,7 @@ ROUNDING = 1e-6
 MISFIT_WEIGHT = 2.0
 """Of the mean squared residual, 1 for noise alone: a fit that doubles it gives away as much as one objective
 that is missed by its own size, and hitting all characteristics exactly costs a few hundredths."""
-SMALL = 0.01
+NEGLIGIBLE_SHARE = 0.01
 """Share of the interval's measure below which no deviation is worth removing: exact targets have no noise."""
 STILL = 0.02
 """Share of the interval's measure, a seventh of the interval, that what is not worked on may move."""
@@ -48,7 +48,7 @@ def hold_rms(curve: CurveTarget, baseline: float) -> float:
     """The same of a curve's RMS deviation; its interval is the share of equation 5.1 of the curve itself,
     measured from its middle: a line 15 % too steep deviates by as much."""
     middle = curve.curve - curve.curve.mean(axis=1, keepdims=True)
-    own = SHARE * float(np.sqrt(np.mean(middle**2)))
+    own = INTERVAL_SHARE * float(np.sqrt(np.mean(middle**2)))
     return max(own, SIGNIFICANT * curve.noise, baseline) * (1.0 + ROUNDING)
 
 
@@ -155,7 +155,7 @@ def _still(target: Target, baseline: float) -> float:
 
 def _deviation(target: Target, baseline: float) -> float:
     """What there is to remove: the baseline's distance, or what is significant where that is less."""
-    floor = max(SIGNIFICANT * target.sd, SMALL * target.scale)
+    floor = max(SIGNIFICANT * target.sd, NEGLIGIBLE_SHARE * target.scale)
     return max(abs(baseline - target.value), floor)
 
 

@@ -9,9 +9,9 @@ import numpy as np
 from doe_kc.targets.target import Targets
 from doe_kc.typing import FloatArray
 
-STIFFNESS = 0.001
+WALL_STIFFNESS = 0.001
 """Of an interval's half-width: how far beyond the wall counts as one standard deviation."""
-MARGIN = 0.01
+WALL_MARGIN = 0.01
 """Of the half-width: how far inside the interval the wall stands, so that what leans on it, ten standard
 deviations hard, still meets the constraint."""
 
@@ -34,8 +34,8 @@ class Walls:
         rows, low, high = (np.array(column) for column in zip(*limits, strict=True)) if limits else [()] * 3
         lower, upper = np.array(low, dtype=float), np.array(high, dtype=float)
         half = (upper - lower) / 2.0
-        inside = MARGIN * half
-        return cls(np.array(rows, dtype=int), lower + inside, upper - inside, STIFFNESS * half)
+        inside = WALL_MARGIN * half
+        return cls(np.array(rows, dtype=int), lower + inside, upper - inside, WALL_STIFFNESS * half)
 
     def excess(self, values: FloatArray) -> FloatArray:
         """(c,) how far the constrained values (c,) are beyond their wall, + above, - below, 0 inside."""

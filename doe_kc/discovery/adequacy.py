@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
-from doe_kc.discovery.disagreement import DRAWS, NOISE, Map
+from doe_kc.discovery.disagreement import NOISE, NOISE_DRAWS, Map
 from doe_kc.discovery.held_out import HeldOut
 
 UNLISTED = 0.02
@@ -51,7 +51,7 @@ class Adequacy:
 
 def adequacy(remaining: Map, held_out: Sequence[HeldOut]) -> Adequacy:
     """remaining: map of the final set. held_out: its load cases, the laws of its effects granted."""
-    chance = max(remaining.chance, 1.0 / DRAWS)
+    chance = max(remaining.chance, 1.0 / NOISE_DRAWS)
     worst = max(held_out, key=lambda h: h.law_granted.excess, default=None)
     if worst is None:
         return Adequacy(chance, None, None)

@@ -17,8 +17,8 @@ from doe_kc.discovery.fit import Fit, last_member, to_errors
 from doe_kc.discovery.leaders import compatible, leaders
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened, rescreened
-from doe_kc.discovery.search import Search, Step, accepted_at, threshold
-from doe_kc.discovery.trials import Trial, log_odds, plausible, tried
+from doe_kc.discovery.search import EffectSearch, Step, accepted_at, threshold
+from doe_kc.discovery.trials import HypothesisFit, log_odds, plausible, tried
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -34,7 +34,7 @@ class Alternatives:
 
     without: Fit
     screened: tuple[Screened, ...]
-    trials: tuple[Trial, ...]
+    trials: tuple[HypothesisFit, ...]
     temper: float
 
     @property
@@ -55,14 +55,14 @@ class Alternatives:
         return remaining_map(fitted.model.contrasts, fitted.residual, fitted.projection)
 
 
-def alternatives(found: Search, temper: float, bench: Bench) -> tuple[Alternatives, ...]:
+def alternatives(search: EffectSearch, temper: float, bench: Bench) -> tuple[Alternatives, ...]:
     """Of every member of the final set, in its order."""
-    members = found.final.model.members
-    bases = [_without_own_law(found, h) for h in members]
-    steps = [_same_set(found, base) for base in bases]
+    members = search.final.model.members
+    bases = [_without_own_law(search, h) for h in members]
+    steps = [_same_set(search, base) for base in bases]
     missing = [base for base, step in zip(bases, steps, strict=True) if step is None]
     starts = [(b.model.without(b.model.members[-1]), b.z[: _first_size(b)]) for b in missing]
-    refits = iter(bench.fitted(starts, "taking effects out", found.final.jacobian))
+    refits = iter(bench.fitted(starts, "taking effects out", search.final.jacobian))
     out = []
     for base, step in zip(bases, steps, strict=True):
         if step is not None:
@@ -70,25 +70,25 @@ def alternatives(found: Search, temper: float, bench: Bench) -> tuple[Alternativ
             continue
         without = next(refits)
         if without is None:  # no equilibrium without it: all that is known is how it came in
-            out.append(_from_step(base, accepted_at(found, base.model.members[-1]), temper, bench))
+            out.append(_from_step(base, accepted_at(search, base.model.members[-1]), temper, bench))
         else:
-            out.append(_at_final_set(found, base, without, temper, bench))
+            out.append(_at_final_set(search, base, without, temper, bench))
     return tuple(out)
 
 
-def _without_own_law(found: Search, member: Hypothesis) -> Fit:
+def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
     """The final set, the member last, under errors that do not grant its own law."""
-    errors = found.without_law.get(member.name, found.final.model.likelihood)
-    return last_member(to_errors(found.final, errors), member)
+    errors = search.without_law.get(member.name, search.final.model.likelihood)
+    return last_member(to_errors(search.final, errors), member)
 
 
 def _first_size(base: Fit) -> int:
     return base.z.size - len(base.model.members[-1].sizes)
 
 
-def _same_set(found: Search, base: Fit) -> Step | None:
+def _same_set(search: EffectSearch, base: Fit) -> Step | None:
     """The step that brought the last member in, if it began with exactly the set without it."""
-    step = accepted_at(found, base.model.members[-1])
+    step = accepted_at(search, base.model.members[-1])
     before, without = step.before.model, base.model.members[:-1]
     same = {h.name for h in before.members} == {h.name for h in without}
     errors = zip(before.likelihood.curves, base.model.likelihood.curves, strict=True)
@@ -104,7 +104,9 @@ def _from_step(base: Fit, step: Step, temper: float, bench: Bench) -> Alternativ
     starts = [(replace(t.fit.model, axle=axle), t.fit.z) for t in stale]
     fits = bench.fitted(starts, "refitting rivals", step.before.jacobian) if starts else []
     again = {
-        t.hypothesis.name: Trial(t.hypothesis, f, f.evidence - step.before.evidence + log_odds(t.hypothesis))
+        t.hypothesis.name: HypothesisFit(
+            t.hypothesis, f, f.evidence - step.before.evidence + log_odds(t.hypothesis)
+        )
         for t, f in zip(stale, fits, strict=True)
         if f is not None
     }
@@ -114,10 +116,10 @@ def _from_step(base: Fit, step: Step, temper: float, bench: Bench) -> Alternativ
     return Alternatives(step.before, (first, *others), (own, *rivals), temper)
 
 
-def _at_final_set(found: Search, base: Fit, without: Fit, temper: float, bench: Bench) -> Alternatives:
+def _at_final_set(search: EffectSearch, base: Fit, without: Fit, temper: float, bench: Bench) -> Alternatives:
     """From refits of the final set without the member and with each rival in its place."""
     own, project = _own(base, without), without.projection
-    known = {s.hypothesis.name: s for s in _screened(found, without)}
+    known = {s.hypothesis.name: s for s in _screened(search, without)}
     first = rescreened(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
     there = [rescreened(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
@@ -135,9 +137,9 @@ def _near(
     return [s for s in bench.screened(without, chosen) if not s.failed]
 
 
-def _own(base: Fit, without: Fit) -> Trial:
+def _own(base: Fit, without: Fit) -> HypothesisFit:
     member = base.model.members[-1]
-    return Trial(member, base, base.evidence - without.evidence + log_odds(member))
+    return HypothesisFit(member, base, base.evidence - without.evidence + log_odds(member))
 
 
 def _may_replace(base: Fit, hypothesis: Hypothesis) -> bool:
@@ -152,13 +154,13 @@ def _among(members: Sequence[Hypothesis], effect: str) -> bool:
     return any(h.effect == effect for h in members)
 
 
-def _frictional(found: Fit) -> bool:
-    return found.model.with_effects(found.z).topology.frictional
+def _frictional(fit: Fit) -> bool:
+    return fit.model.with_effects(fit.z).topology.frictional
 
 
-def _screened(found: Search, without: Fit) -> list[Screened]:
+def _screened(search: EffectSearch, without: Fit) -> list[Screened]:
     """Every hypothesis as it was screened last, in the errors of `without`."""
-    latest = {s.hypothesis.name: (s, step) for step in found.steps for s in step.screened}
+    latest = {s.hypothesis.name: (s, step) for step in search.steps for s in step.screened}
     return [
         s.with_errors(step.before.model.likelihood, without.model.likelihood) for s, step in latest.values()
     ]

@@ -13,17 +13,17 @@ SAME = "rig_input_gain"
 """The effect that is a calibration of the rig, only larger than a sound rig has."""
 
 
-def amplitudes(found: Fit, hypothesis: Hypothesis) -> tuple[FloatArray, FloatArray]:
+def amplitudes(fit: Fit, hypothesis: Hypothesis) -> tuple[FloatArray, FloatArray]:
     """(m,) amplitudes of a member and (m,) their standard deviations.
 
     The records show only the sum of a wrong input and of its load case's calibration: that is what counts.
     """
-    model = found.model
+    model = fit.model
     place = next(p for h, p in model.places() if h == hypothesis)
-    weights = np.eye(found.z.size)[place]
+    weights = np.eye(fit.z.size)[place]
     if hypothesis.effect == SAME and hypothesis.location in model.cases:
         (size,) = hypothesis.sizes
         calibration = model.calibrations.start + model.cases.index(hypothesis.location)
         weights[0, calibration] = np.log1p(INPUT_GAIN) / np.log(size.typical)
-    covariance = weights @ found.covariance @ weights.T
-    return np.asarray(weights @ found.z), np.asarray(np.sqrt(np.diag(covariance)))
+    covariance = weights @ fit.covariance @ weights.T
+    return np.asarray(weights @ fit.z), np.asarray(np.sqrt(np.diag(covariance)))

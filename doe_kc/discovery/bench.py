@@ -42,10 +42,10 @@ class Bench:
         self.watch = watch
         self._workers = workers
 
-    def screened(self, found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+    def screened(self, fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
         """Every hypothesis added to a fitted model, in their order."""
-        base = fingerprint(found.model)
-        keys = [key_of("screen", base, found.z, repr(h)) for h in hypotheses]
+        base = fingerprint(fit.model)
+        keys = [key_of("screen", base, fit.z, repr(h)) for h in hypotheses]
         out: dict[int, Screened] = {}
         missing: list[int] = []
         for i, (key, h) in enumerate(zip(keys, hypotheses, strict=True)):
@@ -57,7 +57,7 @@ class Bench:
         missing.sort(key=lambda i: -effort(hypotheses[i]))  # the long ones first, or one worker ends alone
         parts = max(1, min(len(missing), CHUNKS * self._workers))
         groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
-        tasks = [(found, [hypotheses[i] for i in part]) for part in groups]
+        tasks = [(fit, [hypotheses[i] for i in part]) for part in groups]
         for at, results in self._run(_screen_many, tasks):
             part = groups[at]
             for i, result in zip(part, results, strict=True):
@@ -122,8 +122,8 @@ class Bench:
             yield futures[future], future.result()
 
 
-def _screen_many(found: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
-    return [screen(found, h) for h in hypotheses]
+def _screen_many(fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+    return [screen(fit, h) for h in hypotheses]
 
 
 def _scan(tuned: Fit, temper: float) -> Scan | None:
@@ -140,15 +140,15 @@ def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Array
         return {"z": np.zeros(0)}
 
 
-def _packed_fit(found: Fit) -> Arrays:
+def _packed_fit(fit: Fit) -> Arrays:
     """Without what its model says of it, the derivatives to the differences between the sides among that."""
-    sides = range(found.model.calibrations.stop, found.model.dimension)
+    sides = range(fit.model.calibrations.stop, fit.model.dimension)
     return {
-        "z": found.z,
-        "residual": found.residual,
-        "jacobian": np.delete(found.jacobian, sides, axis=1),
-        "evaluations": np.array(float(found.evaluations)),
-        "converged": np.array(float(found.converged)),
+        "z": fit.z,
+        "residual": fit.residual,
+        "jacobian": np.delete(fit.jacobian, sides, axis=1),
+        "evaluations": np.array(float(fit.evaluations)),
+        "converged": np.array(float(fit.converged)),
     }
 
 
@@ -163,15 +163,15 @@ def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
     return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
 
 
-def _packed(found: Screened) -> Arrays:
+def _packed(screening: Screened) -> Arrays:
     return {
-        "amplitudes": found.amplitudes,
-        "sd": found.sd,
-        "numbers": np.array([found.gain, found.score, found.detectability, found.absorbed]),
-        "columns": found.columns,
-        "change": found.change,
-        "visible": found.visible,
-        "failed": np.frombuffer(found.failed.encode(), dtype=np.uint8).astype(float),
+        "amplitudes": screening.amplitudes,
+        "sd": screening.sd,
+        "numbers": np.array([screening.gain, screening.score, screening.detectability, screening.absorbed]),
+        "columns": screening.columns,
+        "change": screening.change,
+        "visible": screening.visible,
+        "failed": np.frombuffer(screening.failed.encode(), dtype=np.uint8).astype(float),
     }
 
 

@@ -14,16 +14,16 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.screen import UNSEEN, Screened
+from doe_kc.discovery.screen import NULL_SHARE, Screened
 from doe_kc.effects import EFFECTS
 from doe_kc.typing import FloatArray
 from doe_kc.variables.variable import Variable
 
-ENOUGH = 10.0
+DETECTION_LEVEL = 10.0
 """Standard deviations at typical size for which parts are measured, one more at a time."""
-MOST = 4
+PARTS_MOST = 4
 """Parts to be measured for one effect."""
-STIFFNESS = 0.02
+BENCH_ACCURACY = 0.02
 """Standard deviation of a measured stiffness or rate, relative; test benches of bushings and springs."""
 RADIUS = 0.005
 """The same of a bar's radius, whose fourth power is its rate."""
@@ -49,16 +49,16 @@ def accuracy(variable: Variable, value: float) -> float:
     if variable.path.endswith(".radius"):
         return RADIUS * scale
     if variable.logarithmic:
-        return STIFFNESS * scale
+        return BENCH_ACCURACY * scale
     return ANGLE if variable.unit == "deg" else POSITION
 
 
-def component_tests(found: Fit, screened: Sequence[Screened], least: float) -> list[ComponentTest | None]:
+def component_tests(fit: Fit, screened: Sequence[Screened], least: float) -> list[ComponentTest | None]:
     """For each hypothesis the parts to measure; None where MOST parts do not show it.
 
     least: standard deviations from which it shows.
     """
-    tuning = _Tuning.of(found)
+    tuning = _Tuning.of(fit)
     return [_chosen(tuning, s, least) for s in screened]
 
 
@@ -73,13 +73,13 @@ class _Tuning:
     jacobian: FloatArray
 
     @staticmethod
-    def of(found: Fit) -> _Tuning:
-        model, count = found.model, found.model.dimension
-        hessian = found.hessian[:count, :count]
+    def of(fit: Fit) -> _Tuning:
+        model, count = fit.model, fit.model.dimension
+        hessian = fit.hessian[:count, :count]
         covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(count)))
-        known = np.array([_known(v, float(u)) for v, u in zip(model.space.variables, found.z, strict=False)])
+        known = np.array([_known(v, float(u)) for v, u in zip(model.space.variables, fit.z, strict=False)])
         precision = np.maximum(known**-2.0 - model.space.prior_sd**-2.0, 0.0)
-        return _Tuning(model.space.paths, covariance, precision, found.jacobian[:, :count])
+        return _Tuning(model.space.paths, covariance, precision, fit.jacobian[:, :count])
 
 
 def _known(variable: Variable, u: float) -> float:
@@ -96,7 +96,7 @@ def _chosen(tuning: _Tuning, screened: Screened, least: float) -> ComponentTest 
     information = columns.T @ columns - pulled.T @ moves
     covariance, precision = tuning.covariance, tuning.precision
     parts: list[int] = []
-    while (shown := _shown(information)) < ENOUGH and len(parts) < MOST:
+    while (shown := _shown(information)) < DETECTION_LEVEL and len(parts) < PARTS_MOST:
         gains = [
             _shown(information + np.outer(moves[i], moves[i]) * _weight(covariance, precision, i))
             if i not in parts
@@ -132,5 +132,5 @@ def _shown(information: FloatArray) -> float:
     whole = float(np.trace(information))
     if whole <= 0.0:
         return 0.0
-    floor = UNSEEN * whole * np.eye(information.shape[0])
+    floor = NULL_SHARE * whole * np.eye(information.shape[0])
     return float(1.0 / np.sqrt(np.diag(np.linalg.inv(information + floor)).max()))

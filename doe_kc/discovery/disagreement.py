@@ -11,14 +11,14 @@ from doe_kc.discovery.contrasts import Contrast, Contrasts
 from doe_kc.discovery.projection import Projection
 from doe_kc.typing import FloatArray
 
-LEVEL = 0.05
+FALSE_ALARM_CHANCE = 0.05
 """Chance that noise alone passes the threshold somewhere on the map."""
 NOISE = 0.01
 """Chance of a map's largest disagreement below which noise does not explain it."""
-DRAWS = 1000
+NOISE_DRAWS = 1000
 DOUBT = 0.2
 """Share added to every variance: what a few repeats leave open of the noise's own size."""
-SEEN = 1e-4
+CONTRAST_SHARE = 1e-4
 """Share of a contrast's square below which re-tuning is said to absorb it wholly."""
 
 
@@ -37,13 +37,13 @@ class Map:
     def _by_chance(self) -> FloatArray:
         """(draws,) largest |z| that noise alone gives."""
         rng = np.random.default_rng(11)
-        drawn = rng.standard_normal((DRAWS, self.root.shape[1])) @ self.root.T
+        drawn = rng.standard_normal((NOISE_DRAWS, self.root.shape[1])) @ self.root.T
         return np.asarray(np.abs(drawn).max(axis=1))
 
     @property
     def threshold(self) -> float:
         """Largest |z| that noise alone passes in 5 % of maps."""
-        return float(np.quantile(self._by_chance, 1.0 - LEVEL))
+        return float(np.quantile(self._by_chance, 1.0 - FALSE_ALARM_CHANCE))
 
     @property
     def chance(self) -> float:
@@ -71,24 +71,24 @@ class Map:
         return [(self.names[i], float(self.z[i])) for i in order if abs(self.z[i]) > self.threshold]
 
 
-def raw_map(found: Contrasts, residual: FloatArray) -> Map:
+def raw_map(contrasts: Contrasts, residual: FloatArray) -> Map:
     """Of a residual (M,) as it is, in units of the records' noise."""
-    return _map(found, (found.rows.T @ found.rows).toarray(), found.rows.T @ residual)
+    return _map(contrasts, (contrasts.rows.T @ contrasts.rows).toarray(), contrasts.rows.T @ residual)
 
 
-def remaining_map(found: Contrasts, residual: FloatArray, project: Projection) -> Map:
+def remaining_map(contrasts: Contrasts, residual: FloatArray, project: Projection) -> Map:
     """Of a fitted residual (M,): what re-tuning cannot absorb."""
-    return _map(found, *project.products(found.rows, residual))
+    return _map(contrasts, *project.products(contrasts.rows, residual))
 
 
-def _map(found: Contrasts, gram: FloatArray, products: FloatArray) -> Map:
+def _map(contrasts: Contrasts, gram: FloatArray, products: FloatArray) -> Map:
     """gram: (k, k) of the contrasts. products: (k,) of them with the residual."""
     gram = gram + DOUBT * np.diag(np.diag(gram))
     length = np.sqrt(np.diag(gram))
-    seen = length**2 > SEEN
+    seen = length**2 > CONTRAST_SHARE
     z = np.where(seen, products / np.where(seen, length, 1.0), np.nan)
     scale = length[seen]
     correlation = gram[np.ix_(seen, seen)] / np.outer(scale, scale)
     values, vectors = np.linalg.eigh(correlation)
     root = vectors * np.sqrt(np.clip(values, 0.0, None))
-    return Map(found.names, z, root)
+    return Map(contrasts.names, z, root)

@@ -18,10 +18,10 @@ from doe_kc.discovery.granted import sticks
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import Search, accepted_at, threshold
+from doe_kc.discovery.search import EffectSearch, accepted_at, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
 from doe_kc.discovery.standing import Standing, Status, standings
-from doe_kc.discovery.trials import Trial
+from doe_kc.discovery.trials import HypothesisFit
 from doe_kc.discovery.verdict import classes, verdict
 from doe_kc.discovery.widening import beyond, searched
 from doe_kc.effects import EFFECTS
@@ -85,7 +85,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     )
 
 
-def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) -> Trial | None:
+def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) -> HypothesisFit | None:
     """The best refit of another effect in place of the largest finding, None where none is plausible."""
     for own in compared:
         if relevant and own.hypothesis == relevant[0].hypothesis:
@@ -109,14 +109,14 @@ def _separating(
     return out
 
 
-def resolved(found: Search, holds: Adequacy) -> bool:
+def resolved(search: EffectSearch, holds: Adequacy) -> bool:
     """Whether limits of effects that are not in the model mean anything.
 
     They take the model for right. Where what remains is not noise it is not; where the law of a friction is
     not the model's, what is missing of that hides effects larger than any such limit.
     """
-    final = found.final
-    open_ = (found.shares.get(h.name, 0.0) > 0.0 and sticks(final, h) for h in final.model.members)
+    final = search.final
+    open_ = (search.shares.get(h.name, 0.0) > 0.0 and sticks(final, h) for h in final.model.members)
     return holds.holds and not any(open_)
 
 
@@ -127,17 +127,17 @@ def shown_traces(every: Sequence[Finding], holds: Adequacy) -> tuple[Finding, ..
 
 
 def _standings(
-    found: Search, named: Sequence[Finding], count: int, *, resolved: bool
+    search: EffectSearch, named: Sequence[Finding], count: int, *, resolved: bool
 ) -> tuple[Standing, ...]:
     """named: findings and traces that are given."""
-    critical, last = float(np.sqrt(2.0 * threshold(count))), found.steps[-1].before
+    critical, last = float(np.sqrt(2.0 * threshold(count))), search.steps[-1].before
     members: list[tuple[Screened, Status]] = []
     statuses: dict[str, Status] = {f.hypothesis.name: "found" if f.relevant else "trace" for f in named}
-    for hypothesis in found.final.model.members:
-        step = accepted_at(found, hypothesis)
+    for hypothesis in search.final.model.members:
+        step = accepted_at(search, hypothesis)
         own = next(s for s in step.screened if s.hypothesis == hypothesis)
         own = own.with_errors(step.before.model.likelihood, last.model.likelihood)
         members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}
-    others = [s for s in found.steps[-1].screened if s.hypothesis.name not in names]
+    others = [s for s in search.steps[-1].screened if s.hypothesis.name not in names]
     return standings(last, last.tuning_projection, others, members, critical, resolved=resolved)

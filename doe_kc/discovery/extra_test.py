@@ -23,9 +23,9 @@ from doe_kc.typing import FloatArray
 
 LARGER = 1.5
 """Times the amplitude that was measured."""
-ENOUGH = 3.0
+TEST_WORTH = 3.0
 """Standard deviations from which a load case is worth running."""
-LISTED = 2
+TESTS_LISTED = 2
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def extra_tests(one: Fit, other: Fit) -> tuple[ExtraTest, ...]:
         except NotConverged:
             continue
     found.sort(key=lambda t: -t.separation)
-    return tuple(t for t in found[:LISTED] if t.separation >= ENOUGH)
+    return tuple(t for t in found[:TESTS_LISTED] if t.separation >= TEST_WORTH)
 
 
 def _candidates(model: EffectModel) -> Iterator[tuple[str, LoadCase, str]]:
@@ -82,25 +82,25 @@ def _separation(one: Fit, other: Fit, case: LoadCase, like: str) -> float:
     return float(np.sqrt(difference @ cho_solve(cho_factor(total), difference)))
 
 
-def _predicted(found: Fit, case: LoadCase, like: str) -> Likelihood:
+def _predicted(fit: Fit, case: LoadCase, like: str) -> Likelihood:
     """What a fit predicts of a load case, with the errors of the measured one at the same relative input."""
-    measured = [c for c in found.model.likelihood.curves if c.load_case == like]
-    largest = found.model.axle.load_cases[like].amplitude
+    measured = [c for c in fit.model.likelihood.curves if c.load_case == like]
+    largest = fit.model.axle.load_cases[like].amplitude
     curves = tuple(
         replace(c, load_case=case.id, input=c.input * case.amplitude / largest, value=np.zeros(c.size))
         for c in measured
     )
     empty = Likelihood(curves, ())
-    model = _alone(found.model, case, empty)
-    whitened = model.residual(_point(model, found))
+    model = _alone(fit.model, case, empty)
+    whitened = model.residual(_point(model, fit))
     values = [_valued(c, whitened[at]) for c, at in empty.slices()]
     return Likelihood(tuple(values), ())
 
 
-def _point(model: EffectModel, found: Fit) -> FloatArray:
+def _point(model: EffectModel, fit: Fit) -> FloatArray:
     """The fit's parameters and amplitudes in a model of one load case, whose nuisances are its own."""
     nuisances = np.zeros(model.dimension - model.parameters)
-    return np.concatenate([found.z[: model.parameters], nuisances, found.z[found.model.dimension :]])
+    return np.concatenate([fit.z[: model.parameters], nuisances, fit.z[fit.model.dimension :]])
 
 
 def _valued(curve: CurveData, whitened: FloatArray) -> CurveData:

@@ -14,10 +14,10 @@ from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.disagreement import NOISE
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.result import Estimate, Finding, Rival
-from doe_kc.discovery.search import Search
+from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
+from doe_kc.discovery.search import EffectSearch
 from doe_kc.discovery.standing import wrong_name_chance
-from doe_kc.discovery.trials import Trial, amounts
+from doe_kc.discovery.trials import HypothesisFit, amounts
 from doe_kc.discovery.unseen import unseen
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.typing import FloatArray
@@ -27,25 +27,25 @@ WEAK, STRONG = 6.0, 10.0
 other."""
 BESIDE = 0.01
 """Share of the largest gain from which an effect between the two is named where laws had to be opened."""
-ALIKE = 0.05
+WRONG_NAME_CHANCE = 0.05
 """Chance of a wrong name from which two effects are alike to the records."""
 DECISIVE = 4.6
 """ln evidence, a hundred to one, that settles even between effects that are alike."""
 MENTIONED = 0.01
 """Probability from which a rival is listed."""
-NOTHING = ""
+NO_EFFECT = ""
 """In place of an effect's id: none at all."""
 
 
-def findings(found: Search, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
+def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the final model, each judged beside all the others. compared: in their order."""
-    hidden = unseen(found)
+    hidden = unseen(search)
     every = [
-        _finding(found, one, place, hidden[place.start - found.final.model.dimension :])
-        for one, (_, place) in zip(compared, found.final.model.places(), strict=True)
+        _finding(search, one, place, hidden[place.start - search.final.model.dimension :])
+        for one, (_, place) in zip(compared, search.final.model.places(), strict=True)
     ]
     most = max((f.gain for f in every), default=0.0)
-    least = BESIDE * most if any(found.shares.values()) else 0.0
+    least = BESIDE * most if any(search.shares.values()) else 0.0
     return tuple(
         replace(f, relevant=f.relevant and _stands_out(one, least))
         for f, one in zip(every, compared, strict=True)
@@ -63,15 +63,15 @@ def _stands_out(own: Alternatives, least: float) -> bool:
     return own.trials[0].gain >= least and (strength >= WEAK or own.map.chance < NOISE)
 
 
-def _finding(found: Search, own: Alternatives, place: slice, hidden: FloatArray) -> Finding:
+def _finding(search: EffectSearch, own: Alternatives, place: slice, hidden: FloatArray) -> Finding:
     """hidden: standard deviations by effects that are not seen, of its sizes and those behind them."""
     hypothesis = own.hypothesis
-    logs = log_probabilities(own, [s.hypothesis for s in found.steps[0].screened])
+    logs = log_probabilities(own, [s.hypothesis for s in search.steps[0].screened])
     against, odds = best_alternative(logs, hypothesis.effect)
-    most_probable, _ = amplitudes(found.plain, hypothesis)
+    most_probable, _ = amplitudes(search.plain, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = _with_law(hypothesis, most_probable, amplitudes(found.final, hypothesis)[1], found.shares)
-    detectability = _detectability(found.plain, place) if sizes else own.screened[0].detectability
+    sd = _with_law(hypothesis, most_probable, amplitudes(search.final, hypothesis)[1], search.shares)
+    detectability = _detectability(search.plain, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_names(own, detectability)
     for effect, chance in _mistaken(own).items():
@@ -79,7 +79,7 @@ def _finding(found: Search, own: Alternatives, place: slice, hidden: FloatArray)
     rivals = tuple(
         Rival(effect, float(np.exp(log)))
         for effect, log in sorted(logs.items(), key=lambda item: -item[1])
-        if effect not in (hypothesis.effect, NOTHING) and np.exp(log) >= MENTIONED
+        if effect not in (hypothesis.effect, NO_EFFECT) and np.exp(log) >= MENTIONED
     )
     return Finding(
         hypothesis=hypothesis,
@@ -120,7 +120,7 @@ def log_probabilities(own: Alternatives, library: Sequence[Hypothesis]) -> dict[
     Prior odds are those of the effects, shared between the places that each has in the library.
     """
     places = Counter(h.effect for h in library)
-    logs: dict[str, float] = {NOTHING: 0.0}
+    logs: dict[str, float] = {NO_EFFECT: 0.0}
     for t in own.trials:
         effect = t.hypothesis.effect
         log = t.gain / own.temper - float(np.log(max(places[effect], 1)))
@@ -136,7 +136,7 @@ def best_alternative(logs: Mapping[str, float], effect: str) -> tuple[str, float
     return best, float((logs[effect] - others[best]) / np.log(10.0))
 
 
-def estimate(size: Size, amplitude: float, sd: float) -> Estimate:
+def estimate(size: Size, amplitude: float, sd: float) -> ParameterEstimate:
     """A size at its value, with the standard deviation of the value to first order.
 
     A size that cannot be negative is taken at the mean of its half-line's Gaussian, so that one that the
@@ -149,7 +149,7 @@ def estimate(size: Size, amplitude: float, sd: float) -> Estimate:
     floor = 0.0 if size.signed or size.shape else step
     at = max(amplitude, floor)
     slope = (size.value(at + step) - size.value(at - step)) / (2.0 * step) if step > 0.0 else 0.0
-    return Estimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
+    return ParameterEstimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
 
 
 def _detectability(final: Fit, place: slice) -> float:
@@ -189,7 +189,7 @@ def _mistaken(own: Alternatives) -> dict[str, float]:
     return out
 
 
-def _whole(trial: Trial) -> bool:
+def _whole(trial: HypothesisFit) -> bool:
     """Whether the sizes are there that make it: a free play without a gap is a compliance by another name."""
     return all(abs(a) > max(ABSENT, sd) for s, a, sd in amounts(trial) if s.needed)
 
@@ -199,7 +199,7 @@ def _alike(own: Alternatives, chances: Mapping[str, float]) -> tuple[str, ...]:
     best = max(t.gain for t in own.trials if t.hypothesis.effect == own.hypothesis.effect)
     rivals = (t for t in own.trials if t.hypothesis.effect != own.hypothesis.effect and _whole(t))
     close = dict.fromkeys(t.hypothesis.effect for t in rivals if (best - t.gain) / own.temper < DECISIVE)
-    return tuple(e for e in close if chances.get(e, 0.0) > ALIKE)
+    return tuple(e for e in close if chances.get(e, 0.0) > WRONG_NAME_CHANCE)
 
 
 def _trace_would_do(own: Alternatives) -> bool:

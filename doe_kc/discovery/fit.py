@@ -22,18 +22,18 @@ from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
 
-CONVERGED = 0.02
+FIT_DECREASE = 0.02
 """Predicted decrease of the sum of squares below which a fit stands."""
-NEAR = 3000.0
+REUSE_DECREASE = 3000.0
 """Decrease of the sum of squares below which derivatives still lead on, though they no longer end a fit."""
 FRESH = 3.0
 """Decrease since they were taken up to which derivatives may end a fit."""
-SMALL = 1.0
+LAST_STEP_DECREASE = 1.0
 """Predicted decrease below which a step is the last, its derivatives those of the step before."""
 POOR, GOOD = 0.25, 0.75
-STEPS = 24
+FIT_STEPS = 24
 FOLLOWED_STEPS = 6
-SMALLEST = 1e-4
+LEAST_STEP = 1e-4
 LARGEST_RADIUS = 2.0
 
 
@@ -122,7 +122,7 @@ def fit(
     model: EffectModel,
     start: FloatArray,
     *,
-    steps: int = STEPS,
+    steps: int = FIT_STEPS,
     tuning: FloatArray | None = None,
     aged: float = np.inf,
 ) -> Fit:
@@ -140,10 +140,10 @@ def fit(
         high = np.minimum(model.upper - current.z, radius)
         step = bounded_step(hessian, gradient, low, high)
         predicted = float(-(2.0 * gradient @ step + step @ hessian @ step))
-        if predicted < SMALL and aged > FRESH:
+        if predicted < LAST_STEP_DECREASE and aged > FRESH:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
             continue
-        if predicted < CONVERGED:
+        if predicted < FIT_DECREASE:
             return replace(current, converged=True)
         trial, residual = current.z + step, None
         try:
@@ -158,15 +158,15 @@ def fit(
         elif ratio > GOOD:
             radius = min(LARGEST_RADIUS, 2.0 * radius)
         if residual is not None and cost < current.cost:
-            if predicted < SMALL:
+            if predicted < LAST_STEP_DECREASE:
                 return replace(current, z=trial, residual=residual, cost=cost, converged=True)
             gained = current.cost - cost
-            aged = aged + gained if gained < NEAR else 0.0
+            aged = aged + gained if gained < REUSE_DECREASE else 0.0
             kept = current.jacobian[:, : model.dimension] if aged else None
             current = _expanded(model, trial, residual, current.evaluations, kept)
         elif aged > FRESH:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
-        if radius < SMALLEST:
+        if radius < LEAST_STEP:
             return current
     return current
 
@@ -177,31 +177,31 @@ def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     return float(seen @ seen + np.sum(((z - model.centre) / model.prior_sd) ** 2))
 
 
-def with_errors(found: Fit, model: EffectModel) -> Fit:
+def with_errors(fit: Fit, model: EffectModel) -> Fit:
     """The fit's point against the same records with other errors, those of `model`; nothing is solved."""
-    errors = found.model.likelihood, model.likelihood
-    residual, jacobian = rewhitened(found.residual, *errors), rewhitened(found.jacobian, *errors)
+    errors = fit.model.likelihood, model.likelihood
+    residual, jacobian = rewhitened(fit.residual, *errors), rewhitened(fit.jacobian, *errors)
     return replace(
-        found, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, found.z, residual)
+        fit, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, fit.z, residual)
     )
 
 
-def to_errors(found: Fit, likelihood: Likelihood) -> Fit:
+def to_errors(fit: Fit, likelihood: Likelihood) -> Fit:
     """The fit followed to the same records with other errors, from where it is."""
-    if found.model.likelihood is likelihood:
-        return found
-    model = found.model.with_errors(likelihood)
-    return followed(with_errors(found, model), model)
+    if fit.model.likelihood is likelihood:
+        return fit
+    model = fit.model.with_errors(likelihood)
+    return followed(with_errors(fit, model), model)
 
 
-def last_member(found: Fit, hypothesis: Hypothesis) -> Fit:
+def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:
     """The same fit with one member's sizes behind those of all others."""
-    model = found.model
+    model = fit.model
     place = next(p for h, p in model.places() if h == hypothesis)
     own = np.r_[place]
-    order = np.concatenate([np.delete(np.arange(found.z.size), own), own])
+    order = np.concatenate([np.delete(np.arange(fit.z.size), own), own])
     moved = model.without(hypothesis).extended(hypothesis)
-    return replace(found, model=moved, z=found.z[order], jacobian=found.jacobian[:, order])
+    return replace(fit, model=moved, z=fit.z[order], jacobian=fit.jacobian[:, order])
 
 
 def _expanded(
@@ -217,20 +217,20 @@ def _expanded(
     return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
 
 
-def followed(found: Fit, model: EffectModel) -> Fit:
+def followed(fit: Fit, model: EffectModel) -> Fit:
     """The fit of the same model to other data, by steps along the derivatives at `found`.
 
     For small changes, such as a load case left out: no new derivatives are taken. Not `converged` where those
     at `found` did not lead to an end.
     """
-    cost = cost_of(model, found.z, found.residual)
-    current = replace(found, model=model, cost=cost, converged=False)
+    cost = cost_of(model, fit.z, fit.residual)
+    current = replace(fit, model=model, cost=cost, converged=False)
     hessian = current.hessian
     for _ in range(FOLLOWED_STEPS):
         low, high = model.lower - current.z, model.upper - current.z
         gradient = current.gradient
         step = bounded_step(hessian, gradient, low, high)
-        if -(2.0 * gradient @ step + step @ hessian @ step) < CONVERGED:
+        if -(2.0 * gradient @ step + step @ hessian @ step) < FIT_DECREASE:
             return replace(current, converged=True)
         try:
             residual = model.residual(current.z + step)

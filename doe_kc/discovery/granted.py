@@ -20,7 +20,7 @@ from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.measurement.noise import smooth_correlation
 from doe_kc.typing import FloatArray
 
-SHARES = (0.0, 0.01, 0.02, 0.05, 0.1)
+DISCREPANCY_SHARES = (0.0, 0.01, 0.02, 0.05, 0.1)
 """Standard deviations, relative to what the model's law makes of a curve, that are tried for another law."""
 LENGTH = 0.5
 """Correlation length of that ratio over the input, as a fraction of its amplitude."""
@@ -52,7 +52,7 @@ def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
     shares = [0.0] * len(made)
     best, most = exact, marginal(exact)
     for i in sorted(range(len(made)), key=lambda i: -made[i].square):
-        for share in SHARES[1:]:
+        for share in DISCREPANCY_SHARES[1:]:
             tried = [share if k == i else s for k, s in enumerate(shares)]
             wider = with_errors(exact, granted(exact.model, made, tried))
             evidence = marginal(wider)
@@ -75,24 +75,24 @@ def closed(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
     }
 
 
-def marginal(found: Fit) -> float:
+def marginal(fit: Fit) -> float:
     """ln density of the records under a model of effects, those of different errors comparable.
 
     At the minimum of the quadratic through the fit's point.
     """
-    gradient, hessian = found.gradient, found.hessian
+    gradient, hessian = fit.gradient, fit.hessian
     lower = 0.5 * float(gradient @ cho_solve(cho_factor(hessian), gradient))
-    roots = sum(float(np.sum(np.log(np.diag(c.root)))) for c in found.model.likelihood.curves)
-    return found.evidence + lower - roots
+    roots = sum(float(np.sum(np.log(np.diag(c.root)))) for c in fit.model.likelihood.curves)
+    return fit.evidence + lower - roots
 
 
-def granted(model: EffectModel, made: Sequence[Made], shares: Sequence[float]) -> EffectModel:
+def granted(model: EffectModel, signals: Sequence[Made], shares: Sequence[float]) -> EffectModel:
     """The model, its records' errors its own and those of the laws of its effects.
 
     made: what each member makes, see `changes`. shares: one a member.
     """
     likelihood = model.likelihood
-    curves = [_widened(curve, i, made, shares) for i, curve in enumerate(likelihood.curves)]
+    curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
     return model.with_errors(replace(likelihood, curves=tuple(curves)))
 
 
@@ -113,9 +113,9 @@ def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatA
     return Made(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
 
 
-def sticks(found: Fit, member: Hypothesis) -> bool:
+def sticks(fit: Fit, member: Hypothesis) -> bool:
     """Whether a member of a fit is a friction."""
-    return _frictional(found.model, member, found.z)
+    return _frictional(fit.model, member, fit.z)
 
 
 def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
@@ -124,14 +124,14 @@ def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
     return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
 
 
-def _widened(curve: CurveData, at: int, made: Sequence[Made], shares: Sequence[float]) -> CurveData:
+def _widened(curve: CurveData, at: int, signals: Sequence[Made], shares: Sequence[float]) -> CurveData:
     if not any(shares):
         return curve
     relative = curve.input / np.abs(curve.input).max()
     smooth = smooth_correlation(relative, LENGTH)
     centred = np.eye(curve.size) - 1.0 / curve.size
     covariance = curve.root @ curve.root.T
-    for one, share in zip(made, shares, strict=True):
+    for one, share in zip(signals, shares, strict=True):
         change = one.changes[at]
         ratio = smooth if one.sticks else centred @ smooth @ centred
         covariance = covariance + share**2 * ratio * np.outer(change, change)

@@ -13,14 +13,14 @@ from doe_kc.typing import FloatArray
 CLOSE = 10.0
 """Decrease of the sum of squares up to which derivatives of the whole fit serve to the end. At 30 an RMS was
 off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
-STEPS = 8
+REFIT_STEPS = 8
 """Most steps of a refit, which begins close to where it ends."""
-LEVEL = 0.02
+NOISE_SD_SHARE = 0.02
 """Standard deviation of the noise's own size, relative: it is taken from three runs of every load case."""
 
 
 @dataclass(frozen=True)
-class Prediction:
+class HeldOutScore:
     """rms: of the held-out records' deviations in standard deviations of the prediction, those of its
     parameters among them; 1 is as good as predicted. score: ln of the predictive density, relative. size:
     number of records."""
@@ -32,7 +32,7 @@ class Prediction:
     @property
     def excess(self) -> float:
         """Standard deviations by which the RMS is above 1, of so many records and of the noise's size."""
-        return (self.rms - 1.0) / float(np.hypot(1.0 / np.sqrt(2.0 * self.size), LEVEL))
+        return (self.rms - 1.0) / float(np.hypot(1.0 / np.sqrt(2.0 * self.size), NOISE_SD_SHARE))
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class HeldOut:
     """
 
     load_case: str
-    tuned: Prediction
-    with_effect: Prediction
-    law_granted: Prediction
+    tuned: HeldOutScore
+    with_effect: HeldOutScore
+    law_granted: HeldOutScore
 
     @property
     def gain(self) -> float:
@@ -71,20 +71,20 @@ def _without(found: Fit, case: str) -> Fit:
     gained = cost_of(model, found.z, found.residual) - near.cost
     if near.converged and gained <= CLOSE:
         return near
-    return fit(model, near.z, steps=STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
+    return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
 
 
-def _prediction(found: Fit) -> Prediction:
+def _prediction(fit: Fit) -> HeldOutScore:
     """Of the rows that the fit did not look at, r with derivatives R.
 
     Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
     det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
     """
-    hidden = ~found.model.used
-    residual, rows = found.residual[hidden], found.jacobian[hidden]
-    before = cholesky(found.hessian, lower=True)
-    after = cholesky(found.hessian + rows.T @ rows, lower=True)
+    hidden = ~fit.model.used
+    residual, rows = fit.residual[hidden], fit.jacobian[hidden]
+    before = cholesky(fit.hessian, lower=True)
+    after = cholesky(fit.hessian + rows.T @ rows, lower=True)
     pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)
     square = float(residual @ residual - pulled @ pulled)
     score = -0.5 * square - float(np.sum(np.log(np.diag(after) / np.diag(before))))
-    return Prediction(float(np.sqrt(square / residual.size)), score, int(residual.size))
+    return HeldOutScore(float(np.sqrt(square / residual.size)), score, int(residual.size))

@@ -17,14 +17,14 @@ LEADERS = 5
 """Hypotheses refitted jointly at each step."""
 RIVAL = 0.3
 """|correlation| of what two effects explain from which they are rivals."""
-WORTH = 0.2
+REFIT_SHARE = 0.2
 """Share of the best screened gain below which a hypothesis is not refitted."""
 OF_ONE_KIND = 2
 """Places of the same effect that are refitted at most."""
 SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
 """Effects that a model may have in several places at once."""
 
-ABSORBED = 0.95
+ABSORBED_SHARE = 0.95
 """Share from which what re-tuning leaves is a small difference of large changes, which a screening to first
 order in the parameters can miss."""
 
@@ -40,7 +40,7 @@ def leaders(screened: Sequence[Screened], project: Projection, least: float) -> 
     out = [best]
     own = _explained(best, project)
     for s in screened[1:]:
-        if s.gain <= max(least, WORTH * best.gain) or len(out) == LEADERS:
+        if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == LEADERS:
             break
         kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
         if kind < OF_ONE_KIND and abs(float(own @ _explained(s, project))) > RIVAL:
@@ -56,7 +56,7 @@ def leaders(screened: Sequence[Screened], project: Projection, least: float) -> 
 def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
     """Those that a screening may have missed though a typical one would show by `least` of ln likelihood."""
     shows = float(np.sqrt(2.0 * least))
-    return [s for s in screened if not s.failed and s.absorbed >= ABSORBED and s.detectability >= shows]
+    return [s for s in screened if not s.failed and s.absorbed >= ABSORBED_SHARE and s.detectability >= shows]
 
 
 def _explained(screened: Screened, project: Projection) -> FloatArray:

@@ -24,13 +24,13 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-BEYOND = 2.0
+AMPLITUDE_LIMIT = 2.0
 """Times what is believed: the amplitude that a search does not go beyond."""
 RIG = 6.0
 """The same for the nuisances of the rig, in their standard deviations."""
 DIFFERENCE = 1e-3
 """Step of amplitudes for their derivatives, in typical sizes."""
-STRETCH = 0.1
+CALIBRATION_STEP = 0.1
 """Step of the inputs' calibrations for their derivatives, in standard deviations."""
 NO_CHARACTERISTICS = np.zeros(0)
 
@@ -111,7 +111,7 @@ class EffectModel:
     @cached_property
     def lower(self) -> FloatArray:
         """(d + m,) lower bounds."""
-        free = [-BEYOND * s.most if s.signed or s.shape else 0.0 for s in self.sizes]
+        free = [-AMPLITUDE_LIMIT * s.most if s.signed or s.shape else 0.0 for s in self.sizes]
         rig = np.full(self.dimension - self.parameters, -RIG)
         return np.concatenate([np.zeros(self.parameters), rig, free])
 
@@ -119,7 +119,7 @@ class EffectModel:
     def upper(self) -> FloatArray:
         """(d + m,) upper bounds."""
         rig = np.full(self.dimension - self.parameters, RIG)
-        return np.concatenate([np.ones(self.parameters), rig, [BEYOND * s.most for s in self.sizes]])
+        return np.concatenate([np.ones(self.parameters), rig, [AMPLITUDE_LIMIT * s.most for s in self.sizes]])
 
     def extended(self, hypothesis: Hypothesis) -> EffectModel:
         """The model with one more effect."""
@@ -190,8 +190,8 @@ class EffectModel:
     def _stretched(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""
         moved = z.copy()
-        moved[self.calibrations] += STRETCH
-        change = (self.residual(moved) - residual) / STRETCH
+        moved[self.calibrations] += CALIBRATION_STEP
+        change = (self.residual(moved) - residual) / CALIBRATION_STEP
         out = np.zeros((residual.size, len(self.cases)))
         for curve, place in self.likelihood.slices():
             out[place, self.cases.index(curve.load_case)] = change[place]

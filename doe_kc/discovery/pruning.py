@@ -14,21 +14,21 @@ DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""
 
 
-def pruned(found: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]) -> Fit:
+def pruned(fit: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]) -> Fit:
     """The fit without the members, but the latest, that cost more evidence than they bring.
 
     without_law: of a member whose law is open, errors that do not grant it, or what it makes would pass for
     an error of the records.
     """
-    while len(found.model.members) > 1:
-        losses = {h.name: _loss(found, place) for h, place in list(found.model.places())[:-1]}
-        members = [(h, p) for h, p in found.model.places() if losses.get(h.name, np.inf) < DOUBTFUL * least]
-        withs = [to_errors(found, without_law.get(h.name, found.model.likelihood)) for h, _ in members]
+    while len(fit.model.members) > 1:
+        losses = {h.name: _loss(fit, place) for h, place in list(fit.model.places())[:-1]}
+        members = [(h, p) for h, p in fit.model.places() if losses.get(h.name, np.inf) < DOUBTFUL * least]
+        withs = [to_errors(fit, without_law.get(h.name, fit.model.likelihood)) for h, _ in members]
         starts = [
             (w.model.without(h), np.delete(w.z, np.r_[place]))
             for w, (h, place) in zip(withs, members, strict=True)
         ]
-        tuning = found.jacobian[:, : found.model.dimension]
+        tuning = fit.jacobian[:, : fit.model.dimension]
         fewer = bench.fitted(starts, "taking effects out", tuning)
         for (h, _), w, f in zip(members, withs, fewer, strict=True):
             if f is not None:
@@ -37,13 +37,13 @@ def pruned(found: Fit, least: float, bench: Bench, without_law: Mapping[str, Lik
         least_lost = min(kept, key=lambda name: losses[name], default="")
         if not least_lost or losses[least_lost] > least:
             break
-        found = to_errors(kept[least_lost], found.model.likelihood)
-    return found
+        fit = to_errors(kept[least_lost], fit.model.likelihood)
+    return fit
 
 
-def _loss(found: Fit, place: slice) -> float:
+def _loss(fit: Fit, place: slice) -> float:
     """ln likelihood that a member's sizes carry, to second order (Wald); 0 for one without sizes."""
-    amplitudes = found.z[place]
+    amplitudes = fit.z[place]
     if not amplitudes.size:
         return 0.0
-    return 0.5 * float(amplitudes @ np.linalg.inv(found.covariance[place, place]) @ amplitudes)
+    return 0.5 * float(amplitudes @ np.linalg.inv(fit.covariance[place, place]) @ amplitudes)

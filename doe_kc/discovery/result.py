@@ -13,9 +13,9 @@ from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.scan import Scan
-from doe_kc.discovery.search import Search
+from doe_kc.discovery.search import EffectSearch
 from doe_kc.discovery.standing import Standing
-from doe_kc.discovery.trials import Trial
+from doe_kc.discovery.trials import HypothesisFit
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
 
@@ -23,7 +23,7 @@ VerdictKind = Literal["named", "class", "none", "unexplained"]
 
 
 @dataclass(frozen=True)
-class Estimate:
+class ParameterEstimate:
     """A number of an effect, as in its table. index: place in a list option, None for a number."""
 
     key: str
@@ -56,7 +56,7 @@ class Finding:
     """
 
     hypothesis: Hypothesis
-    estimates: tuple[Estimate, ...]
+    estimates: tuple[ParameterEstimate, ...]
     probability: float
     log10_odds: float
     against: str
@@ -127,8 +127,8 @@ class Discovery:
     standings: tuple[Standing, ...]
     unexplained: tuple[tuple[Contrast, float], ...]
     adequacy: Adequacy
-    search: Search
-    decoy: Trial | None
+    search: EffectSearch
+    decoy: HypothesisFit | None
     nominal: FloatArray
     raw: Map
     tuned: Map

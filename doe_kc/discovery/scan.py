@@ -23,11 +23,18 @@ from doe_kc.typing import FloatArray
 
 SIGNED = ("offset", "stiffness")
 """Laws whose amplitude may be negative."""
-SEEN = 1e-6
+COLUMN_SHARE = 1e-6
 """Share of a column's square below which re-tuning absorbs it wholly."""
-SURE = 0.9
+PLACE_PROBABILITY = 0.9
 """Summed probability from which a place is given."""
-AXES = {"x": "along x", "y": "along y", "z": "along z", "rx": "about x", "ry": "about y", "rz": "about z"}
+AXIS_WORDS = {
+    "x": "along x",
+    "y": "along y",
+    "z": "along z",
+    "rx": "about x",
+    "ry": "about y",
+    "rz": "about z",
+}
 
 
 @dataclass(frozen=True)
@@ -51,7 +58,7 @@ class Place:
         """e.g. an unlisted compliance about x between wheel and knuckle."""
         one, _, other = self.interface.partition("|")
         between = f"between {one} and {other}" if other else f"at {one}"
-        axes = " and ".join(AXES.get(d, d) for d in self.dofs)
+        axes = " and ".join(AXIS_WORDS.get(d, d) for d in self.dofs)
         side = {"L": ", left", "R": ", right"}.get(self.side, "")
         return f"an unlisted {self.law} {axes} {between}{side}"
 
@@ -90,7 +97,7 @@ def _sure(places: Sequence[Place], level: str) -> str | None:
         key = getattr(p, level)
         sums[key] = sums.get(key, 0.0) + p.probability
     best = max(sums, key=lambda k: sums[k])
-    return best if sums[best] > SURE else None
+    return best if sums[best] > PLACE_PROBABILITY else None
 
 
 def _of_law(
@@ -137,7 +144,7 @@ def _judged(
     """The place with its ln evidence: ln(1 + score^2) / 2 is taken off for each degree of freedom."""
     seen = project(block)
     whole, left = np.linalg.norm(block, axis=0), np.linalg.norm(seen, axis=0)
-    use = (left > SEEN * whole) & (left > 0.0)
+    use = (left > COLUMN_SHARE * whole) & (left > 0.0)
     if not use.any():
         return Place(interface, law, side, (), 0.0, 0.0, 0.0), 0.0
     unit = seen[:, use] / left[use]

@@ -24,14 +24,14 @@ PROBE = 0.3
 """First size at which an effect is solved for, in typical sizes."""
 SMALLER = 0.1
 """Factor of the first size where the effect is not linear below it."""
-STEPS = 4
-SHARES = (1.0, 0.5, 0.2, 0.05)
+SCREEN_STEPS = 4
+SCREEN_STEP_SHARES = (1.0, 0.5, 0.2, 0.05)
 """Of a step, tried one after the other until one gains."""
 HOPELESS = 1.0
 """ln likelihood that a step must promise over the model without the effect, or the effect is given up."""
-ENOUGH = 0.1
+SCREEN_DECREASE = 0.1
 """Decrease of the sum of squares below which an amplitude stands."""
-UNSEEN = 1e-12
+NULL_SHARE = 1e-12
 """Share of what all sizes of an effect do, in squares, that counts as nothing."""
 SHAPES = (0.0, -2.0, 2.0)
 """Starts of a shape: it does not exist where the effect is absent (Davies 1977), so several are tried."""
@@ -66,16 +66,16 @@ class Screened:
         return replace(self, change=change, columns=rewhitened(self.columns, before, after))
 
 
-def screen(found: Fit, hypothesis: Hypothesis) -> Screened:
+def screen(fit: Fit, hypothesis: Hypothesis) -> Screened:
     """The hypothesis on its own; one without equilibria comes back as failed."""
-    model = found.model.extended(hypothesis)
+    model = fit.model.extended(hypothesis)
     try:
         starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, SMALLER * PROBE), strict=True)
-        results = [follow(model, found, *s) for s in starts]
-        change = _typical(model, found, hypothesis)
+        results = [follow(model, fit, *s) for s in starts]
+        change = _typical(model, fit, hypothesis)
     except NotConverged as error:
         empty = np.zeros(len(hypothesis.sizes))
-        nothing = np.zeros((found.residual.size, 1 + empty.size))
+        nothing = np.zeros((fit.residual.size, 1 + empty.size))
         return Screened(
             hypothesis,
             empty,
@@ -90,16 +90,16 @@ def screen(found: Fit, hypothesis: Hypothesis) -> Screened:
             str(error),
         )
     best = min(results, key=lambda r: r.cost)
-    return _summary(found, hypothesis, best, change)
+    return _summary(fit, hypothesis, best, change)
 
 
-def _typical(model: EffectModel, found: Fit, hypothesis: Hypothesis) -> FloatArray:
+def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
     """(M,) change of the data at typical size; to first order where the axle has no equilibrium there."""
     amplitudes = np.array([0.0 if s.shape else 1.0 for s in hypothesis.sizes])
     try:
-        return model.residual(np.concatenate([found.z, amplitudes])) - found.residual
+        return model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual
     except NotConverged:
-        small = model.residual(np.concatenate([found.z, PROBE * amplitudes])) - found.residual
+        small = model.residual(np.concatenate([fit.z, PROBE * amplitudes])) - fit.residual
         return np.asarray(small / PROBE)
 
 
@@ -136,40 +136,40 @@ class _Followed:
     followed: bool = True
 
 
-def follow(model: EffectModel, found: Fit, start: FloatArray, smaller: FloatArray) -> _Followed:
+def follow(model: EffectModel, fit: Fit, start: FloatArray, smaller: FloatArray) -> _Followed:
     """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing.
 
     A promise that is worse than the model without the effect is none: along a straight line the effect could
     be absent. Then the search begins anew, from `smaller`, where the effect is closer to linear.
     """
-    place = slice(found.z.size, found.z.size + start.size)
+    place = slice(fit.z.size, fit.z.size + start.size)
     low, high = model.lower[place], model.upper[place]
-    without = float(found.remainder @ found.remainder)
-    best = _derived(model, found, _solved(model, found, start), place)
-    for k in range(STEPS if start.size else 0):
+    without = float(fit.remainder @ fit.remainder)
+    best = _derived(model, fit, _solved(model, fit, start), place)
+    for k in range(SCREEN_STEPS if start.size else 0):
         hessian = best.projected.T @ best.projected + np.eye(start.size)
         slope = best.projected.T @ best.reduced + best.amplitudes
         step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
         predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
         if k == 0 and predicted > without + 2.0 * HOPELESS and not np.array_equal(start, smaller):
-            return follow(model, found, smaller, smaller)
+            return follow(model, fit, smaller, smaller)
         if without - predicted < 2.0 * HOPELESS:
             return replace(best, amplitudes=best.amplitudes + step, cost=predicted, followed=False)
-        trial = _better(model, found, best, step)
+        trial = _better(model, fit, best, step)
         if trial is None:
             break
         gained, best = best.cost - trial.cost, trial
-        if gained < ENOUGH:
+        if gained < SCREEN_DECREASE:
             break
-        best = _derived(model, found, best, place)
+        best = _derived(model, fit, best, place)
     return best
 
 
-def _better(model: EffectModel, found: Fit, best: _Followed, step: FloatArray) -> _Followed | None:
+def _better(model: EffectModel, fit: Fit, best: _Followed, step: FloatArray) -> _Followed | None:
     """The longest of the shortened steps that gains, None when none does or has an equilibrium."""
-    for share in SHARES:
+    for share in SCREEN_STEP_SHARES:
         try:
-            trial = _solved(model, found, best.amplitudes + share * step, best)
+            trial = _solved(model, fit, best.amplitudes + share * step, best)
         except NotConverged:
             continue
         if trial.cost < best.cost:
@@ -177,29 +177,27 @@ def _better(model: EffectModel, found: Fit, best: _Followed, step: FloatArray) -
     return None
 
 
-def _solved(
-    model: EffectModel, found: Fit, amplitudes: FloatArray, near: _Followed | None = None
-) -> _Followed:
+def _solved(model: EffectModel, fit: Fit, amplitudes: FloatArray, near: _Followed | None = None) -> _Followed:
     """The true solution at some amplitudes, its columns those of a point that is near or still none."""
-    residual = model.residual(np.concatenate([found.z, amplitudes]))
-    reduced = found.projection.residual(residual)
+    residual = model.residual(np.concatenate([fit.z, amplitudes]))
+    reduced = fit.projection.residual(residual)
     cost = float(reduced @ reduced + amplitudes @ amplitudes)
     none = np.zeros((0, amplitudes.size))
     columns, projected = (none, none) if near is None else (near.columns, near.projected)
-    return _Followed(amplitudes, columns, projected, residual - found.residual, reduced, cost)
+    return _Followed(amplitudes, columns, projected, residual - fit.residual, reduced, cost)
 
 
-def _derived(model: EffectModel, found: Fit, best: _Followed, place: slice) -> _Followed:
+def _derived(model: EffectModel, fit: Fit, best: _Followed, place: slice) -> _Followed:
     """The same with columns taken there. place: of the amplitudes in z."""
-    z, residual = np.concatenate([found.z, best.amplitudes]), found.residual + best.change
+    z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change
     columns = model.growth(z, residual, which=place)
-    return replace(best, columns=columns, projected=found.projection(columns))
+    return replace(best, columns=columns, projected=fit.projection(columns))
 
 
-def _summary(found: Fit, hypothesis: Hypothesis, best: _Followed, change: FloatArray) -> Screened:
+def _summary(fit: Fit, hypothesis: Hypothesis, best: _Followed, change: FloatArray) -> Screened:
     hessian = best.projected.T @ best.projected + np.eye(best.amplitudes.size)
-    seen, whole = found.projection(change), float(change @ change)
-    without = float(found.remainder @ found.remainder)
+    seen, whole = fit.projection(change), float(change @ change)
+    without = float(fit.remainder @ fit.remainder)
     fitted = best.cost - float(best.amplitudes @ best.amplitudes)
     return Screened(
         hypothesis,
@@ -223,12 +221,12 @@ def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> 
         out[amounts] = np.linalg.norm(change)
     elif amounts:
         gram = columns[:, amounts].T @ columns[:, amounts]
-        least = UNSEEN * max(float(np.trace(gram)), UNSEEN)
+        least = NULL_SHARE * max(float(np.trace(gram)), NULL_SHARE)
         out[amounts] = 1.0 / np.sqrt(np.diag(np.linalg.inv(gram + least * np.eye(len(amounts)))))
     return out
 
 
-def rescreened(found: Fit, known: Screened) -> Screened:
+def rescreened(fit: Fit, known: Screened) -> Screened:
     """The score test at another model with the columns known from an earlier one: no new solution.
 
     known: its changes in the other model's errors. amplitudes and gain to first order; hypotheses without
@@ -236,7 +234,7 @@ def rescreened(found: Fit, known: Screened) -> Screened:
     """
     if known.failed:
         return known
-    project, plain = found.projection, found.remainder
+    project, plain = fit.projection, fit.remainder
     seen = project(known.change)
     columns = project(known.columns if known.amplitudes.size else known.change[:, None])
     hessian = columns.T @ columns + np.eye(columns.shape[1])

@@ -18,16 +18,16 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.pruning import pruned
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
-from doe_kc.discovery.trials import Trial, plausible, stiffer_first, tried
+from doe_kc.discovery.trials import HypothesisFit, plausible, stiffer_first, tried
 from doe_kc.effects.hypothesis import Hypothesis
 
-MOST = 6
+EFFECTS_MOST = 6
 """Effects, named ones and traces, after which the search ends."""
 MOST_STEPS = 12
 """Steps after which it ends although effects still come in and out again."""
 FALSE_ALARM = 0.01
 """Chance that noise alone brings in any effect at a step."""
-ASKED = 2.3
+LOOP_EVIDENCE = 2.3
 """ln evidence, ten to one, for which the loops before the record are changed: a loop more takes its time."""
 PROMISING = 1.0
 """ln evidence to first order from which a hypothesis is screened anew at a later step."""
@@ -44,13 +44,13 @@ class Step:
     before: Fit
     map: Map
     screened: tuple[Screened, ...]
-    trials: tuple[Trial, ...]
+    trials: tuple[HypothesisFit, ...]
     temper: float
     accepted: bool
 
 
 @dataclass(frozen=True)
-class Search:
+class EffectSearch:
     """tuned: without any effect. final: with all accepted ones, the shape of their laws granted.
 
     plain: fitted to the records' own errors alone, from there: what is handed over, with the smallest gap.
@@ -66,7 +66,7 @@ class Search:
     without_law: Mapping[str, Likelihood]
 
 
-def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> Search:
+def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> EffectSearch:
     """Tune, then add effects as long as the evidence asks for them.
 
     NotConverged when the nominal axle has no equilibrium.
@@ -79,7 +79,7 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
     while True:
         step = _step(current, library, bench, steps[-1] if steps else None)
         steps.append(step)
-        full = step.accepted and len(step.trials[0].fit.model.members) > MOST
+        full = step.accepted and len(step.trials[0].fit.model.members) > EFFECTS_MOST
         if not step.accepted or full or len(steps) == MOST_STEPS:
             break
         current = pruned(step.trials[0].fit, threshold(len(library)), bench, without_law)
@@ -89,7 +89,7 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> S
         if current.model.likelihood is not step.trials[0].fit.model.likelihood:
             current = settled(current, bench)
     plain = to_errors(current, model.likelihood)
-    return Search(tuned, tuple(steps), current, plain, shares, without_law)
+    return EffectSearch(tuned, tuple(steps), current, plain, shares, without_law)
 
 
 def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
@@ -105,7 +105,7 @@ def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
         return replace(current, model=replace(model, axle=given))
     other = replace(model, axle=model.axle.conditioned(0 if model.axle.conditioning else 1))
     (found,) = bench.fitted([(other, current.z)], "loops before the record", current.jacobian)
-    if found is None or found.evidence < current.evidence + ASKED:
+    if found is None or found.evidence < current.evidence + LOOP_EVIDENCE:
         return current
     return found
 
@@ -134,14 +134,14 @@ def threshold(count: int) -> float:
     return float(np.log(count / FALSE_ALARM))
 
 
-def accepted_steps(found: Search) -> list[Step]:
+def accepted_steps(search: EffectSearch) -> list[Step]:
     """Steps that brought in an effect, the latest first."""
-    return [s for s in reversed(found.steps) if s.accepted]
+    return [s for s in reversed(search.steps) if s.accepted]
 
 
-def accepted_at(found: Search, hypothesis: Hypothesis) -> Step:
+def accepted_at(search: EffectSearch, hypothesis: Hypothesis) -> Step:
     """The step that brought a member in, the latest one."""
-    return next(s for s in accepted_steps(found) if s.trials[0].hypothesis == hypothesis)
+    return next(s for s in accepted_steps(search) if s.trials[0].hypothesis == hypothesis)
 
 
 def _step(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from doe_kc.discovery.adequacy import UNLISTED, Adequacy
-from doe_kc.discovery.disagreement import DRAWS, Map
+from doe_kc.discovery.disagreement import NOISE_DRAWS, Map
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.scan import Scan
@@ -18,7 +18,7 @@ CERTAIN = 6.0
 """log10 odds beyond which no more is said: what the models share is less sure than that."""
 ADVISED = 6
 """Tests that are listed at most."""
-LISTED = 8
+PARAMETERS_LISTED = 8
 """Parameters that are listed at most."""
 
 
@@ -57,7 +57,7 @@ def sentences(
 
 
 def _outside(beyond: Sequence[str], widened: float) -> str:
-    listed = ", ".join(beyond[:LISTED]) + (", …" if len(beyond) > LISTED else "")
+    listed = ", ".join(beyond[:PARAMETERS_LISTED]) + (", …" if len(beyond) > PARAMETERS_LISTED else "")
     count = f"{len(beyond)} parameter{'s' if len(beyond) > 1 else ''}"
     return (
         f"The records ask for {count} outside the bounds ({listed}), so ranges {widened:g} times as wide "
@@ -133,7 +133,7 @@ def adequacy_words(holds: Adequacy) -> str:
 
 
 def _share(chance: float) -> str:
-    return "less than 0.1 %" if chance <= 1.0 / DRAWS else f"{100.0 * chance:.2g} %"
+    return "less than 0.1 %" if chance <= 1.0 / NOISE_DRAWS else f"{100.0 * chance:.2g} %"
 
 
 def next_tests(

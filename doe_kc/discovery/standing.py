@@ -22,7 +22,7 @@ POWER = 0.84
 """Standard deviations above the critical value at which an effect is found in 80 % of cars."""
 ONE_SIDED = 1.645
 """Standard deviations of a one-sided 95 % limit."""
-ALIKE = 0.8
+ALIKE_CORRELATION = 0.8
 """|correlation| after re-tuning from which two effects are listed as alike."""
 UNSURE = 0.005
 """Share of a change's square below which deviations that re-tuning leaves of it are not believed: it is
@@ -56,7 +56,7 @@ class Standing:
 
 
 def standings(
-    found: Fit,
+    fit: Fit,
     project: Projection,
     screened: Sequence[Screened],
     members: Sequence[tuple[Screened, Status]],
@@ -75,10 +75,10 @@ def standings(
     length = np.linalg.norm(changes, axis=0)
     safe = np.where(length > 0, length, 1.0)
     correlation = (changes / safe).T @ (changes / safe)
-    moves = _moves(found, np.array([s.change for s in everything]).T)
+    moves = _moves(fit, np.array([s.change for s in everything]).T)
     out = []
     for i, s in enumerate(everything):
-        by_bounds = float(np.linalg.norm(changes[found.residual.size :, i]))
+        by_bounds = float(np.linalg.norm(changes[fit.residual.size :, i]))
         limits = _limits(s, by_bounds, critical)
         limits = limits if i in known else np.maximum(limits, _upper(s))
         amounts = limits[~np.isnan(limits)]
@@ -89,13 +89,13 @@ def standings(
         alike = tuple(
             (everything[j].hypothesis.name, float(correlation[i, j]))
             for j in np.argsort(-np.abs(correlation[i]))
-            if j != i and abs(correlation[i, j]) >= ALIKE and length[i] > 1.0 and length[j] > 1.0
+            if j != i and abs(correlation[i, j]) >= ALIKE_CORRELATION and length[i] > 1.0 and length[j] > 1.0
         )
-        hidden_by = _hiding(found, moves[:, i], s)
+        hidden_by = _hiding(fit, moves[:, i], s)
         stands = Standing(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
         out.append(stands)
     hidden = [i for i, s in enumerate(out) if s.status in ("not testable", "trace")]
-    tests = component_tests(found, [everything[i] for i in hidden], critical + POWER)
+    tests = component_tests(fit, [everything[i] for i in hidden], critical + POWER)
     for i, test in zip(hidden, tests, strict=True):
         out[i] = replace(out[i], bench=test)
     return tuple(out)
@@ -146,18 +146,18 @@ def _status(screened: Screened, detectable: float, *, resolved: bool) -> Status:
     return "excluded" if resolved else "unresolved"
 
 
-def _moves(found: Fit, changes: FloatArray) -> FloatArray:
+def _moves(fit: Fit, changes: FloatArray) -> FloatArray:
     """(d, k) how the tunable parameters would follow each change, the sizes of the effects held."""
-    count = found.model.dimension
-    hessian, jacobian = found.hessian[:count, :count], found.jacobian[:, :count]
+    count = fit.model.dimension
+    hessian, jacobian = fit.hessian[:count, :count], fit.jacobian[:, :count]
     return np.asarray(-cho_solve(cho_factor(hessian), jacobian.T @ changes))
 
 
-def _hiding(found: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, float], ...]:
+def _hiding(fit: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, float], ...]:
     if screened.absorbed < 0.5:
         return ()
-    paths = found.model.space.paths
-    relative = move[: len(paths)] / found.model.prior_sd[: len(paths)]
+    paths = fit.model.space.paths
+    relative = move[: len(paths)] / fit.model.prior_sd[: len(paths)]
     order = np.argsort(-np.abs(relative))[:HIDING]
     return tuple((paths[i], float(relative[i])) for i in order)
 

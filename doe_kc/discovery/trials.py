@@ -19,7 +19,7 @@ TIED = 1.0
 
 
 @dataclass(frozen=True)
-class Trial:
+class HypothesisFit:
     """A hypothesis refitted jointly. gain: ln of the evidence over the model without it, times its odds."""
 
     hypothesis: Hypothesis
@@ -27,7 +27,7 @@ class Trial:
     gain: float
 
 
-def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Trial]:
+def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[HypothesisFit]:
     """The joint refits from the screened sizes, best first; those without a solution are left out."""
     starts = [
         (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
@@ -37,7 +37,7 @@ def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[Tria
     for s, found in zip(screened, fits, strict=True):
         if found is not None:
             gain = found.evidence - current.evidence + log_odds(s.hypothesis)
-            trials.append(Trial(s.hypothesis, found, gain))
+            trials.append(HypothesisFit(s.hypothesis, found, gain))
     return sorted(trials, key=lambda t: -t.gain)
 
 
@@ -46,12 +46,12 @@ def log_odds(hypothesis: Hypothesis) -> float:
     return float(np.log(EFFECTS[hypothesis.effect].odds))
 
 
-def plausible(trial: Trial) -> bool:
+def plausible(trial: HypothesisFit) -> bool:
     """Whether the effect's sizes are believed."""
     return believed(amounts(trial))
 
 
-def amounts(trial: Trial) -> list[tuple[Size, float, float]]:
+def amounts(trial: HypothesisFit) -> list[tuple[Size, float, float]]:
     """Sizes of the trial's effect that say how much, in typical ones, with their standard deviations."""
     sizes = trial.hypothesis.sizes
     sd = np.sqrt(np.diag(trial.fit.covariance))
@@ -59,7 +59,7 @@ def amounts(trial: Trial) -> list[tuple[Size, float, float]]:
     return [item for item in known if not item[0].shape]
 
 
-def stiffer_first(trials: list[Trial]) -> list[Trial]:
+def stiffer_first(trials: list[HypothesisFit]) -> list[HypothesisFit]:
     """Of one signed effect at two places that say the same, the one of positive size leads, by convention.
 
     A bushing that is stiffer on the left is, with both re-tuned, one that is softer on the right.

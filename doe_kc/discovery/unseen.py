@@ -9,31 +9,31 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from doe_kc.discovery.search import Search
+from doe_kc.discovery.search import EffectSearch
 from doe_kc.effects import EFFECTS
 from doe_kc.typing import FloatArray
 
 PRESENT = 0.03
 """Standard deviation of a trace, in typical sizes."""
-SEEN = 4.0
+TRACE_LEVEL = 4.0
 """Standard deviations after re-tuning from which a trace would have been brought in."""
 
 
-def unseen(found: Search) -> FloatArray:
+def unseen(search: EffectSearch) -> FloatArray:
     """(m,) standard deviation of the final model's amplitudes by all effects that are not in it.
 
     To first order: each at PRESENT of its typical size, less where more would have been seen, independently.
     """
-    final = found.final
+    final = search.final
     members = {h.name for h in final.model.members}
     others = [
         s
-        for s in found.steps[-1].screened
+        for s in search.steps[-1].screened
         if not s.failed and s.hypothesis.name not in members and not EFFECTS[s.hypothesis.effect].on_rig
     ]
     if not others:
         return np.zeros(final.amplitudes.size)
-    sizes = np.array([min(PRESENT, SEEN / max(s.detectability, 1e-9)) for s in others])
+    sizes = np.array([min(PRESENT, TRACE_LEVEL / max(s.detectability, 1e-9)) for s in others])
     changes = np.array([s.change for s in others]).T * sizes
     moves = cho_solve(cho_factor(final.hessian), final.jacobian.T @ changes)
     return np.asarray(np.linalg.norm(moves[final.model.dimension :], axis=1))

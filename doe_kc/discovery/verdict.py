@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.result import Finding, VerdictKind
 
-SURE = 0.9
+NAME_PROBABILITY = 0.9
 """Probability against its rivals from which an effect is named by itself."""
 CLOSED = 0.9
 """Share of the gap that a name must close, where the gap is clear of noise."""
@@ -60,7 +60,7 @@ def verdict(
 def ambiguous(finding: Finding) -> bool:
     """Whether the effect cannot be told from others of the library."""
     others = sum(r.probability for r in finding.rivals)
-    return finding.probability < SURE * (finding.probability + others) or bool(finding.alike)
+    return finding.probability < NAME_PROBABILITY * (finding.probability + others) or bool(finding.alike)
 
 
 def classes(findings: Sequence[Finding]) -> tuple[tuple[str, ...], ...]:

@@ -15,7 +15,7 @@ from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.disagreement import remaining_map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search import Search, search
+from doe_kc.discovery.search import EffectSearch, search
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
@@ -26,11 +26,11 @@ HELD = 0.05
 """Share of the parameters that must be at a bound before wider ones are tried."""
 AT = 1e-9
 """Of a range: rounding of a value at its bound."""
-ASKED = 7.0
+BOUND_EVIDENCE = 7.0
 """ln evidence, a thousand to one, for which all bounds are widened."""
 
 
-def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> tuple[Search, float]:
+def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> tuple[EffectSearch, float]:
     """The search, and by how much all ranges are wider in it than the model's: 1 where that is not asked for.
 
     Wider ranges are tried only where what re-tuning could not absorb agrees with noise, so that they
@@ -42,7 +42,7 @@ def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) ->
     if factor == 1.0:
         return found, factor
     again = search(replace(model, space=model.space.widened(factor)), library, bench)
-    return (again, factor) if again.plain.evidence > found.plain.evidence + ASKED else (found, 1.0)
+    return (again, factor) if again.plain.evidence > found.plain.evidence + BOUND_EVIDENCE else (found, 1.0)
 
 
 def asked(final: Fit, bench: Bench) -> float:
@@ -51,7 +51,7 @@ def asked(final: Fit, bench: Bench) -> float:
     few = np.mean(at_bounds(final)) < HELD
     if few or not remaining_map(shapes, final.residual, final.projection).agrees:
         return 1.0
-    best, most = 1.0, final.evidence + ASKED
+    best, most = 1.0, final.evidence + BOUND_EVIDENCE
     for factor in FACTORS:
         model, z = widened(final, factor)
         (wider,) = bench.fitted([(model, z)], "wider bounds", final.jacobian * _stretch(final, model, z))
@@ -61,30 +61,30 @@ def asked(final: Fit, bench: Bench) -> float:
     return best
 
 
-def at_bounds(found: Fit) -> NDArray[np.bool_]:
+def at_bounds(fit: Fit) -> NDArray[np.bool_]:
     """(d,) whether each tunable parameter is held at a bound."""
-    model = found.model
-    u, low, high = (a[: model.parameters] for a in (found.z, model.lower, model.upper))
+    model = fit.model
+    u, low, high = (a[: model.parameters] for a in (fit.z, model.lower, model.upper))
     return np.asarray((u <= low) | (u >= high))
 
 
-def widened(found: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
+def widened(fit: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
     """The model with wider ranges, and the fit's point in it."""
-    model = found.model
+    model = fit.model
     space, count = model.space.widened(factor), model.parameters
-    z = np.concatenate([space.unit(model.space.values(found.z[:count])), found.z[count:]])
+    z = np.concatenate([space.unit(model.space.values(fit.z[:count])), fit.z[count:]])
     return replace(model, space=space), z
 
 
-def _stretch(found: Fit, wider: EffectModel, z: FloatArray) -> FloatArray:
+def _stretch(fit: Fit, wider: EffectModel, z: FloatArray) -> FloatArray:
     """(d + m,) by what derivatives grow from the one model's places to the wider one's."""
     count = wider.parameters
-    own = found.model.space.slopes(found.z[:count])
+    own = fit.model.space.slopes(fit.z[:count])
     return np.concatenate([wider.space.slopes(z[:count]) / own, np.ones(z.size - count)])
 
 
-def beyond(space: Space, found: Fit) -> tuple[str, ...]:
+def beyond(space: Space, fit: Fit) -> tuple[str, ...]:
     """Paths of the parameters that the fit puts outside the bounds of `space`."""
-    values = found.model.space.values(found.z[: found.model.parameters])
+    values = fit.model.space.values(fit.z[: fit.model.parameters])
     places = {v.path: v.place(values[v.path]) for v in space.variables}
     return tuple(path for path, u in places.items() if not -AT <= u <= 1.0 + AT)

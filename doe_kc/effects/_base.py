@@ -69,19 +69,21 @@ class Effect(ABC):
         del before, axle
         return dict(after)
 
-    def apply(self, axle: Axle, given: Mapping[str, Any], source: str) -> Axle:
+    def apply(self, axle: Axle, options: Mapping[str, Any], source: str) -> Axle:
         """The axle with this effect; InputError for an unknown key or a value out of range."""
-        return self.extend(axle, self.read(given, source))
+        return self.extend(axle, self.read(options, source))
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
         """Checked options, defaults filled in."""
-        for key in given:
+        for key in options:
             if key not in self.options:
                 raise InputError(
                     f"{source}: effect {self.id} has no key {key!r}; "
                     f"its keys are {', '.join(self.options) or 'none'}.{nearest(key, self.options)}"
                 )
-        return {key: self._checked(key, given.get(key, o.default), source) for key, o in self.options.items()}
+        return {
+            key: self._checked(key, options.get(key, o.default), source) for key, o in self.options.items()
+        }
 
     def _checked(self, key: str, value: Any, source: str) -> Any:
         option = self.options[key]

@@ -12,7 +12,7 @@ from doe_kc.effects._base import Effect
 from doe_kc.effects._tables import checked_flag, per_bushing
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
-AXES = ("Fx", "Fy", "Fz")
+FORCE_AXES = ("Fx", "Fy", "Fz")
 
 
 class BushingValues(Effect):
@@ -46,20 +46,20 @@ class BushingValues(Effect):
         """What the axle has in the bushings that either names, as values that replace the file's own."""
         named = {**self.read(before, axle.name), **self.read(after, axle.name)}
         return {
-            bushing.upper(): [axle.values[f"{bushing}.{self.quantity}.{axis}@L"] for axis in AXES]
+            bushing.upper(): [axle.values[f"{bushing}.{self.quantity}.{axis}@L"] for axis in FORCE_AXES]
             for bushing in named
             if bushing != "added"
         }
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        table = {key: value for key, value in given.items() if key != "added"}
-        added = checked_flag(given.get("added", False), f"{source}: effect {self.id}: added")
-        return {"added": added, **per_bushing(table or self.default(), BUSHINGS, len(AXES), source)}
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+        table = {key: value for key, value in options.items() if key != "added"}
+        added = checked_flag(options.get("added", False), f"{source}: effect {self.id}: added")
+        return {"added": added, **per_bushing(table or self.default(), BUSHINGS, len(FORCE_AXES), source)}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         values: dict[str, float] = {}
         for bushing in set(options) - {"added"}:
-            for axis, value in zip(AXES, options[bushing], strict=True):
+            for axis, value in zip(FORCE_AXES, options[bushing], strict=True):
                 for side in SIDES:
                     name = f"{bushing}.{self.quantity}.{axis}@{side}"
                     values[name] = value + (axle.values[name] if options["added"] else 0.0)

@@ -30,24 +30,24 @@ def checked_flag(value: Any, name: str) -> bool:
 
 
 def named_numbers(
-    given: Mapping[str, Any], known: Iterable[str], where: str, what: str, *, positive: bool = False
+    options: Mapping[str, Any], known: Iterable[str], where: str, what: str, *, positive: bool = False
 ) -> dict[str, float]:
     """Options that are numbers by name. where: file and effect; what: such a name is, for the message."""
     known = tuple(known)
-    for key in given:
+    for key in options:
         if key not in known:
             raise InputError(
                 f"{where}: {key!r} is not {what}; expected one of {', '.join(known)}.{nearest(key, known)}"
             )
-    return {k: checked_number(v, f"{where}: {k} = {v!r}", positive=positive) for k, v in given.items()}
+    return {k: checked_number(v, f"{where}: {k} = {v!r}", positive=positive) for k, v in options.items()}
 
 
 def per_bushing(
-    given: Mapping[str, Any], known: Mapping[str, str], length: int, source: str
+    options: Mapping[str, Any], known: Mapping[str, str], length: int, source: str
 ) -> dict[str, list[float]]:
     """Options of the form LLR = [x, y, z], keyed by the lower-case bushing name."""
     out = {}
-    for key, value in given.items():
+    for key, value in options.items():
         if key.lower() not in known:
             raise InputError(
                 f"{source}: {key!r} is not a bushing; known are {', '.join(k.upper() for k in known)}."

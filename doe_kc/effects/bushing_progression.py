@@ -35,8 +35,8 @@ class BushingProgression(BushingValues):
     def default(self) -> dict[str, list[float]]:
         return {"LLR": [0.05, 0.05, 0.05], "UPB": [0.02, 0.02, 0.02]}
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        checked = super().read(given, source)
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+        checked = super().read(options, source)
         for bushing, values in checked.items():
             if bushing != "added" and min(values) < 0:
                 raise InputError(

@@ -10,7 +10,7 @@ Growth = Literal["amount", "compliance", "factor", "shape", "bend"]
 
 ABSENT = 1e-4
 """Smallest amplitude of a size that cannot be negative: so small that it stands for none (rigid, no gap)."""
-SPREAD = 0.7
+SHAPE_LOG_SD = 0.7
 """Standard deviation of the logarithm of a shape, such as a presliding distance: a factor of two."""
 
 
@@ -57,7 +57,7 @@ class Size:
             return float(self.typical * max(amplitude, ABSENT) ** (-1.0 / self.power))
         if self.growth == "factor":
             return float(self.typical**amplitude)
-        return float(self.typical * 2.718281828459045 ** (SPREAD * amplitude))
+        return float(self.typical * 2.718281828459045 ** (SHAPE_LOG_SD * amplitude))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.errors import InputError
 
-KEYS = {f"{name.upper()}_{side}": (name, side) for name in BUSHINGS for side in "LR"}
+BUSHING_KEYS = {f"{name.upper()}_{side}": (name, side) for name in BUSHINGS for side in "LR"}
 
 
 @effect
@@ -30,24 +30,28 @@ class LeftRightAsymmetry(Effect):
     shown_by: ClassVar[str] = "the bushings of both sides exchanged: the difference changes sides with them"
 
     def hypotheses(self) -> tuple[Hypothesis, ...]:
-        return tuple(Hypothesis(self.id, key, (Size(key, 1.25, "-", "factor", signed=True),)) for key in KEYS)
+        return tuple(
+            Hypothesis(self.id, key, (Size(key, 1.25, "-", "factor", signed=True),)) for key in BUSHING_KEYS
+        )
 
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         one, other = self.read(before, axle.name), self.read(after, axle.name)
         return {k: one.get(k, 1.0) * other.get(k, 1.0) for k in one | other}
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        nested = given.get("scale", {})
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+        nested = options.get("scale", {})
         if not isinstance(nested, Mapping):
             raise InputError(f"{source}: effect {self.id}: scale = {nested!r}, expected {{ LLR_R = 1.25 }}.")
-        flat = {k.removeprefix("scale."): v for k, v in given.items() if k != "scale"} | dict(nested)
+        flat = {k.removeprefix("scale."): v for k, v in options.items() if k != "scale"} | dict(nested)
         where = f"{source}: effect {self.id}"
-        return named_numbers(flat or {"LLR_R": 1.25}, KEYS, where, "a bushing of one side", positive=True)
+        return named_numbers(
+            flat or {"LLR_R": 1.25}, BUSHING_KEYS, where, "a bushing of one side", positive=True
+        )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         values = {}
         for key, factor in options.items():
-            bushing, side = KEYS[key]
+            bushing, side = BUSHING_KEYS[key]
             for axis in ("Fx", "Fy", "Fz"):
                 name = f"{bushing}.{axis}@{side}"
                 values[name] = axle.values[name] * factor

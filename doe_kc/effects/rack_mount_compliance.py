@@ -42,8 +42,8 @@ class RackMountCompliance(Effect):
         Size("stiffening", 0.15, "-", "bend", most=2.5),
     )
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        checked = super().read(given, source)
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+        checked = super().read(options, source)
         if checked["stiffening"] <= SOFTEST:
             raise InputError(
                 f"{source}: effect {self.id}: stiffening = {checked['stiffening']:g}, expected more than "

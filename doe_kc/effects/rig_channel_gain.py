@@ -38,9 +38,9 @@ class RigChannelGain(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         return self.read(before, axle.name) | self.read(after, axle.name)
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
         where = f"{source}: effect {self.id}"
-        return named_numbers(given or {"toe": 1.05}, RIG_RESPONSES, where, "a response", positive=True)
+        return named_numbers(options or {"toe": 1.05}, RIG_RESPONSES, where, "a response", positive=True)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         return axle

@@ -12,7 +12,7 @@ from doe_kc.effects._base import Effect, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
-KEYS = {f"{name}_deg": name for name in ("toe", "camber", "spin")}
+OFFSET_KEYS = {f"{name}_deg": name for name in ("toe", "camber", "spin")}
 
 
 @effect
@@ -32,14 +32,17 @@ class RigChannelOffset(Effect):
 
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         return tuple(
-            Hypothesis(self.id, name, (Size(key, 0.1, "deg", signed=True),)) for key, name in KEYS.items()
+            Hypothesis(self.id, name, (Size(key, 0.1, "deg", signed=True),))
+            for key, name in OFFSET_KEYS.items()
         )
 
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         return self.read(before, axle.name) | self.read(after, axle.name)
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        return named_numbers(given or {"toe_deg": 0.1}, KEYS, f"{source}: effect {self.id}", "an angle")
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+        return named_numbers(
+            options or {"toe_deg": 0.1}, OFFSET_KEYS, f"{source}: effect {self.id}", "an angle"
+        )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         return axle
@@ -47,6 +50,6 @@ class RigChannelOffset(Effect):
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
         if curves.static is None:
             return curves
-        offsets = {KEYS[key]: value for key, value in options.items()}
+        offsets = {OFFSET_KEYS[key]: value for key, value in options.items()}
         static = {name: value + offsets.get(name, 0.0) for name, value in curves.static.items()}
         return replace(curves, static=static)

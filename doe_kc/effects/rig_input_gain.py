@@ -34,9 +34,9 @@ class RigInputGain(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         return self.read(before, axle.name) | self.read(after, axle.name)
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
         where = f"{source}: effect {self.id}"
-        return named_numbers(given or {"lateral": 1.05}, CASE_ORDER, where, "a load case", positive=True)
+        return named_numbers(options or {"lateral": 1.05}, CASE_ORDER, where, "a load case", positive=True)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         cases = axle.load_cases

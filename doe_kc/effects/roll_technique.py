@@ -14,7 +14,7 @@ from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.load_cases.roll import PadRoll, Roll
 
-TECHNIQUES = ("counter_phase", "wheel_to_ground")
+OTHER_TECHNIQUES = ("counter_phase", "wheel_to_ground")
 
 
 @effect
@@ -26,7 +26,7 @@ class RollTechnique(Effect):
 
     id: ClassVar[str] = "roll_technique"
     label: ClassVar[str] = "Other roll technique"
-    options: ClassVar[Mapping[str, Option]] = {"technique": Option("counter_phase", choices=TECHNIQUES)}
+    options: ClassVar[Mapping[str, Option]] = {"technique": Option("counter_phase", choices=OTHER_TECHNIQUES)}
     on_rig: ClassVar[bool] = True
 
     physics: ClassVar[str] = (
@@ -36,7 +36,7 @@ class RollTechnique(Effect):
     shown_by: ClassVar[str] = "roll run both ways; camber in roll against camber of the same wheel travel"
 
     def hypotheses(self) -> tuple[Hypothesis, ...]:
-        return tuple(Hypothesis(self.id, None, (), {"technique": t}) for t in TECHNIQUES)
+        return tuple(Hypothesis(self.id, None, (), {"technique": t}) for t in OTHER_TECHNIQUES)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         roll = axle.load_cases.get("roll")

@@ -10,7 +10,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Size
 
-STIFFNESS = {
+JOINT_STIFFNESS = {
     "kx": 2 * 40000.0,
     "ky": 2 * 40000.0,
     "kz": 2 * 20000.0,
@@ -43,5 +43,5 @@ class SubframeFlexibility(Effect):
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         if options["mode"] == "rigid":
             return replace(axle, topology=replace(axle.topology, flexible_subframe=False))
-        values = {f"subframe.{key}": options["scale"] * k for key, k in STIFFNESS.items()}
+        values = {f"subframe.{key}": options["scale"] * k for key, k in JOINT_STIFFNESS.items()}
         return replace(axle.changed(values), topology=replace(axle.topology, flexible_subframe=True))

@@ -26,13 +26,13 @@ from doe_kc.influence.identifiability import (
     posterior_ratio,
 )
 from doe_kc.influence.result import Influence
-from doe_kc.influence.selection_result import Outcome, Selection, Variable
+from doe_kc.influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
 from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
-AT_BOUND = 1e-6
+BOUND_TOLERANCE = 1e-6
 """Share of the range within which a move counts as being at its bound."""
-MARGIN = 1.25
+BOUND_MARGIN = 1.25
 """A widened bound reaches the move wanted without bounds times this."""
 WIDEST = 3.0
 """Largest widening, in multiples of the default distance from nominal to bound."""
@@ -121,7 +121,7 @@ def _problem(
     )
 
 
-def _variables(problem: _Problem, pivots: Pivots) -> list[Variable]:
+def _variables(problem: _Problem, pivots: Pivots) -> list[VariableAdvice]:
     columns = list(pivots.order)
     scaled, wish = problem.scaled[:, columns], (problem.target - problem.baseline) / problem.sd
     z, free = np.zeros(problem.prior.size), np.zeros(problem.prior.size)
@@ -136,11 +136,11 @@ def _variables(problem: _Problem, pivots: Pivots) -> list[Variable]:
     ]
 
 
-def _outcomes(problem: _Problem, variables: list[Variable]) -> Iterator[Outcome]:
+def _outcomes(problem: _Problem, variables: list[VariableAdvice]) -> Iterator[CharacteristicForecast]:
     moves = np.array([v.move for v in variables])
     expected = problem.baseline + problem.jacobian @ moves
     for j, entry in enumerate(problem.characteristics):
-        yield Outcome(
+        yield CharacteristicForecast(
             characteristic=entry.id,
             unit=entry.unit,
             baseline=float(problem.baseline[j]),
@@ -165,16 +165,18 @@ def suggested_bounds(parameter: Parameter, side: str, wanted: float) -> tuple[fl
     lower, upper = parameter.lower, parameter.upper
     if side == "upper":
         span = upper - parameter.nominal
-        upper = parameter.nominal + max(span, min(WIDEST * span, MARGIN * wanted))
+        upper = parameter.nominal + max(span, min(WIDEST * span, BOUND_MARGIN * wanted))
     if side == "lower":
         span = parameter.nominal - lower
-        widened = parameter.nominal - max(span, min(WIDEST * span, -MARGIN * wanted))
+        widened = parameter.nominal - max(span, min(WIDEST * span, -BOUND_MARGIN * wanted))
         positive = parameter.group != "HARDPOINTS" and lower >= 0.0
         lower = max(widened, lower / 2.0) if positive else widened
     return lower, upper
 
 
-def _variable(problem: _Problem, pivots: Pivots, i: int, z: float, free: float, ratio: float) -> Variable:
+def _variable(
+    problem: _Problem, pivots: Pivots, i: int, z: float, free: float, ratio: float
+) -> VariableAdvice:
     parameter, scaled = problem.parameters[i], problem.scaled
     others = [j for j in pivots.order if j != i]
     length = float(np.linalg.norm(scaled[:, i]))
@@ -182,7 +184,7 @@ def _variable(problem: _Problem, pivots: Pivots, i: int, z: float, free: float, 
     partner = _partner(problem, pivots, i, others) if length > 0 else ""
     side = _bound_hit(z, problem.lower[i], problem.upper[i]) if pivot else ""
     lower, upper = suggested_bounds(parameter, side, free * float(problem.prior[i]))
-    return Variable(
+    return VariableAdvice(
         parameter=parameter,
         verdict=_verdict(pivot, side, partner if i in pivots.alike else ""),
         pivot=pivot,
@@ -206,8 +208,8 @@ def _partner(problem: _Problem, pivots: Pivots, i: int, others: list[int]) -> st
     return problem.parameters[others[int(np.argmax(cosines(problem.scaled, i, others)))]].path
 
 
-def _failed(parameter: Parameter) -> Variable:
-    return Variable(
+def _failed(parameter: Parameter) -> VariableAdvice:
+    return VariableAdvice(
         parameter=parameter,
         verdict=FIX_FAILED,
         pivot=None,
@@ -230,7 +232,7 @@ def _verdict(pivot: int | None, side: str, alike: str) -> str:
 
 
 def _bound_hit(z: float, lower: float, upper: float) -> str:
-    near = AT_BOUND * (upper - lower)
+    near = BOUND_TOLERANCE * (upper - lower)
     if z <= lower + near and z < 0.0:
         return "lower"
     return "upper" if z >= upper - near and z > 0.0 else ""
@@ -248,9 +250,9 @@ def _rows(influence: Influence, targets: Mapping[str, float]) -> list[int]:
     return rows
 
 
-def _sd(name: str, target: float, given: Mapping[str, float]) -> float:
+def _sd(name: str, target: float, values: Mapping[str, float]) -> float:
     low, high = constraint_interval(target)
-    value = given.get(name, (high - low) / 2.0)
+    value = values.get(name, (high - low) / 2.0)
     if not (math.isfinite(value) and value > 0.0):
         raise InputError(f"standard deviation of {name} is {value:g}, expected a number > 0.")
     return value

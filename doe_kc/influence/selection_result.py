@@ -10,7 +10,7 @@ from doe_kc.axle.parameters import Parameter
 
 
 @dataclass(frozen=True)
-class Variable:
+class VariableAdvice:
     """What to do with one parameter; moves and bounds are in its unit.
 
     pivot: place in the order of choice, 1 first; None when fixed.
@@ -49,7 +49,7 @@ class Variable:
 
 
 @dataclass(frozen=True)
-class Outcome:
+class CharacteristicForecast:
     """One characteristic, in its unit. expected: linear forecast with the used variables' moves."""
 
     characteristic: str
@@ -80,8 +80,8 @@ class Selection:
     condition: largest over smallest singular value of the used variables' columns.
     """
 
-    variables: tuple[Variable, ...]
-    outcomes: tuple[Outcome, ...]
+    variables: tuple[VariableAdvice, ...]
+    outcomes: tuple[CharacteristicForecast, ...]
     singular_values: tuple[float, ...]
     rank: int
     informed: int

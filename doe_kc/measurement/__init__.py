@@ -3,28 +3,28 @@
 from __future__ import annotations
 
 from doe_kc.measurement.frames import MeasurementFrames, measurement_to_frames
-from doe_kc.measurement.gradients import Estimate, Gradient
+from doe_kc.measurement.gradients import Gradient, GradientEstimate
 from doe_kc.measurement.manifest import Manifest, load_manifest
 from doe_kc.measurement.noise import CaseNoise, ErrorComponents, NoiseModel
-from doe_kc.measurement.records import Record, read_record
+from doe_kc.measurement.records import RigRecord, read_record
 from doe_kc.measurement.reduction import HALF_TRACK, Measurement, reduce_measurement
 from doe_kc.measurement.ride_height import Contribution, RideHeight, infer_ride_height
-from doe_kc.measurement.trend import Trend, fit_trends
+from doe_kc.measurement.trend import PolynomialTrend, fit_trends
 
 __all__ = [
     "HALF_TRACK",
     "CaseNoise",
     "Contribution",
     "ErrorComponents",
-    "Estimate",
     "Gradient",
+    "GradientEstimate",
     "Manifest",
     "Measurement",
     "MeasurementFrames",
     "NoiseModel",
-    "Record",
+    "PolynomialTrend",
     "RideHeight",
-    "Trend",
+    "RigRecord",
     "fit_trends",
     "infer_ride_height",
     "load_manifest",

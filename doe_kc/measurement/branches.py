@@ -9,12 +9,12 @@ import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CaseCurves
 from doe_kc.measurement.loops import Loop, split_loop
-from doe_kc.measurement.records import Record
+from doe_kc.measurement.records import RigRecord
 from doe_kc.measurement.smoothing import local_weights
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.typing import FloatArray
 
-REACH = 0.99
+AMPLITUDE_SHARE = 0.99
 """The grid is kept whole when the rig reaches this fraction of its amplitude on both sides."""
 KERNEL_STEPS = 1.5
 """Half-width of the smoothing kernel in steps of the grid: no detail coarser than the grid is lost."""
@@ -28,7 +28,7 @@ class RunCurves:
     gram: (n, n), covariance of the run's mean curve per unit variance of a sample's white noise.
     """
 
-    record: Record
+    record: RigRecord
     loop: Loop
     input: FloatArray
     unload: Mapping[str, FloatArray]
@@ -44,19 +44,19 @@ class RunCurves:
         return (self.unload[response] - self.load[response]) / 2.0
 
 
-def input_grid(case: LoadCase, records: Sequence[Record]) -> FloatArray:
+def input_grid(case: LoadCase, records: Sequence[RigRecord]) -> FloatArray:
     """(n,) inputs of the load case that every run reaches; all of them from 99 % of the amplitude on."""
     high = min(float(r.input.max()) for r in records)
     low = max(float(r.input.min()) for r in records)
     grid = case.inputs()
-    if min(high, -low) >= REACH * case.amplitude:
+    if min(high, -low) >= AMPLITUDE_SHARE * case.amplitude:
         return grid
     slack = 1e-3 * case.amplitude
     kept: FloatArray = grid[(grid <= high + slack) & (grid >= low - slack)]
     return kept
 
 
-def reduce_run(record: Record, grid: FloatArray) -> RunCurves:
+def reduce_run(record: RigRecord, grid: FloatArray) -> RunCurves:
     """Branches of one record on `grid` by local quadratic regression (see `smoothing`).
 
     Raises InputError when the record holds no full loop.
@@ -75,7 +75,7 @@ def reduce_run(record: Record, grid: FloatArray) -> RunCurves:
     )
 
 
-def reduce_case(records: Sequence[Record]) -> tuple[RunCurves, ...]:
+def reduce_case(records: Sequence[RigRecord]) -> tuple[RunCurves, ...]:
     """All runs of one load case on their common grid, main run first."""
     grid = input_grid(records[0].case, records)
     return tuple(reduce_run(record, grid) for record in records)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.errors import InputError, nearest
 from doe_kc.solver.load_cases import LOAD_CASES, LoadCase
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 
 RIG_NAMES: Mapping[str, str] = {r: "caster" if r == "spin" else r for r in RIG_RESPONSES}
 """Response -> channel name in a record; the rig's `caster` is read off the wheel, our `spin`."""
@@ -69,7 +69,7 @@ def recorded_case(load_case: str, headings: Sequence[Heading]) -> LoadCase:
     """The load case as the rig ran it: roll counts as counter-phase when its input is `pad_z`."""
     names = {h.name for h in headings}
     if load_case == "roll":
-        for technique in TECHNIQUES.values():
+        for technique in ROLL_TECHNIQUES.values():
             if technique.channel in names:
                 return technique
     return LOAD_CASES[load_case]
@@ -125,12 +125,12 @@ def _refuse_double(label: str, roles: Mapping[str, Heading], headings: Sequence[
             )
 
 
-def _refuse_unit(label: str, found: Heading, expected: Heading, column: int) -> None:
-    if found.unit == expected.unit:
+def _refuse_unit(label: str, heading: Heading, expected: Heading, column: int) -> None:
+    if heading.unit == expected.unit:
         return
-    have = "no unit" if found.unit is None else f"the unit [{found.unit}]"
-    remedy = _FACTORS.get((found.unit or "", expected.unit or ""), "convert the values")
+    have = "no unit" if heading.unit is None else f"the unit [{heading.unit}]"
+    remedy = _FACTORS.get((heading.unit or "", expected.unit or ""), "convert the values")
     raise InputError(
-        f'{label}: column {column + 1} "{found.name}" has {have}, expected [{expected.unit}]; '
+        f'{label}: column {column + 1} "{heading.name}" has {have}, expected [{expected.unit}]; '
         f'{remedy} where needed and head the column "{expected}".'
     )

@@ -36,7 +36,7 @@ class Gradient:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class GradientEstimate:
     """A characteristic's value and standard error, both in its unit; nan where it cannot be known."""
 
     value: float
@@ -85,7 +85,7 @@ def case_gradients(case: CaseCurves, noise: CaseNoise, windows: Windows) -> tupl
 
 def characteristic_estimates(
     curves: CurveSet, noise: Mapping[str, CaseNoise], windows: Windows, *, static_sd: Mapping[str, float]
-) -> dict[str, Estimate]:
+) -> dict[str, GradientEstimate]:
     """Every registered characteristic with its standard error.
 
     static_sd: static response -> standard deviation of the alignment's angle, deg.
@@ -101,15 +101,15 @@ def _estimate(
     noise: Mapping[str, CaseNoise],
     windows: Windows,
     static_sd: Mapping[str, float],
-) -> Estimate:
+) -> GradientEstimate:
     window = windows.get(entry.load_case)
     value = reduce_one(entry, curves, window=window)
     if not np.isfinite(value):
-        return Estimate(float("nan"), float("nan"))
+        return GradientEstimate(float("nan"), float("nan"))
     if entry.kind == "static":
-        return Estimate(value, static_sd[entry.response])
+        return GradientEstimate(value, static_sd[entry.response])
     case = curves.cases[entry.load_case]
     weights = reduction_gradient(entry, case, curves.half_track, window=window)
     models = noise[entry.load_case]
     variance = sum(float(w @ models[r].covariance(side=LEFT) @ w) for r, w in weights.items())
-    return Estimate(value, float(np.sqrt(max(variance, 0.0))))
+    return GradientEstimate(value, float(np.sqrt(max(variance, 0.0))))

@@ -16,7 +16,7 @@ IndexArray = NDArray[np.intp]
 
 REVERSAL = 0.05
 """Largest reversal inside a branch, fraction of the input's range; more is a turning point."""
-SHORT = 0.05
+BRANCH_GAP = 0.05
 """Fraction of the range that a branch may miss; three steps on coarse loops (end short by one)."""
 RIGHT_WAY = 0.95
 """Fraction of steps that must go the branch's way."""
@@ -80,7 +80,7 @@ def _last_cycle(values: FloatArray, span: float) -> Loop | None:
     """The last two neighbouring segments that each cover the range."""
     points = turning_points(values, REVERSAL * span)
     segments = list(pairwise(points))
-    enough = (1.0 - max(SHORT, 6.0 / values.size)) * span
+    enough = (1.0 - max(BRANCH_GAP, 6.0 / values.size)) * span
     full = [abs(values[b] - values[a]) >= enough for a, b in segments]
     for i in range(len(segments) - 2, -1, -1):
         if full[i] and full[i + 1]:

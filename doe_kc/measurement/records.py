@@ -11,7 +11,7 @@ import numpy as np
 from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.errors import InputError
 from doe_kc.measurement.channels import TIME, locate
-from doe_kc.measurement.tables import Table, column_numbers, read_csv_table
+from doe_kc.measurement.tables import RecordTable, column_numbers, read_csv_table
 from doe_kc.measurement.workbook import read_sheet_table
 from doe_kc.solver.load_cases import LoadCase
 from doe_kc.typing import FloatArray
@@ -23,7 +23,7 @@ WORKBOOK_SUFFIXES = (".xlsx", ".xlsm")
 
 
 @dataclass(frozen=True)
-class Record:
+class RigRecord:
     """Samples of one run, as recorded.
 
     label: file (and sheet), for messages. case: the load case as the rig ran it.
@@ -39,7 +39,7 @@ class Record:
     channels: Mapping[str, FloatArray]
 
 
-def read_record(path: Path, load_case: str, *, sheet: str | None = None) -> Record:
+def read_record(path: Path, load_case: str, *, sheet: str | None = None) -> RigRecord:
     """Read and check one record; every fault is an InputError naming file, place, expectation, remedy.
 
     load_case: id in `LOAD_CASES`. sheet: of an Excel workbook; None = the only one or the one
@@ -48,7 +48,7 @@ def read_record(path: Path, load_case: str, *, sheet: str | None = None) -> Reco
     return record_from_table(_read_table(path, sheet, load_case), load_case)
 
 
-def _read_table(path: Path, sheet: str | None, load_case: str) -> Table:
+def _read_table(path: Path, sheet: str | None, load_case: str) -> RecordTable:
     suffix = path.suffix.lower()
     if suffix in WORKBOOK_SUFFIXES:
         return read_sheet_table(path, sheet, load_case)
@@ -62,7 +62,7 @@ def _read_table(path: Path, sheet: str | None, load_case: str) -> Table:
     return read_csv_table(path)
 
 
-def record_from_table(table: Table, load_case: str) -> Record:
+def record_from_table(table: RecordTable, load_case: str) -> RigRecord:
     """Check the columns, numbers and sweep of a raw table."""
     case, columns = locate(table.label, table.headings, load_case)
     if len(table.rows) < MIN_SAMPLES:
@@ -74,10 +74,10 @@ def record_from_table(table: Table, load_case: str) -> Record:
     _check_time(table, values[TIME])
     _check_sweep(table.label, case, values["input"])
     channels = {r: np.stack([values[f"{r}_{s}"] for s in SIDES]) for r in RIG_RESPONSES}
-    return Record(table.label, case, values[TIME], values["input"], channels)
+    return RigRecord(table.label, case, values[TIME], values["input"], channels)
 
 
-def _check_time(table: Table, time: FloatArray) -> None:
+def _check_time(table: RecordTable, time: FloatArray) -> None:
     late = np.flatnonzero(np.diff(time) <= 0.0)
     if late.size:
         raise InputError(

@@ -12,8 +12,8 @@ from doe_kc.curves import RIG_RESPONSES, CurveSet
 from doe_kc.errors import InputError, nearest
 from doe_kc.measurement.branches import RunCurves, case_curves, changes, reduce_case
 from doe_kc.measurement.gradients import (
-    Estimate,
     Gradient,
+    GradientEstimate,
     Windows,
     case_gradients,
     characteristic_estimates,
@@ -21,8 +21,8 @@ from doe_kc.measurement.gradients import (
 from doe_kc.measurement.manifest import Alignment, Manifest, load_manifest
 from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.noise_estimation import estimate_noise
-from doe_kc.measurement.records import Record, read_record
-from doe_kc.measurement.trend import Trend, fit_trends
+from doe_kc.measurement.records import RigRecord, read_record
+from doe_kc.measurement.trend import PolynomialTrend, fit_trends
 from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
@@ -50,10 +50,10 @@ class Measurement:
     manifest: Manifest
     curves: CurveSet
     runs: Mapping[str, tuple[RunCurves, ...]]
-    trends: Mapping[str, Mapping[str, tuple[Trend, ...]]]
+    trends: Mapping[str, Mapping[str, tuple[PolynomialTrend, ...]]]
     noise: Mapping[str, CaseNoise]
     gradients: tuple[Gradient, ...]
-    characteristics: Mapping[str, Estimate]
+    characteristics: Mapping[str, GradientEstimate]
 
 
 @one_thread()
@@ -128,7 +128,7 @@ def measured_cases(manifest: Manifest) -> list[str]:
     return [case for case in CASE_ORDER if case in manifest.records]
 
 
-def case_records(path: Path, manifest: Manifest, load_case: str) -> list[Record]:
+def case_records(path: Path, manifest: Manifest, load_case: str) -> list[RigRecord]:
     """Main run and repeats of a load case. path: of the manifest. InputError for a bad one, or a copy."""
     records = [_read(path.parent, entry, load_case) for entry in manifest.records[load_case]]
     main = records[0]
@@ -142,7 +142,7 @@ def case_records(path: Path, manifest: Manifest, load_case: str) -> list[Record]
     return records
 
 
-def _refuse_copy(main: Record, record: Record) -> None:
+def _refuse_copy(main: RigRecord, record: RigRecord) -> None:
     """A copy would pass for perfect repeatability."""
     same = main.input.shape == record.input.shape and np.array_equal(main.input, record.input)
     if same and all(np.array_equal(main.channels[r], record.channels[r]) for r in RIG_RESPONSES):
@@ -152,7 +152,7 @@ def _refuse_copy(main: Record, record: Record) -> None:
         )
 
 
-def _read(folder: Path, entry: str, load_case: str) -> Record:
+def _read(folder: Path, entry: str, load_case: str) -> RigRecord:
     name, mark, sheet = entry.partition("#")
     return read_record(folder / name, load_case, sheet=sheet if mark else None)
 
@@ -162,7 +162,7 @@ def _resolution(manifest: Manifest) -> dict[str, float]:
     return {"angle": r.angle_deg, "displacement": r.displacement_mm, "tyre_load": r.tyre_load_N}
 
 
-def _trends(runs: tuple[RunCurves, ...]) -> dict[str, tuple[Trend, ...]]:
+def _trends(runs: tuple[RunCurves, ...]) -> dict[str, tuple[PolynomialTrend, ...]]:
     """Trends of all responses in one go, from the samples of every run's loop, changes from static."""
     grid = runs[0].input
     inputs, values = [], []

@@ -10,7 +10,7 @@ import numpy as np
 from doe_kc.measurement.noise import ErrorComponents
 from doe_kc.typing import FloatArray
 
-POINTS = 21
+LIKELIHOOD_POINTS = 21
 """Inputs per curve in the likelihood: enough for the shortest correlation length, cheap to factor."""
 _BOUNDS = ((-7.0, 4.0), (-12.0, -2.0), (-7.0, 4.0), (np.log(0.1), np.log(1.0)))
 _START = np.log([1.0, 2e-3, 0.5, 0.3])
@@ -36,7 +36,7 @@ class Repeats:
 
 def thinned(relative: FloatArray, white: FloatArray, signal: FloatArray, runs: FloatArray) -> Repeats:
     """`Repeats` on POINTS of the grid's inputs."""
-    at = np.linspace(0, relative.size - 1, POINTS).round().astype(int)
+    at = np.linspace(0, relative.size - 1, LIKELIHOOD_POINTS).round().astype(int)
     return Repeats(relative[at], white[np.ix_(at, at)], signal[at], runs[:, at])
 
 
@@ -51,7 +51,7 @@ def error_components(curves: Sequence[Repeats], resolution: float) -> ErrorCompo
     scatter = [_scatter(c) for c in curves]
     stack = _Stack(
         white=np.stack([c.white for c in curves]),
-        ones=np.ones((POINTS, POINTS)),
+        ones=np.ones((LIKELIHOOD_POINTS, LIKELIHOOD_POINTS)),
         signal=np.stack([np.outer(c.signal, c.signal) for c in curves]),
         relative=np.stack([c.relative for c in curves]),
         scatter=np.stack(scatter),
@@ -105,7 +105,7 @@ class _Stack:
             + (smooth * self.resolution) ** 2 * np.exp(-0.5 * distance**2)
         )
         # Noise-free records leave nothing to factor; a thousandth of the resolution is no noise.
-        jitter = (1e-3 * self.resolution) ** 2 * np.eye(POINTS)
+        jitter = (1e-3 * self.resolution) ** 2 * np.eye(LIKELIHOOD_POINTS)
         out: FloatArray = total + jitter
         return out
 

@@ -11,7 +11,7 @@ from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.errors import InputError
 from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.production_scatter import KINEMATIC_SCATTER
-from doe_kc.measurement.shift_problem import LOAD, Scatter, ShiftProblem
+from doe_kc.measurement.shift_problem import LOAD_CHANNEL, Scatter, ShiftProblem
 from doe_kc.measurement.shifted_curves import ShiftedCurves, both_sides
 from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
@@ -117,10 +117,10 @@ def _alone(problem: ShiftProblem, response: str, h: float) -> Contribution:
 def _static_load(problem: ShiftProblem) -> Contribution:
     """Difference of the static tyre loads divided by the ride rate."""
     rate = problem.curves.static_rate()
-    measured = float(np.interp(0.0, problem.pad[LOAD], problem.values[LOAD]))
+    measured = float(np.interp(0.0, problem.pad[LOAD_CHANNEL], problem.values[LOAD_CHANNEL]))
     difference = measured - float(problem.curves.load(np.zeros(1), 0.0)[0])
-    at = int(np.argmin(np.abs(problem.pad[LOAD])))
-    sd = float(problem.noise(LOAD, 0.0)[at, at]) ** 0.5
+    at = int(np.argmin(np.abs(problem.pad[LOAD_CHANNEL])))
+    sd = float(problem.noise(LOAD_CHANNEL, 0.0)[at, at]) ** 0.5
     return Contribution("static_load", difference / rate, sd / rate, False)
 
 
@@ -134,7 +134,7 @@ def _problem(
     case, reference = vertical_curves(measured), vertical_curves(model)
     near = np.abs(case.input) <= KINEMATIC_WINDOW * (1.0 + 1e-9)
     wide = (case.input >= LOAD_RANGE[0]) & (case.input <= LOAD_RANGE[1])
-    masks = dict.fromkeys(KINEMATIC_SCATTER, near) | {LOAD: wide}
+    masks = dict.fromkeys(KINEMATIC_SCATTER, near) | {LOAD_CHANNEL: wide}
     return ShiftProblem(
         curves=ShiftedCurves.of(reference),
         pad={r: case.input[m] for r, m in masks.items()},

@@ -11,7 +11,7 @@ from doe_kc.measurement.production_scatter import LOAD_OFFSET, kinematic_modes, 
 from doe_kc.measurement.shifted_curves import ShiftedCurves
 from doe_kc.typing import FloatArray
 
-LOAD = "tyre_load"
+LOAD_CHANNEL = "tyre_load"
 STEP = 0.5
 """mm, of difference quotients to h: wider than a kink is rounded, finer than any grid."""
 FLOORS: Mapping[str, float] = {
@@ -20,7 +20,7 @@ FLOORS: Mapping[str, float] = {
     "spin": 5e-4,
     "wc_x": 5e-3,
     "wc_y": 5e-3,
-    LOAD: 2.0,
+    LOAD_CHANNEL: 2.0,
 }
 """sd per point of what no noise model knows (deg, mm, N); keeps noise-free curves regular."""
 
@@ -82,8 +82,8 @@ class ShiftProblem:
 
     def predict(self, response: str, h: float) -> FloatArray:
         """(m,) model's curve with its pads raised by h."""
-        if response == LOAD:
-            return self.curves.load(self.pad[LOAD], h)
+        if response == LOAD_CHANNEL:
+            return self.curves.load(self.pad[LOAD_CHANNEL], h)
         return self.curves.kinematic(response, self.travel, h)
 
     def derivative(self, response: str, h: float) -> FloatArray:
@@ -94,8 +94,8 @@ class ShiftProblem:
 
     def noise(self, response: str, h: float) -> FloatArray:
         """(m, m) measurement noise, interpolation doubt and floor."""
-        if response == LOAD:
-            doubt = self.curves.load_doubt(self.pad[LOAD], h)
+        if response == LOAD_CHANNEL:
+            doubt = self.curves.load_doubt(self.pad[LOAD_CHANNEL], h)
         else:
             doubt = self.curves.kinematic_doubt(response, self.travel, h)
         out: FloatArray = self.covariance[response] + np.diag(doubt**2 + FLOORS[response] ** 2)
@@ -105,12 +105,12 @@ class ShiftProblem:
         """(m, p) one-sigma production scatter at the measured points."""
         if self.scatter is not None:
             return self._given_modes(self.scatter, response, h)
-        if response == LOAD:
+        if response == LOAD_CHANNEL:
             return self._load_modes(h)
         return kinematic_modes(response, self.travel)
 
     def _load_modes(self, h: float) -> FloatArray:
-        pad, curves = self.pad[LOAD], self.curves
+        pad, curves = self.pad[LOAD_CHANNEL], self.curves
         ahead, behind = curves.stop_force(pad, h + STEP), curves.stop_force(pad, h - STEP)
         return load_modes(
             pad,
@@ -128,7 +128,7 @@ class ShiftProblem:
         """
         at = self.pad[response] + h
         own = _columns_at(at, self.curves.pad, scatter[response])
-        if response == LOAD:
+        if response == LOAD_CHANNEL:
             return np.column_stack([own, np.full(at.size, LOAD_OFFSET)])
         slope = np.gradient(self.predict(response, h), self.travel)
         moved = own - slope[:, None] * _columns_at(at, self.curves.pad, scatter["wc_z"])

@@ -23,7 +23,7 @@ _NUMBERS = re.compile(rf"(?:{_DECIMAL}\n)*+")
 
 
 @dataclass(frozen=True)
-class Table:
+class RecordTable:
     """Heading texts, rows of cells, and the number (counted from 1) of each row in its file."""
 
     label: str
@@ -48,7 +48,7 @@ def read_bytes(path: Path) -> bytes:
     return data
 
 
-def read_csv_table(path: Path) -> Table:
+def read_csv_table(path: Path) -> RecordTable:
     """Table of a UTF-8 CSV file, comma separated, or semicolon separated with decimal commas.
 
     Raises InputError for Excel files in disguise, binary data, and rows unlike the heading.
@@ -60,7 +60,7 @@ def read_csv_table(path: Path) -> Table:
     cells = [(number, _cells(line, separator)) for number, line in filled]
     headings = cells[0][1]
     _refuse_ragged(path, headings, cells[1:])
-    return Table(
+    return RecordTable(
         label=str(path),
         headings=tuple(headings),
         rows=tuple(row for _, row in cells[1:]),
@@ -121,7 +121,7 @@ def _refuse_ragged(path: Path, headings: Sequence[str], rows: Sequence[tuple[int
         )
 
 
-def column_numbers(table: Table, column: int) -> FloatArray:
+def column_numbers(table: RecordTable, column: int) -> FloatArray:
     """(n,) finite numbers of a column; InputError as `number_at` for the first cell that holds none."""
     cells = [row[column] for row in table.rows]
     values = _plain_numbers(cells, table.decimal_comma)
@@ -144,7 +144,7 @@ def _plain_numbers(cells: Sequence[Cell], decimal_comma: bool) -> FloatArray | N
     return np.array(text.split(), dtype=float)
 
 
-def number_at(table: Table, row: int, column: int) -> float:
+def number_at(table: RecordTable, row: int, column: int) -> float:
     """The finite number in a cell; InputError naming file, row and column otherwise."""
     cell = table.rows[row][column]
     value = _number(cell, table.decimal_comma)

@@ -10,13 +10,13 @@ from numpy.polynomial import chebyshev
 from doe_kc.typing import FloatArray
 
 MAX_DEGREE = 15
-FOLDS = 10
+TREND_FOLDS = 10
 BLOCKS = 40
 """Blocks of neighbouring inputs, dealt out to the folds in turn: neighbours share noise and a branch."""
 
 
 @dataclass(frozen=True)
-class Trend:
+class PolynomialTrend:
     """y = sum c_k T_k(t), t = (u - centre) / scale in [-1, 1]; Chebyshev for conditioning.
 
     coefficients: (degree + 1,) in the response's unit. centre, scale: input unit.
@@ -38,7 +38,7 @@ class Trend:
         return np.asarray(chebyshev.chebval(position, self.coefficients), dtype=np.float64)
 
 
-def fit_trends(inputs: FloatArray, values: FloatArray) -> tuple[Trend, ...]:
+def fit_trends(inputs: FloatArray, values: FloatArray) -> tuple[PolynomialTrend, ...]:
     """A trend for each row of `values` (k, n) over `inputs` (n,), both branches and all runs together.
 
     The degree is the smallest whose blocked 10-fold cross-validation error is within one standard error
@@ -59,14 +59,14 @@ def fit_trends(inputs: FloatArray, values: FloatArray) -> tuple[Trend, ...]:
 def _folds(position: FloatArray) -> FloatArray:
     """(n,) fold number of each sample."""
     block = np.minimum(((position + 1.0) / 2.0 * BLOCKS).astype(int), BLOCKS - 1)
-    out: FloatArray = (block % FOLDS).astype(np.float64)
+    out: FloatArray = (block % TREND_FOLDS).astype(np.float64)
     return out
 
 
 def _fold_errors(basis: FloatArray, values: FloatArray, folds: FloatArray) -> FloatArray:
     """(degrees, folds, k) mean squared error on each left-out fold."""
-    out = np.empty((basis.shape[1], FOLDS, values.shape[0]))
-    for fold in range(FOLDS):
+    out = np.empty((basis.shape[1], TREND_FOLDS, values.shape[0]))
+    for fold in range(TREND_FOLDS):
         test = folds == fold
         train = basis[~test]
         gram, moment = train.T @ train, train.T @ values[:, ~test].T
@@ -78,12 +78,14 @@ def _fold_errors(basis: FloatArray, values: FloatArray, folds: FloatArray) -> Fl
     return out
 
 
-def _trend(basis: FloatArray, row: FloatArray, errors: FloatArray, *, centre: float, scale: float) -> Trend:
+def _trend(
+    basis: FloatArray, row: FloatArray, errors: FloatArray, *, centre: float, scale: float
+) -> PolynomialTrend:
     degree = _one_standard_error(errors)
     solution = np.linalg.lstsq(basis[:, : degree + 1], row, rcond=None)[0]
     coefficients = np.asarray(solution, dtype=np.float64)
     residual = row - basis[:, : degree + 1] @ coefficients
-    return Trend(
+    return PolynomialTrend(
         coefficients=coefficients,
         centre=centre,
         scale=scale,

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.errors import InputError, nearest
-from doe_kc.measurement.tables import ZIP_MAGIC, Cell, Table, read_bytes
+from doe_kc.measurement.tables import ZIP_MAGIC, Cell, RecordTable, read_bytes
 
 
-def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> Table:
+def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> RecordTable:
     """Table of a sheet of an .xlsx file: the named, else the only one, else `load_case`.
 
     Values only: a formula counts by its stored result. InputError when file or sheet cannot be used.
@@ -56,14 +56,14 @@ def _choose(path: Path, titles: list[str], sheet: str | None, load_case: str) ->
     )
 
 
-def _table(label: str, rows: list[tuple[Any, ...]]) -> Table:
+def _table(label: str, rows: list[tuple[Any, ...]]) -> RecordTable:
     filled = [(i + 1, row) for i, row in enumerate(rows) if any(c is not None for c in row)]
     if not filled:
         raise InputError(f"{label}: the sheet is empty; expected a heading row and samples.")
     headings = _trimmed(filled[0][1])
     body = [(n, [_cell(c) for c in row[: len(headings)]]) for n, row in filled[1:]]
     padded = [(n, row + [None] * (len(headings) - len(row))) for n, row in body]
-    return Table(
+    return RecordTable(
         label=label,
         headings=tuple("" if h is None else str(h) for h in headings),
         rows=tuple(row for _, row in padded),

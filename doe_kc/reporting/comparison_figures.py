@@ -22,7 +22,14 @@ from doe_kc.solver.load_cases import LOAD_CASES
 
 SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
 SIDE_NAMES = ("left", "right")
-MARGINS = {"left": 0.06, "right": 0.988, "top": 0.92, "bottom": 0.062, "wspace": 0.27, "hspace": 0.36}
+COMPARISON_MARGINS = {
+    "left": 0.06,
+    "right": 0.988,
+    "top": 0.92,
+    "bottom": 0.062,
+    "wspace": 0.27,
+    "hspace": 0.36,
+}
 
 
 def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
@@ -33,7 +40,7 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
     model = comparison.model.cases[load_case]
     measured = comparison.measured.cases[load_case]
     case = LOAD_CASES[load_case]
-    page, panels = sheet(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=MARGINS)
+    page, panels = sheet(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=COMPARISON_MARGINS)
     for panel, response in zip(panels.flat, RIG_RESPONSES, strict=False):
         _draw(panel, model, measured, response)
         panel.set_labels(input_label(load_case, measured.input_unit), response_axis(response))

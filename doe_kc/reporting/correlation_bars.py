@@ -17,16 +17,16 @@ from doe_kc.rounding import with_sd
 
 SINGLE = 30
 """Variables that stand in one column; more are split over two."""
-ROW = 0.2
+BAR_ROW = 0.2
 SEEN, UNSEEN, BOUND = style.PALETTE["blue"], "#B9BEC3", style.PALETTE["vermillion"]
 
 
-def parameter_figure(found: Correlation, study: str) -> Sheet:
+def parameter_figure(correlation: Correlation, study: str) -> Sheet:
     """Bar from baseline to final between lower and upper bound, whisker ± sd of the posterior."""
-    rows = [r for r in parameter_rows(found) if r.role == "variable"]
+    rows = [r for r in parameter_rows(correlation) if r.role == "variable"]
     parts = _columns(_lines(rows))
     columns, deep = len(parts), max(map(len, parts))
-    height = ROW * deep + 1.6
+    height = BAR_ROW * deep + 1.6
     margins = {
         "left": 0.105 if columns == 2 else 0.2,
         "right": 0.86 if columns == 2 else 0.82,
@@ -36,7 +36,7 @@ def parameter_figure(found: Correlation, study: str) -> Sheet:
     page, panels = sheet(1, columns, size=(8.27, height), margins=margins)
     for panel, part in zip(panels[0], parts, strict=True):
         _column(panel, part, deep)
-    _legend(page, found.posterior is not None)
+    _legend(page, correlation.posterior is not None)
     page.set_heading(f"Parameter changes: {study}", 1 - 0.15 / height)
     return page
 

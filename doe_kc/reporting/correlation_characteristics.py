@@ -100,20 +100,20 @@ class CharacteristicRow:
         return 1.0 + math.copysign(1.0, target) * (value - target) / math.sqrt(target**2 + FLOOR)
 
 
-def characteristic_rows(found: Correlation) -> list[CharacteristicRow]:
+def characteristic_rows(correlation: Correlation) -> list[CharacteristicRow]:
     """Static first, then by load case; within one in the order of the registry."""
     order = {name: i for i, name in enumerate(("static", *CASE_ORDER))}
-    entries = sorted(found.improvements, key=lambda e: order.get(e.target.entry.load_case, len(order)))
-    known = found.relaxation
+    entries = sorted(correlation.improvements, key=lambda e: order.get(e.target.entry.load_case, len(order)))
+    known = correlation.relaxation
     relaxed = known.distances if known is not None else {}
     return [
         CharacteristicRow(e, None if known is None else e.target.entry.id not in relaxed) for e in entries
     ]
 
 
-def characteristic_frame(found: Correlation) -> pd.DataFrame:
+def characteristic_frame(correlation: Correlation) -> pd.DataFrame:
     """One row a characteristic: id, label, load case, unit, values, interval, flags and improvement."""
-    return pd.DataFrame([_record(r) for r in characteristic_rows(found)])
+    return pd.DataFrame([_record(r) for r in characteristic_rows(correlation)])
 
 
 def _record(r: CharacteristicRow) -> dict[str, object]:

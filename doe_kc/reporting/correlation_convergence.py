@@ -21,14 +21,14 @@ KEY = 34.0
 """Points beside the words of the legend."""
 MARKERS = "osD^vPX"
 FAILED = style.PALETTE["vermillion"]
-BEYOND = 3.0
+FAILURE_BAND = 3.0
 """Half-decades kept free above the worst rating for the marks of failures."""
 
 
-def convergence_figure(found: Correlation, study: str) -> Sheet:
+def convergence_figure(correlation: Correlation, study: str) -> Sheet:
     """Minus what the search maximizes, symmetric logarithmic, over the evaluations: 0 = every target met
     exactly. With the objective "thesis" it is the rating."""
-    past = history(found)
+    past = history(correlation)
     page = Sheet(SIZE)
     panel = page.add_panel(Box(LEFT, BOTTOM, page.width - LEFT, page.height - BOTTOM - TOP))
     _scale(panel, past)
@@ -37,13 +37,15 @@ def convergence_figure(found: Correlation, study: str) -> Sheet:
         label="best so far",
     )  # fmt: skip
     for k, origin in enumerate(past.origins):
-        _origin(panel, past, origin, style.CYCLE[k % len(style.CYCLE)], MARKERS[k % len(MARKERS)])
+        _origin(
+            panel, past, origin, style.COLOUR_CYCLE[k % len(style.COLOUR_CYCLE)], MARKERS[k % len(MARKERS)]
+        )
     handles = [line for line in panel.lines if not str(line.get_label()).startswith("_")]
     handles += [*_predicted(panel, past), *_failed(panel, past), *_feasible(panel, past)]
     panel.set_labels("true-solver evaluation (1 = baseline)", "minus merit of the search [-], symmetric log")
     panel.x.set_locator(MaxNLocator(9, integer=True, steps=[1, 2, 2.5, 5, 10]))
     panel.x.set_limits(0.4, past.number[-1] + 0.9)
-    panel.set_title(f"Convergence of {found.method}: {study}", size=10.0)
+    panel.set_title(f"Convergence of {correlation.method}: {study}", size=10.0)
     words = max(text_width(str(h.get_label()), 7.0) for h in handles)
     width = page.width - LEFT - words - KEY
     panel.box = Box(LEFT, BOTTOM, width, panel.box.height)
@@ -64,7 +66,7 @@ def _scale(panel: Panel, past: History) -> None:
     panel.y.set_locator(locator, FuncFormatter(lambda v, _: f"{v:g}"))
     sizes = -past.rating[np.isfinite(past.rating)]
     top = max(float(sizes.max(initial=linear)), linear)
-    panel.y.set_limits(min(0.0, 1.3 * float(sizes.min(initial=0.0))), top * BEYOND)
+    panel.y.set_limits(min(0.0, 1.3 * float(sizes.min(initial=0.0))), top * FAILURE_BAND)
 
 
 def _origin(panel: Panel, past: History, origin: str, colour: str, marker: str) -> None:

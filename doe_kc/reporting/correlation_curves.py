@@ -22,11 +22,11 @@ from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.solver.load_cases import CASE_ORDER
 from doe_kc.typing import FloatArray
 
-PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
+CURVE_PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
 BAND = 2.0
 """Standard deviations of the measured mean curve that its band shows."""
 MEASURED, BASELINE, FINAL = style.PALETTE["black"], style.PALETTE["orange"], style.PALETTE["blue"]
-MARGINS = {"left": 0.07, "right": 0.985, "top": 0.89, "bottom": 0.145, "wspace": 0.24, "hspace": 0.3}
+CURVES_MARGINS = {"left": 0.07, "right": 0.985, "top": 0.89, "bottom": 0.145, "wspace": 0.24, "hspace": 0.3}
 
 
 @dataclass(frozen=True)
@@ -50,9 +50,11 @@ class CaseView:
         return input_label(self.load_case, self.any.input_unit)
 
 
-def case_views(found: Correlation, measurement: Measurement | None) -> list[CaseView]:
+def case_views(correlation: Correlation, measurement: Measurement | None) -> list[CaseView]:
     """Every load case that model or rig has; measured curves over another input are left out."""
-    ours = [e.outcome.curves.cases if e.outcome.curves else {} for e in (found.baseline, found.best)]
+    ours = [
+        e.outcome.curves.cases if e.outcome.curves else {} for e in (correlation.baseline, correlation.best)
+    ]
     rig = measurement.curves.cases if measurement is not None else {}
     views = []
     for case in CASE_ORDER:
@@ -77,8 +79,8 @@ def _sd(measurement: Measurement | None, case: CaseCurves | None) -> dict[str, F
 
 def curve_figure(view: CaseView, study: str) -> Sheet:
     """Six responses of both wheels over the input; angles and wheel centre are changes from static."""
-    page, panels = sheet(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=MARGINS)
-    for panel, response in zip(panels.flat, PANELS, strict=True):
+    page, panels = sheet(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=CURVES_MARGINS)
+    for panel, response in zip(panels.flat, CURVE_PANELS, strict=True):
         _panel(panel, view, response)
         panel.set_labels(None, response_axis(response))
         panel.set_title(RESPONSE_LABELS[response])

@@ -40,9 +40,9 @@ class History:
         return tuple(dict.fromkeys(self.origin))
 
 
-def history(found: Correlation) -> History:
+def history(correlation: Correlation) -> History:
     """Ratings of a run in order."""
-    runs = found.run.evaluated
+    runs = correlation.run.evaluated
     merit = np.array([e.merit for e in runs])
     expected = [e.candidate.predicted for e in runs]
     return History(
@@ -57,9 +57,9 @@ def history(found: Correlation) -> History:
     )
 
 
-def evaluation_frame(found: Correlation) -> pd.DataFrame:
+def evaluation_frame(correlation: Correlation) -> pd.DataFrame:
     """One row an evaluation: its figures, then the absolute value of every variable by path."""
-    past = history(found)
+    past = history(correlation)
     figures = pd.DataFrame(
         {
             "evaluation": past.number.astype(int),
@@ -67,18 +67,18 @@ def evaluation_frame(found: Correlation) -> pd.DataFrame:
             "merit": past.rating,
             "best_so_far": past.best,
             "feasible": past.feasible,
-            "chosen": [i == found.run.best for i in range(past.number.size)],
-            "failed_because": [e.outcome.reason for e in found.run.evaluated],
+            "chosen": [i == correlation.run.best for i in range(past.number.size)],
+            "failed_because": [e.outcome.reason for e in correlation.run.evaluated],
             "predicted_merit": past.predicted,
             "predicted_sd": past.sd,
-            "seconds": [e.outcome.seconds for e in found.run.evaluated],
+            "seconds": [e.outcome.seconds for e in correlation.run.evaluated],
         }
     )
-    paths = list(found.problem.space.paths)
-    values = pd.DataFrame([_values(found, e) for e in found.run.evaluated], columns=paths)
+    paths = list(correlation.problem.space.paths)
+    values = pd.DataFrame([_values(correlation, e) for e in correlation.run.evaluated], columns=paths)
     return pd.concat([figures, values], axis=1)
 
 
-def _values(found: Correlation, evaluated: Evaluated) -> list[float]:
-    values = found.problem.space.values(evaluated.point)
-    return [values[p] for p in found.problem.space.paths]
+def _values(correlation: Correlation, evaluated: Evaluated) -> list[float]:
+    values = correlation.problem.space.values(evaluated.point)
+    return [values[p] for p in correlation.problem.space.paths]

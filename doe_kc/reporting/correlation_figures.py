@@ -16,7 +16,7 @@ from doe_kc.reporting.series import Job, draw_series
 
 
 def write_correlation_figures(
-    found: Correlation,
+    correlation: Correlation,
     measurement: Measurement | None,
     folder: Path,
     *,
@@ -29,12 +29,12 @@ def write_correlation_figures(
     Raises RunError when the folder cannot be written.
     """
     jobs: list[Job] = [
-        (folder / "correlation_dna", partial(dna_figure, found, study)),
-        (folder / "correlation_parameters", partial(parameter_figure, found, study)),
-        (folder / "correlation_convergence", partial(convergence_figure, found, study)),
+        (folder / "correlation_dna", partial(dna_figure, correlation, study)),
+        (folder / "correlation_parameters", partial(parameter_figure, correlation, study)),
+        (folder / "correlation_convergence", partial(convergence_figure, correlation, study)),
     ]
     jobs += [
         (folder / f"curves_{view.load_case}", partial(curve_figure, view, study))
-        for view in case_views(found, measurement)
+        for view in case_views(correlation, measurement)
     ]
     return draw_series(jobs, workers, pictures=pictures)

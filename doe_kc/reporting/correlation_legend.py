@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-LEGEND = {
+CORRELATION_LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Characteristics: left wheel.",
     "Signs": "Toe-in +, camber top outwards +, caster top rearwards +; forces as their load case has them.",
     "Paths": "LLF.x is a hardpoint coordinate in mm, llr.Fx a stiffness factor (nominal 1). Both sides "

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from doe_kc.axle.parameters import KINDS, SIDE_PREFIXES
-from doe_kc.correlation.posterior import AT_BOUND
+from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
 from doe_kc.rounding import number
 from doe_kc.variables import Tie
@@ -72,11 +72,11 @@ class ParameterRow:
         return f"at its {self.at_bound} bound, at most {number(self.inward)} {sense} it (68 %)"
 
 
-def parameter_rows(found: Correlation) -> list[ParameterRow]:
+def parameter_rows(correlation: Correlation) -> list[ParameterRow]:
     """Variables in their order, then tied and fixed parameters."""
-    space = found.problem.space
-    before, after = space.values(found.baseline.point), found.values
-    rows = list(_variables(found, before, after))
+    space = correlation.problem.space
+    before, after = space.values(correlation.baseline.point), correlation.values
+    rows = list(_variables(correlation, before, after))
     by_path = {r.path: r for r in rows}
     rows += [_tied(t, by_path[t.leader], before, after) for t in space.ties]
     fixed = dict(space.fixed or {})
@@ -84,11 +84,11 @@ def parameter_rows(found: Correlation) -> list[ParameterRow]:
 
 
 def _variables(
-    found: Correlation, before: dict[str, float], after: dict[str, float]
+    correlation: Correlation, before: dict[str, float], after: dict[str, float]
 ) -> Iterator[ParameterRow]:
-    space, seen = found.problem.space, found.posterior
+    space, seen = correlation.problem.space, correlation.posterior
     for i, variable in enumerate(space.variables):
-        place = float(found.best.point[i])
+        place = float(correlation.best.point[i])
         ended = seen is not None and seen.at_bound[i] != 0
         spread = float(seen.sd[i]) if seen is not None and not ended else np.nan
         yield ParameterRow(
@@ -100,11 +100,11 @@ def _variables(
             final=after[variable.path],
             lower=variable.lower,
             upper=variable.upper,
-            at_bound="lower" if place <= AT_BOUND else "upper" if place >= 1.0 - AT_BOUND else "",
+            at_bound="lower" if place <= BOUND_SHARE else "upper" if place >= 1.0 - BOUND_SHARE else "",
             sd=spread * variable.slope(place),
             inward=float(seen.inward[i]) * variable.slope(place) if seen is not None else np.nan,
             visible=bool(seen.visible[i]) if seen is not None else None,
-            start=float(found.baseline.point[i]),
+            start=float(correlation.baseline.point[i]),
             place=place,
             spread=spread,
         )
@@ -136,7 +136,7 @@ def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, flo
     )
 
 
-def parameter_frame(found: Correlation) -> pd.DataFrame:
+def parameter_frame(correlation: Correlation) -> pd.DataFrame:
     """One row a parameter: path, label, group, unit, role, values, bounds, sd and what to think of them."""
     return pd.DataFrame(
         [
@@ -157,17 +157,17 @@ def parameter_frame(found: Correlation) -> pd.DataFrame:
                 "inward": r.inward,
                 "not_visible": "" if r.visible is None else not r.visible,
             }
-            for r in parameter_rows(found)
+            for r in parameter_rows(correlation)
         ]
     )
 
 
-def remark_sentences(found: Correlation) -> list[str]:
+def remark_sentences(correlation: Correlation) -> list[str]:
     """Targets out of reach, constraints in conflict, variables at their bounds, variables not visible."""
-    rows = [r for r in parameter_rows(found) if r.role == "variable"]
+    rows = [r for r in parameter_rows(correlation) if r.role == "variable"]
     bound = [f"{r.path} ({r.at_bound})" for r in rows if r.at_bound]
     unseen = [r.path for r in rows if r.visible is False]
-    out = list(found.notes)
+    out = list(correlation.notes)
     if bound:
         out.append(
             f"{len(bound)} of {len(rows)} variables end at a bound: {', '.join(bound)}. Widen the bound if "
@@ -178,6 +178,6 @@ def remark_sentences(found: Correlation) -> list[str]:
             f"{len(unseen)} of {len(rows)} variables are not visible in these measurements: "
             f"{', '.join(unseen)}. Their final values say nothing about the car."
         )
-    if found.posterior is None:
+    if correlation.posterior is None:
         out.append("No standard deviations: the solver gives no sensitivities or no records were given.")
     return out

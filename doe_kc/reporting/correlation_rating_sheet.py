@@ -9,7 +9,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.correlation_terms import TermRow, term_rows
-from doe_kc.reporting.workbook_cells import A3, HEADER, MUTED, CellFill, frame, page, put, title, widths
+from doe_kc.reporting.workbook_cells import A3, HEADER_FILL, MUTED, CellFill, frame, page, put, title, widths
 
 HEADS = (
     "Kind", "Term", "Id", "Unit", "Goal", "Target", "Low", "High", "LinWt", "QuadWt", "S", "Norm",
@@ -23,7 +23,7 @@ EDITED = "FGHIJL"
 VALUE = "0.00000"
 
 
-def rating_sheet(book: Workbook, found: Correlation, study: str) -> None:
+def rating_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     """One row a term of equation 2.2; the sums above follow every edit of the yellow cells."""
     ws = book.create_sheet("Rating terms")
     title(
@@ -32,13 +32,13 @@ def rating_sheet(book: Workbook, found: Correlation, study: str) -> None:
         "Rating = sum of S (LinWt Obj / Norm + QuadWt Obj² / Norm²), constraints with ConViol for Obj "
         "(equation 2.2). Edit the yellow cells; the true solver is not run again.",
     )
-    rows = term_rows(found)
+    rows = term_rows(correlation)
     last = FIRST + len(rows) - 1
     for c, text in enumerate(HEADS, start=1):
-        put(ws, HEAD, c, text, bold=True, fill=HEADER, wrap=True, vertical="bottom")
+        put(ws, HEAD, c, text, bold=True, fill=HEADER_FILL, wrap=True, vertical="bottom")
     for r, row in enumerate(rows, start=FIRST):
         _row(ws, r, row)
-    _sums(ws, found, last)
+    _sums(ws, correlation, last)
     frame(ws, range(HEAD, last + 1), range(1, len(HEADS) + 1))
     ws.auto_filter.ref = f"A{HEAD}:R{last}"
     ws.freeze_panes = ws.cell(FIRST, 4)
@@ -47,8 +47,11 @@ def rating_sheet(book: Workbook, found: Correlation, study: str) -> None:
     page(ws, study, paper=A3, repeat=f"{HEAD}:{HEAD}")
 
 
-def _sums(ws: Worksheet, found: Correlation, last: int) -> None:
-    for column, name, value in (("O", "Baseline", found.baseline_rating), ("R", "Final", found.rating)):
+def _sums(ws: Worksheet, correlation: Correlation, last: int) -> None:
+    for column, name, value in (
+        ("O", "Baseline", correlation.baseline_rating),
+        ("R", "Final", correlation.rating),
+    ):
         at = ord(column) - ord("A") + 1
         put(ws, 4, at, name, bold=True, horizontal="right")
         cell = put(ws, 5, at, None, bold=True, number="0.000000")

@@ -32,7 +32,7 @@ INSIDE = PatternFill("solid", bgColor="D6E9F8")
 OUTSIDE = PatternFill("solid", bgColor="FBDDB3")
 
 
-def characteristics_sheet(book: Workbook, found: Correlation, study: str) -> None:
+def characteristics_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     """As Appendix D; final values blue inside their interval, orange outside."""
     ws = book.create_sheet("Characteristics")
     title(ws, f"Characteristics: {study}", "Blue: final value inside the interval; orange: outside.")
@@ -48,7 +48,7 @@ def characteristics_sheet(book: Workbook, found: Correlation, study: str) -> Non
             "yes" if r.entry.counts else "no", r.baseline_distance, r.distance,
             r.normalized(r.entry.baseline), r.normalized(r.entry.final),
         )
-        for r in characteristic_rows(found)
+        for r in characteristic_rows(correlation)
     ]  # fmt: skip
     formats = ["", "", "", "", *["0.0000"] * 6, "", "", "0.0", "", "0.0", "0.0", "0.000", "0.000"]
     last = table(ws, heads, rows, formats=formats)
@@ -63,7 +63,7 @@ def characteristics_sheet(book: Workbook, found: Correlation, study: str) -> Non
     page(ws, study, paper=A3, single=True)
 
 
-def parameters_sheet(book: Workbook, found: Correlation, study: str) -> None:
+def parameters_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     """As Appendix A, with bounds and what the measurement says."""
     ws = book.create_sheet("Parameters")
     title(
@@ -75,7 +75,7 @@ def parameters_sheet(book: Workbook, found: Correlation, study: str) -> None:
         "Group", "Parameter", "Path", "Unit", "Role", "Baseline", "Final", "Change", "sd", "Lower", "Upper",
         "At bound", "Remark",
     )  # fmt: skip
-    rows = parameter_rows(found)
+    rows = parameter_rows(correlation)
     values = [
         (
             r.group, r.label, r.path, r.unit, r.role, r.baseline, r.final, r.change, r.sd, r.lower, r.upper,
@@ -94,7 +94,7 @@ def parameters_sheet(book: Workbook, found: Correlation, study: str) -> None:
     page(ws, study, paper=A3, single=True)
 
 
-def curves_sheet(book: Workbook, found: Correlation, study: str) -> None:
+def curves_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     """RMS deviation of every curve that is an objective."""
     ws = book.create_sheet("Curves")
     title(ws, f"Curves: {study}", "RMS deviation of both wheels' mean curves from the measured ones.")
@@ -108,7 +108,7 @@ def curves_sheet(book: Workbook, found: Correlation, study: str) -> None:
             r.noise_rms, r.rms_final / r.noise_rms if r.noise_rms else np.nan, r.norm,
             100.0 * r.rms_final / r.norm,
         )
-        for r in curve_rows(found)
+        for r in curve_rows(correlation)
     ]  # fmt: skip
     last = table(ws, heads, rows, formats=["", "", "", "", *["0.00000"] * 3, "0.00", "0.0000", "0.00"])
     if rows:
@@ -120,18 +120,18 @@ def curves_sheet(book: Workbook, found: Correlation, study: str) -> None:
     page(ws, study)
 
 
-def evaluations_sheet(book: Workbook, found: Correlation, study: str) -> None:
+def evaluations_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     """Every design that the true solver was asked for."""
     ws = book.create_sheet("Evaluations")
     title(ws, f"Evaluations: {study}", "In order; the shaded one is handed over. Values are absolute.")
-    frame_ = evaluation_frame(found)
-    names = {p.path: p for p in (v.parameter for v in found.problem.space.variables)}
+    frame_ = evaluation_frame(correlation)
+    names = {p.path: p for p in (v.parameter for v in correlation.problem.space.variables)}
     heads = [_head(c, names[c].unit if c in names else "") for c in frame_.columns]
     rows: list[list[Value]] = [[_cell(v) for v in row] for row in frame_.itertuples(index=False)]
     formats = ["0", "", "0.0000", "0.0000", "", "", "", "0.0000", "0.0000", "0.00", *["0.0000"] * len(names)]
     table(ws, heads, rows, formats=formats)
     for c in range(1, len(heads) + 1):
-        ws.cell(FIRST + found.run.best, c).fill = FLAGGED
+        ws.cell(FIRST + correlation.run.best, c).fill = FLAGGED
     ws.freeze_panes = ws.cell(FIRST, 4)
     # a head breaks at its blank only
     named = [max(11.0, 1.1 * len(head.split(",")[0]) + 1.0) for head in heads[len(heads) - len(names) :]]

@@ -45,14 +45,14 @@ class TermRow:
     final_term: float
 
 
-def term_rows(found: Correlation) -> list[TermRow]:
+def term_rows(correlation: Correlation) -> list[TermRow]:
     """Objectives, curves, constraints; their terms sum to the rating."""
-    return [*_objectives(found), *_curves(found), *_constraints(found)]
+    return [*_objectives(correlation), *_curves(correlation), *_constraints(correlation)]
 
 
-def term_frame(found: Correlation) -> pd.DataFrame:
+def term_frame(correlation: Correlation) -> pd.DataFrame:
     """One row a term, with its weights."""
-    return pd.DataFrame([asdict(r) for r in term_rows(found)])
+    return pd.DataFrame([asdict(r) for r in term_rows(correlation)])
 
 
 def _weights(of: Objective | Constraint) -> dict[str, Any]:
@@ -64,9 +64,9 @@ def _named(entry: Characteristic) -> dict[str, Any]:
     return {"id": entry.id, "label": label, "unit": entry.unit}
 
 
-def _judged(found: Correlation, part: str, terms: str, row: int) -> dict[str, Any]:
+def _judged(correlation: Correlation, part: str, terms: str, row: int) -> dict[str, Any]:
     """What the row has before and after; part: of the score. terms: of the rating."""
-    before, after = found.baseline, found.best
+    before, after = correlation.baseline, correlation.best
     return {
         "baseline": _of(before.score, part, row),
         "final": _of(after.score, part, row),
@@ -79,8 +79,8 @@ def _of(where: Score | Rating | None, part: str, row: int) -> float:
     return float(getattr(where, part)[row]) + 0.0 if where is not None else np.nan  # + 0: no minus zero
 
 
-def _objectives(found: Correlation) -> Iterator[TermRow]:
-    for i, t in enumerate(found.problem.targets.characteristics):
+def _objectives(correlation: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(correlation.problem.targets.characteristics):
         if t.objective is not None:
             yield TermRow(
                 kind="objective",
@@ -89,12 +89,12 @@ def _objectives(found: Correlation) -> Iterator[TermRow]:
                 sign=t.objective.sign,
                 **_named(t.entry),
                 **_weights(t.objective),
-                **_judged(found, "values", "objectives", i),
+                **_judged(correlation, "values", "objectives", i),
             )
 
 
-def _constraints(found: Correlation) -> Iterator[TermRow]:
-    for i, t in enumerate(found.problem.targets.characteristics):
+def _constraints(correlation: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(correlation.problem.targets.characteristics):
         if t.constraint is not None:
             yield TermRow(
                 kind="constraint",
@@ -103,12 +103,12 @@ def _constraints(found: Correlation) -> Iterator[TermRow]:
                 sign=-1.0,
                 **_named(t.entry),
                 **_weights(t.constraint),
-                **_judged(found, "values", "constraints", i),
+                **_judged(correlation, "values", "constraints", i),
             )
 
 
-def _curves(found: Correlation) -> Iterator[TermRow]:
-    for i, t in enumerate(found.problem.targets.curves):
+def _curves(correlation: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(correlation.problem.targets.curves):
         yield TermRow(
             kind="curve",
             id=t.id,
@@ -116,7 +116,7 @@ def _curves(found: Correlation) -> Iterator[TermRow]:
             unit=RESPONSE_UNITS[t.response],
             sign=t.objective.sign,
             **_weights(t.objective),
-            **_judged(found, "rms", "curves", i),
+            **_judged(correlation, "rms", "curves", i),
         )
 
 
@@ -134,7 +134,7 @@ class CurveRow:
     norm: float
 
 
-def curve_rows(found: Correlation) -> list[CurveRow]:
+def curve_rows(correlation: Correlation) -> list[CurveRow]:
     """In the order of the targets."""
     return [
         CurveRow(
@@ -147,11 +147,11 @@ def curve_rows(found: Correlation) -> list[CurveRow]:
             noise_rms=t.noise,
             norm=row.norm,
         )
-        for t, row in zip(found.problem.targets.curves, _curves(found), strict=True)
+        for t, row in zip(correlation.problem.targets.curves, _curves(correlation), strict=True)
     ]
 
 
-def curve_frame(found: Correlation) -> pd.DataFrame:
+def curve_frame(correlation: Correlation) -> pd.DataFrame:
     """`curve_rows` as a table; its heads stand even when no curve is an objective."""
     columns = [f.name for f in fields(CurveRow)]
-    return pd.DataFrame([asdict(r) for r in curve_rows(found)], columns=columns)
+    return pd.DataFrame([asdict(r) for r in curve_rows(correlation)], columns=columns)

@@ -9,7 +9,7 @@ from openpyxl.workbook import Workbook
 
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
-from doe_kc.reporting.correlation_legend import LEGEND
+from doe_kc.reporting.correlation_legend import CORRELATION_LEGEND
 from doe_kc.reporting.correlation_rating_sheet import rating_sheet
 from doe_kc.reporting.correlation_sheets import (
     characteristics_sheet,
@@ -23,7 +23,7 @@ from doe_kc.reporting.workbook_terms import terms_sheet
 
 
 def correlation_workbook(
-    found: Correlation,
+    correlation: Correlation,
     *,
     study: str,
     date: str,
@@ -36,19 +36,19 @@ def correlation_workbook(
     the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
     """
     book = new_book(f"Correlation: {study}")
-    summary_sheet(book, found, study, date, notes or {}, assessment or assess(found))
-    characteristics_sheet(book, found, study)
-    parameters_sheet(book, found, study)
-    curves_sheet(book, found, study)
-    evaluations_sheet(book, found, study)
-    rating_sheet(book, found, study)
-    terms_sheet(book, study, LEGEND)
+    summary_sheet(book, correlation, study, date, notes or {}, assessment or assess(correlation))
+    characteristics_sheet(book, correlation, study)
+    parameters_sheet(book, correlation, study)
+    curves_sheet(book, correlation, study)
+    evaluations_sheet(book, correlation, study)
+    rating_sheet(book, correlation, study)
+    terms_sheet(book, study, CORRELATION_LEGEND)
     return book
 
 
 def write_correlation_workbook(
     path: Path,
-    found: Correlation,
+    correlation: Correlation,
     *,
     study: str,
     date: str,
@@ -56,5 +56,5 @@ def write_correlation_workbook(
     assessment: Assessment | None = None,
 ) -> Path:
     """Write `correlation_workbook`; RunError naming path and remedy when the place is locked or full."""
-    book = correlation_workbook(found, study=study, date=date, notes=notes, assessment=assessment)
+    book = correlation_workbook(correlation, study=study, date=date, notes=notes, assessment=assessment)
     return write_book(path, book)

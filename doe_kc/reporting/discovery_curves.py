@@ -15,7 +15,7 @@ from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
 from doe_kc.discovery.result import Discovery
 from doe_kc.reporting import style
 from doe_kc.reporting.correlation_curves import BAND
-from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.discovery_gaps import MODEL_COLOURS
 from doe_kc.reporting.discovery_views import ModelView, model_views, view_gaps
 from doe_kc.reporting.names import case_label, response_name
 from doe_kc.reporting.panel import Box, Dash, Panel
@@ -24,7 +24,7 @@ from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.reporting.words import POINTS
 from doe_kc.typing import FloatArray
 
-SHOWN = 6
+CURVES_SHOWN = 6
 PER_CASE = 2
 COLUMNS = 3
 HEAD, FOOT, PAIR = 0.45, 0.5, 3.65
@@ -37,7 +37,7 @@ WORDS = {
     "with_effect": "with the effect",
     "best_decoy": "with the decoy",
 }
-SIDE_WORDS = ("left wheel", "right wheel")
+WHEEL_WORDS = ("left wheel", "right wheel")
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class WorstView:
     @property
     def title(self) -> str:
         """Load case and wheel, and the gap."""
-        place = f"{case_label(self.view.load_case)}, {SIDE_WORDS[self.side]}"
+        place = f"{case_label(self.view.load_case)}, {WHEEL_WORDS[self.side]}"
         gap = f"{self.gaps['tuned']:.1f} re-tuned"
         if "with_effect" in self.gaps:
             gap += f", {self.gaps['with_effect']:.1f} with the effect"
@@ -69,10 +69,10 @@ class WorstView:
         return f"{'' if view.response == TYRE_LOAD else 'Δ '}{name} [{unit}]"
 
 
-def worst_views(found: Discovery) -> list[WorstView]:
+def worst_views(discovery: Discovery) -> list[WorstView]:
     """Curves with the largest gaps after re-tuning, at most two of a load case, each of its worse wheel."""
-    views = model_views(found)
-    gaps = view_gaps(found)
+    views = model_views(discovery)
+    gaps = view_gaps(discovery)
     out: list[WorstView] = []
     taken: dict[str, int] = {}
     for key in sorted(gaps, key=lambda k: -gaps[k]["tuned"]):
@@ -86,7 +86,7 @@ def worst_views(found: Discovery) -> list[WorstView]:
             half = np.interp(view.input, loop.input, loop.measured[side])
         out.append(WorstView(view, side, gaps[key], half))
         taken[view.load_case] = taken.get(view.load_case, 0) + 1
-        if len(out) == SHOWN:
+        if len(out) == CURVES_SHOWN:
             break
     return out
 
@@ -129,7 +129,7 @@ def _curve(panel: Panel, worst: WorstView) -> None:
             panel.plot(view.input, mean + sign * worst.half, color=style.PALETTE["grey"], lw=0.6)
     for name, dash in DASHES.items():
         if name in view.models:
-            panel.plot(view.input, view.models[name][side], dash, color=COLOURS[name], lw=1.4)
+            panel.plot(view.input, view.models[name][side], dash, color=MODEL_COLOURS[name], lw=1.4)
     step = max(1, mean.size // 22)
     panel.plot(view.input[::step], mean[::step], "", marker="o", color="black", ms=2.4, mew=0.0, zorder=4)
     panel.set_title(worst.title, size=8.5)
@@ -145,7 +145,7 @@ def _deviation(panel: Panel, worst: WorstView) -> None:
     panel.hline(0.0, color="black", lw=0.6)
     for name, dash in DASHES.items():
         if name in view.models:
-            panel.plot(view.input, view.deviation(name)[worst.side], dash, color=COLOURS[name], lw=1.2)
+            panel.plot(view.input, view.deviation(name)[worst.side], dash, color=MODEL_COLOURS[name], lw=1.2)
     panel.set_labels(view.input_label, "model − measured\n[sd of the noise]")
     panel.x.set_locator(ticks(6))
     panel.y.set_locator(ticks(4))
@@ -159,7 +159,7 @@ def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:
         Patch(color="#BBBBBB", label=f"±{BAND:g} sd of the noise"),
     ]
     out += [
-        Line2D([], [], color=COLOURS[m], ls=dash, lw=1.4, label=WORDS[m])
+        Line2D([], [], color=MODEL_COLOURS[m], ls=dash, lw=1.4, label=WORDS[m])
         for m, dash in DASHES.items()
         if m in models
     ]

@@ -9,7 +9,7 @@ import pandas as pd
 
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.sentences import CERTAIN, against_words
-from doe_kc.discovery.verdict import SURE
+from doe_kc.discovery.verdict import NAME_PROBABILITY
 from doe_kc.effects import EFFECTS
 from doe_kc.reporting.discovery_sizes import FoundSize, found_sizes
 from doe_kc.reporting.discovery_words import effect_label, mistaken_words, place_of
@@ -34,24 +34,24 @@ class EffectRow:
         return place_of(self.finding.hypothesis)
 
 
-def effect_rows(found: Discovery) -> list[EffectRow]:
+def effect_rows(discovery: Discovery) -> list[EffectRow]:
     """Findings, largest first, then traces."""
     out: list[EffectRow] = []
-    for finding in (*found.findings, *found.traces):
-        own = kind_of(found, finding)
-        sizes: list[FoundSize | None] = list(found_sizes(found, finding))
+    for finding in (*discovery.findings, *discovery.traces):
+        own = kind_of(discovery, finding)
+        sizes: list[FoundSize | None] = list(found_sizes(discovery, finding))
         out += [EffectRow(finding, own, size) for size in sizes or [None]]
     return out
 
 
-def kind_of(found: Discovery, finding: Finding) -> str:
+def kind_of(discovery: Discovery, finding: Finding) -> str:
     """found; most likely, of several that cannot be told apart; lead only, where the verdict is unexplained;
     trace, seen but too small to matter."""
-    if finding not in found.findings:
+    if finding not in discovery.findings:
         return "trace"
-    if found.verdict == "unexplained":
+    if discovery.verdict == "unexplained":
         return "lead only"
-    return "found" if finding.probability >= SURE else "most likely"
+    return "found" if finding.probability >= NAME_PROBABILITY else "most likely"
 
 
 def rival_words(finding: Finding) -> str:
@@ -59,12 +59,12 @@ def rival_words(finding: Finding) -> str:
     return ", ".join(f"{effect_label(r.effect)} {100.0 * r.probability:.1f} %" for r in finding.rivals)
 
 
-def effect_frame(found: Discovery) -> pd.DataFrame:
+def effect_frame(discovery: Discovery) -> pd.DataFrame:
     """One row a number of an effect: value, sd, unit, probability, odds, rivals, physics."""
-    return pd.DataFrame([_record(r) for r in effect_rows(found)], columns=list(COLUMNS))
+    return pd.DataFrame([_record(r) for r in effect_rows(discovery)], columns=list(EFFECT_COLUMNS))
 
 
-COLUMNS = (
+EFFECT_COLUMNS = (
     "effect", "label", "place", "kind", "probability", "log10_odds", "against", "size", "value", "sd",
     "unit", "typical", "times_typical", "in_words", "gain_ln_evidence", "detectability_sd",
     "wrong_name_chance", "rivals", "physics", "shown_by", "mistaken_for",

@@ -19,21 +19,21 @@ from doe_kc.reporting.panel_axis import PanelAxis
 from doe_kc.reporting.sheet import Sheet
 from doe_kc.reporting.words import POINTS, text_width
 
-SHOWN = 9
+CANDIDATES_SHOWN = 9
 """Candidates of a step, best first."""
 REFITTED, SCREENED, CHOSEN = style.PALETTE["orange"], "#DDE1E5", style.PALETTE["blue"]
-ROW, HEAD, LINE, TOP, FOOT, WIDTH = 0.2, 0.24, 0.145, 0.22, 0.75, 8.27
+EVIDENCE_ROW, HEAD, LINE, TOP, FOOT, WIDTH = 0.2, 0.24, 0.145, 0.22, 0.75, 8.27
 """Inches: a candidate; above a panel, and a line of its title; title and foot of the page; its width."""
 EDGE, END = 9.0, 20.0
 """Points beside the names, and beside the panels, where half a number needs room."""
 LETTER = 6.0
 """Points of a letter of a panel's title, not less than most."""
-LEAST = -2.0
+EVIDENCE_AXIS_START = -2.0
 """Left end of the axis: how much worse a candidate makes it does not matter."""
 
 
 @dataclass(frozen=True)
-class Candidate:
+class EvidenceBar:
     """gain: ln evidence over the model without it; refitted: after a joint refit, else as screened."""
 
     label: str
@@ -47,16 +47,16 @@ class EvidenceStep:
     """One step of the search. needed: ln evidence that a candidate must reach among so many."""
 
     title: str
-    candidates: tuple[Candidate, ...]
+    candidates: tuple[EvidenceBar, ...]
     needed: float
 
 
-def evidence_steps(found: Discovery) -> list[EvidenceStep]:
+def evidence_steps(discovery: Discovery) -> list[EvidenceStep]:
     """Every step, the last one with nothing to add; candidates best first."""
-    count = len(found.search.steps[0].screened)
-    last = len(found.search.steps) - 1
+    count = len(discovery.search.steps[0].screened)
+    last = len(discovery.search.steps) - 1
     out = []
-    for i, step in enumerate(found.search.steps):
+    for i, step in enumerate(discovery.search.steps):
         names = ", ".join(hypothesis_label(h).lower() for h in step.before.model.members)
         title = f"Step {i + 1}: re-tuned with {names}" if names else "Step 1: re-tuned without an effect"
         end = "" if step.accepted or i < last else "; nothing more is asked for"
@@ -64,15 +64,15 @@ def evidence_steps(found: Discovery) -> list[EvidenceStep]:
     return out
 
 
-def _candidates(step: Step) -> tuple[Candidate, ...]:
+def _candidates(step: Step) -> tuple[EvidenceBar, ...]:
     refitted = {t.hypothesis.name for t in step.trials}
     rows = [
-        Candidate(hypothesis_label(t.hypothesis), t.gain, True, step.accepted and i == 0)
+        EvidenceBar(hypothesis_label(t.hypothesis), t.gain, True, step.accepted and i == 0)
         for i, t in enumerate(step.trials)
     ]
     others = [s for s in step.screened if s.hypothesis.name not in refitted and not s.failed]
-    rows += [Candidate(hypothesis_label(s.hypothesis), s.gain, False, False) for s in others]
-    return tuple(rows[:SHOWN])
+    rows += [EvidenceBar(hypothesis_label(s.hypothesis), s.gain, False, False) for s in others]
+    return tuple(rows[:CANDIDATES_SHOWN])
 
 
 def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
@@ -81,7 +81,7 @@ def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
     left = widest + EDGE
     titles = [fill(s.title, int((WIDTH * POINTS - left - END) / LETTER)) for s in steps]
     heads = [HEAD + LINE * (t.count("\n") + 1) for t in titles]
-    deep = [ROW * max(len(s.candidates), 1) for s in steps]
+    deep = [EVIDENCE_ROW * max(len(s.candidates), 1) for s in steps]
     height = TOP + sum(heads) + sum(deep) + FOOT
     page = Sheet((WIDTH, height))
     largest = max((c.gain for s in steps for c in s.candidates if np.isfinite(c.gain)), default=1.0)
@@ -106,7 +106,7 @@ def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
 
 def _panel(panel: Panel, step: EvidenceStep, title: str, largest: float) -> None:
     panel.x.set_symmetrical_logarithmic(10.0)
-    panel.x.set_limits(LEAST, max(20.0, 8.0 * largest))
+    panel.x.set_limits(EVIDENCE_AXIS_START, max(20.0, 8.0 * largest))
     ticks = [t for t in (0, 10, 100, 1000, 10**4, 10**5, 10**6) if t < 8.0 * largest]
     panel.x.set_ticks(ticks, [f"{t:,}".replace(",", " ") for t in ticks])
     panel.y.set_limits(max(len(step.candidates), 1), 0)
@@ -119,10 +119,14 @@ def _panel(panel: Panel, step: EvidenceStep, title: str, largest: float) -> None
         _bar(panel, y + 0.5, candidate)
 
 
-def _bar(panel: Panel, y: float, candidate: Candidate) -> None:
+def _bar(panel: Panel, y: float, candidate: EvidenceBar) -> None:
     colour = CHOSEN if candidate.accepted else REFITTED if candidate.refitted else SCREENED
     edge = "#8A9199" if not candidate.refitted else colour
-    shown = float(np.clip(candidate.gain, LEAST, None)) if np.isfinite(candidate.gain) else LEAST
+    shown = (
+        float(np.clip(candidate.gain, EVIDENCE_AXIS_START, None))
+        if np.isfinite(candidate.gain)
+        else EVIDENCE_AXIS_START
+    )
     panel.bars(y, 0.0, shown, 0.68, [colour], edgecolors=edge, linewidths=0.5, zorder=2)
     text = f"{candidate.gain:,.{1 if abs(candidate.gain) < 1000 else 0}f}".replace("-0.0", "0.0")
     panel.text(

@@ -19,23 +19,23 @@ from doe_kc.reporting.discovery_tables import tuned_parameters
 from doe_kc.reporting.series import Job, draw_series
 
 
-def discovery_jobs(found: Discovery, folder: Path, study: str) -> list[Job]:
+def discovery_jobs(discovery: Discovery, folder: Path, study: str) -> list[Job]:
     """What is drawn: (path without suffix, maker). Makers hold only the numbers that they draw."""
     jobs: list[Job] = [
-        (folder / "disagreement", partial(heat_map_figure, discovery_grids(found), study)),
-        (folder / "gap", partial(gap_figure, gap_rows(found), study)),
-        (folder / "evidence", partial(evidence_figure, evidence_steps(found), study)),
-        (folder / "worst_curves", partial(curve_figure, worst_views(found), study)),
-        (folder / "isolability", partial(isolability_figure, isolability(found), study)),
-        (folder / "parameters", partial(parameter_figure, tuned_parameters(found), study)),
+        (folder / "disagreement", partial(heat_map_figure, discovery_grids(discovery), study)),
+        (folder / "gap", partial(gap_figure, gap_rows(discovery), study)),
+        (folder / "evidence", partial(evidence_figure, evidence_steps(discovery), study)),
+        (folder / "worst_curves", partial(curve_figure, worst_views(discovery), study)),
+        (folder / "isolability", partial(isolability_figure, isolability(discovery), study)),
+        (folder / "parameters", partial(parameter_figure, tuned_parameters(discovery), study)),
     ]
-    if found.held_out:
-        jobs.append((folder / "held_out", partial(held_out_figure, found.held_out, study)))
+    if discovery.held_out:
+        jobs.append((folder / "held_out", partial(held_out_figure, discovery.held_out, study)))
     return jobs
 
 
 def write_discovery_figures(
-    found: Discovery,
+    discovery: Discovery,
     folder: Path,
     *,
     study: str,
@@ -44,4 +44,4 @@ def write_discovery_figures(
 ) -> list[Path]:
     """Pictures `disagreement`, `gap`, `evidence`, `worst_curves`, `isolability`, `parameters` and, where
     effects were found, `held_out`. RunError when the folder cannot be written."""
-    return draw_series(discovery_jobs(found, folder, study), workers, pictures=pictures)
+    return draw_series(discovery_jobs(discovery, folder, study), workers, pictures=pictures)

@@ -11,12 +11,12 @@ from matplotlib.lines import Line2D
 
 from doe_kc.discovery.result import Discovery, Gap
 from doe_kc.reporting import style
-from doe_kc.reporting.discovery_words import MODELS
+from doe_kc.reporting.discovery_words import MODEL_LABELS
 from doe_kc.reporting.names import case_label, response_name
 from doe_kc.reporting.panel import Panel
 from doe_kc.reporting.sheet import Sheet, sheet
 
-COLOURS = {
+MODEL_COLOURS = {
     "nominal": "#555555",
     "tuned": style.PALETTE["orange"],
     "with_effect": style.PALETTE["blue"],
@@ -24,7 +24,7 @@ COLOURS = {
 }
 """Of the four models, in every picture."""
 MARKS = {"nominal": "|", "tuned": "o", "with_effect": "D", "best_decoy": "x"}
-ROW = 0.165
+GAP_ROW = 0.165
 LOWEST = 0.7
 
 
@@ -37,10 +37,10 @@ class GapRow:
     gap: Gap
 
 
-def gap_rows(found: Discovery) -> list[GapRow]:
+def gap_rows(discovery: Discovery) -> list[GapRow]:
     """All records, then load case by load case; without effects the last value is left out."""
-    rows = [GapRow("", "", found.gap), *(GapRow(g.load_case, g.response, g.gap) for g in found.gaps)]
-    if found.fitted.model.members:
+    rows = [GapRow("", "", discovery.gap), *(GapRow(g.load_case, g.response, g.gap) for g in discovery.gaps)]
+    if discovery.fitted.model.members:
         return rows
     return [GapRow(r.case, r.response, Gap(**{**vars(r.gap), "with_effect": np.nan})) for r in rows]
 
@@ -51,10 +51,10 @@ def gap_figure(rows: Sequence[GapRow], study: str) -> Sheet:
     for case, members in groupby(rows, key=lambda r: r.case):
         lines += [case_label(case) if case else "All records", *members]
     deep = _break(lines)
-    height = ROW * deep + 1.5
+    height = GAP_ROW * deep + 1.5
     margins = {"left": 0.18, "right": 0.985, "wspace": 0.5, "top": 1 - 0.55 / height, "bottom": 0.95 / height}
     page, panels = sheet(1, 2, size=(8.27, height), margins=margins)
-    highest = 1.4 * max(np.nanmax([getattr(r.gap, m) for m in MODELS]) for r in rows)
+    highest = 1.4 * max(np.nanmax([getattr(r.gap, m) for m in MODEL_LABELS]) for r in rows)
     for panel, part in zip(panels[0], (lines[:deep], lines[deep:]), strict=True):
         _column(panel, part, deep, highest)
     _legend(page, rows[0].gap)
@@ -92,21 +92,21 @@ def _name(line: GapRow | str) -> str:
 
 
 def _row(panel: Panel, y: float, gap: Gap) -> None:
-    known = {m: float(getattr(gap, m)) for m in MODELS if np.isfinite(getattr(gap, m))}
+    known = {m: float(getattr(gap, m)) for m in MODEL_LABELS if np.isfinite(getattr(gap, m))}
     panel.plot([min(known.values()), max(known.values())], [y, y], color="#C9CED3", lw=1.0, zorder=2)
     for model, value in known.items():
-        face = "white" if model == "tuned" else COLOURS[model]
+        face = "white" if model == "tuned" else MODEL_COLOURS[model]
         panel.plot(
-            max(value, LOWEST), y, "", marker=MARKS[model], color=COLOURS[model], mfc=face, ms=4.2, mew=1.2,
-            zorder=3 + list(MODELS).index(model) % 3,
+            max(value, LOWEST), y, "", marker=MARKS[model], color=MODEL_COLOURS[model], mfc=face, ms=4.2, mew=1.2,
+            zorder=3 + list(MODEL_LABELS).index(model) % 3,
         )  # fmt: skip
 
 
-def _legend(page: Sheet, whole: Gap) -> None:
+def _legend(page: Sheet, gap: Gap) -> None:
     handles = [
-        Line2D([], [], color=COLOURS[m], ls="", marker=MARKS[m], ms=4.5, mew=1.2, label=_label(m),
-               mfc="white" if m == "tuned" else COLOURS[m])
-        for m in MODELS if np.isfinite(getattr(whole, m))
+        Line2D([], [], color=MODEL_COLOURS[m], ls="", marker=MARKS[m], ms=4.5, mew=1.2, label=_label(m),
+               mfc="white" if m == "tuned" else MODEL_COLOURS[m])
+        for m in MODEL_LABELS if np.isfinite(getattr(gap, m))
     ]  # fmt: skip
     handles.append(Line2D([], [], color="black", ls="--", lw=0.9, label="noise floor"))
     page.add_legend(handles, 5)
@@ -114,4 +114,6 @@ def _legend(page: Sheet, whole: Gap) -> None:
 
 def _label(model: str) -> str:
     words = {"tuned": "re-tuned without an effect", "with_effect": "re-tuned with the effect"}
-    return words.get(model, MODELS[model] if model != "best_decoy" else "with the best other effect (decoy)")
+    return words.get(
+        model, MODEL_LABELS[model] if model != "best_decoy" else "with the best other effect (decoy)"
+    )

@@ -50,22 +50,22 @@ class MapGrid:
         return sum(abs(c.z) > self.threshold for c in self.cells.values())
 
 
-def map_grid(name: str, title: str, found: Map) -> MapGrid:
+def map_grid(name: str, title: str, disagreement: Map) -> MapGrid:
     """Largest |z| over shapes and wheels; what re-tuning absorbs wholly is left out."""
     cells: dict[tuple[str, str], GridCell] = {}
-    for contrast, z in zip(found.names, found.z, strict=True):
+    for contrast, z in zip(disagreement.names, disagreement.z, strict=True):
         key = (contrast.load_case, contrast.response)
         if np.isfinite(z) and (key not in cells or abs(z) > abs(cells[key].z)):
             cells[key] = GridCell(contrast, float(z))
-    return MapGrid(name, title, found.threshold, cells)
+    return MapGrid(name, title, disagreement.threshold, cells)
 
 
-def discovery_grids(found: Discovery) -> list[MapGrid]:
+def discovery_grids(discovery: Discovery) -> list[MapGrid]:
     """Nominal, re-tuned and, where there is any, with the effects."""
     grids = [
-        map_grid("nominal", "Nominal axle", found.raw),
-        map_grid("tuned", "Re-tuned without an effect", found.tuned),
+        map_grid("nominal", "Nominal axle", discovery.raw),
+        map_grid("tuned", "Re-tuned without an effect", discovery.tuned),
     ]
-    if found.fitted.model.members:
-        grids.append(map_grid("with_effect", "Re-tuned with the effect", found.final))
+    if discovery.fitted.model.members:
+        grids.append(map_grid("with_effect", "Re-tuned with the effect", discovery.final))
     return grids

@@ -16,15 +16,17 @@ from doe_kc.reporting.panel import Box, Panel
 from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.reporting.words import POINTS
 
-COLOURS = LinearSegmentedColormap.from_list("disagreement", ["#FFF3DC", "#F2A23C", "#D55E00", "#6B1F00"])
+DISAGREEMENT_MAP = LinearSegmentedColormap.from_list(
+    "disagreement", ["#FFF3DC", "#F2A23C", "#D55E00", "#6B1F00"]
+)
 """One hue from light to dark: told apart by the colour-blind and in grey."""
-QUIET = "#EEF1F3"
-ABSORBED = "white"
+QUIET_COLOUR = "#EEF1F3"
+ABSORBED_COLOUR = "white"
 CELL = (0.92, 0.36)
 """Width and height, inches."""
 LEFT, RIGHT, TOP, BOTTOM, BETWEEN = 1.75, 0.3, 0.75, 1.45, 0.62
-SHORT = {"static": "angle"}
-TICKS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
+COLUMN_WORDS = {"static": "angle"}
+DISAGREEMENT_TICKS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 NOTE = (
     "+: the model's value is above the measured one. Grey: within the noise. L−R: the wheels disagree in "
     "opposite ways.\nAfter re-tuning, only what no re-tuning within production scatter can absorb is shown."
@@ -76,12 +78,12 @@ def _panel(
 def _cell(panel: Panel, x: int, y: int, cell: GridCell | None, threshold: float, norm: LogNorm) -> ColorType:
     """The colour of a cell, whose words are written."""
     if cell is None:
-        return ABSORBED
+        return ABSORBED_COLOUR
     quiet = abs(cell.z) <= threshold
     ink = "#6B757E" if quiet else "white" if float(norm(abs(cell.z))) > 0.6 else "black"
     for down, size, word in ((0.36, 7.5, signed(cell.z)), (0.74, 6.0, shape_words(cell))):
         panel.text(x + 0.5, y + down, word, size=size, across="center", along="center", color=ink)
-    return QUIET if quiet else COLOURS(norm(abs(cell.z)))
+    return QUIET_COLOUR if quiet else DISAGREEMENT_MAP(norm(abs(cell.z)))
 
 
 def beyond_words(grid: MapGrid) -> str:
@@ -98,7 +100,7 @@ def signed(z: float) -> str:
 
 def shape_words(cell: GridCell) -> str:
     """Shape, with a mark where it is the difference of the wheels."""
-    shape = SHORT.get(cell.contrast.shape, cell.contrast.shape)
+    shape = COLUMN_WORDS.get(cell.contrast.shape, cell.contrast.shape)
     return shape if cell.contrast.wheels == "both" else f"{shape}, L−R"
 
 
@@ -107,9 +109,11 @@ def _scale(page: Sheet, norm: LogNorm) -> None:
     box = Box(LEFT * POINTS, 0.95 * POINTS, page.width - (LEFT + RIGHT) * POINTS, 0.13 * POINTS)
     panel = page.add_panel(box)
     panel.x.set_logarithmic()
-    draw_color_scale(panel, np.geomspace(low, high, STRIPS + 1), COLOURS(np.linspace(0.0, 1.0, STRIPS)))
+    draw_color_scale(
+        panel, np.geomspace(low, high, STRIPS + 1), DISAGREEMENT_MAP(np.linspace(0.0, 1.0, STRIPS))
+    )
     outline(panel)
-    ticks = [t for t in TICKS if low <= t <= high]
+    ticks = [t for t in DISAGREEMENT_TICKS if low <= t <= high]
     panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
     panel.number_size["x"] = 6.5
     panel.set_labels("largest |z| over shapes and wheels, standard deviations of the noise", None, 7.0)

@@ -7,25 +7,25 @@ from collections.abc import Sequence
 from matplotlib.lines import Line2D
 
 from doe_kc.discovery.held_out import HeldOut
-from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.discovery_gaps import MODEL_COLOURS
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.panel import Panel
 from doe_kc.reporting.sheet import Sheet, sheet
 
-ROW = 0.3
-TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
+HELD_OUT_ROW = 0.3
+HELD_OUT_TICKS = (1, 2, 5, 10, 20, 50, 100, 200, 500)
 
 
 def held_out_figure(cases: Sequence[HeldOut], study: str) -> Sheet:
     """A row a load case: predicted RMS of the re-tuned model and of the one with the effect, log axis."""
-    height = ROW * max(len(cases), 2) + 1.45
+    height = HELD_OUT_ROW * max(len(cases), 2) + 1.45
     margins = {"left": 0.23, "right": 0.83, "top": 1 - 0.65 / height, "bottom": 0.8 / height}
     page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
     panel = panels[0, 0]
     panel.x.set_logarithmic()
     highest = 1.4 * max([3.0, *(max(h.tuned.rms, h.with_effect.rms) for h in cases)])
     panel.x.set_limits(min([0.75, *(0.9 * h.with_effect.rms for h in cases)]), highest)
-    ticks = [t for t in TICKS if t <= highest]
+    ticks = [t for t in HELD_OUT_TICKS if t <= highest]
     panel.x.set_ticks(ticks, [str(t) for t in ticks])
     panel.y.set_limits(max(len(cases), 1), 0)
     panel.grid["y"] = panel.marks["y"] = False
@@ -43,8 +43,8 @@ def held_out_figure(cases: Sequence[HeldOut], study: str) -> Sheet:
 def _row(panel: Panel, y: float, held: HeldOut) -> None:
     one, two = held.tuned.rms, held.with_effect.rms
     panel.plot([one, two], [y, y], color="#C9CED3", lw=1.2)
-    panel.plot(one, y, "", marker="o", color=COLOURS["tuned"], mfc="white", ms=5, mew=1.3)
-    panel.plot(two, y, "", marker="D", color=COLOURS["with_effect"], ms=4.5)
+    panel.plot(one, y, "", marker="o", color=MODEL_COLOURS["tuned"], mfc="white", ms=5, mew=1.3)
+    panel.plot(two, y, "", marker="D", color=MODEL_COLOURS["with_effect"], ms=4.5)
     panel.text(1.02, y, gain_words(held.gain), scales=("panel", "data"), size=7.0, along="center")
 
 
@@ -56,8 +56,8 @@ def gain_words(gain: float) -> str:
 
 def _handles() -> list[Line2D]:
     return [
-        Line2D([], [], color=COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.3,
+        Line2D([], [], color=MODEL_COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.3,
                label="re-tuned without an effect"),
-        Line2D([], [], color=COLOURS["with_effect"], ls="", marker="D", ms=4.5, label="with the effect"),
+        Line2D([], [], color=MODEL_COLOURS["with_effect"], ls="", marker="D", ms=4.5, label="with the effect"),
         Line2D([], [], color="black", ls="--", lw=0.9, label="as good as predicted"),
     ]  # fmt: skip

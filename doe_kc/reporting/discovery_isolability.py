@@ -22,13 +22,13 @@ from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.reporting.words import POINTS
 from doe_kc.typing import FloatArray
 
-VISIBLE = 1.0
+VISIBLE_LEVEL = 1.0
 """Standard deviations that an effect must leave after re-tuning for its direction to mean anything."""
 LEVELS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
-COLOURS = ListedColormap(
+CORRELATION_MAP = ListedColormap(
     ["#FFFFFF", "#F3F6F8", "#DCE7EF", "#B7D0E3", "#86B4D5", "#4C93C2", "#0F6BA6", "#08335C"]
 )
-BARS: dict[Status, str] = {
+BAR_COLOURS: dict[Status, str] = {
     "found": style.PALETTE["blue"],
     "trace": style.PALETTE["sky"],
     "excluded": style.PALETTE["green"],
@@ -36,7 +36,7 @@ BARS: dict[Status, str] = {
     "not testable": style.PALETTE["orange"],
     "no solution": style.PALETTE["grey"],
 }
-ROW = 0.148
+ISOLABILITY_ROW = 0.148
 SMALLEST, LARGEST = 1e-3, 100.0
 
 
@@ -52,16 +52,16 @@ class Isolability:
     correlation: FloatArray
 
 
-def isolability(found: Discovery) -> Isolability:
+def isolability(discovery: Discovery) -> Isolability:
     """In the order of the library; the axle re-tuned about the final model, sizes of its effects known."""
     order = list(EFFECTS)
-    stands = sorted(found.standings, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
-    changes = _changes(found)
-    remaining = found.fitted.tuning_projection(np.array([changes[s.hypothesis.name] for s in stands]).T)
+    stands = sorted(discovery.standings, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
+    changes = _changes(discovery)
+    remaining = discovery.fitted.tuning_projection(np.array([changes[s.hypothesis.name] for s in stands]).T)
     length = np.linalg.norm(remaining, axis=0)
     scaled = remaining / np.where(length > 0.0, length, 1.0)
     correlation = np.clip(np.abs(scaled.T @ scaled), 0.0, 1.0)
-    hidden = length < VISIBLE
+    hidden = length < VISIBLE_LEVEL
     correlation[hidden, :] = correlation[:, hidden] = np.nan
     return Isolability(
         tuple(hypothesis_label(s.hypothesis) for s in stands),
@@ -71,10 +71,10 @@ def isolability(found: Discovery) -> Isolability:
     )
 
 
-def _changes(found: Discovery) -> dict[str, FloatArray]:
+def _changes(discovery: Discovery) -> dict[str, FloatArray]:
     """(M,) change of each hypothesis as screened last, in units of the final model's errors."""
-    final = found.fitted.model.likelihood
-    last = {s.hypothesis.name: (s, step) for step in found.search.steps for s in step.screened}
+    final = discovery.fitted.model.likelihood
+    last = {s.hypothesis.name: (s, step) for step in discovery.search.steps for s in step.screened}
     return {
         name: rewhitened(s.change, step.before.model.likelihood, final) for name, (s, step) in last.items()
     }
@@ -83,7 +83,7 @@ def _changes(found: Discovery) -> dict[str, FloatArray]:
 def isolability_figure(table: Isolability, study: str) -> Sheet:
     """Matrix of |correlation| on the left, detectable sizes on the right, one row a hypothesis."""
     count = len(table.labels)
-    deep = ROW * count
+    deep = ISOLABILITY_ROW * count
     height, width = deep + 2.2, 3.25 + deep + 2.6
     margins = {"left": 3.0 / width, "right": 1 - 0.25 / width, "top": 1 - 0.7 / height}
     margins |= {"bottom": 1.5 / height, "wspace": 0.03}
@@ -92,8 +92,8 @@ def isolability_figure(table: Isolability, study: str) -> Sheet:
     _matrix(panels[0, 0], table)
     _sizes(panels[0, 1], table)
     _scale(page)
-    present = [s for s in BARS if s in table.statuses]
-    handles: list[Line2D | Patch] = [Patch(color=BARS[s], label=s) for s in present]
+    present = [s for s in BAR_COLOURS if s in table.statuses]
+    handles: list[Line2D | Patch] = [Patch(color=BAR_COLOURS[s], label=s) for s in present]
     handles.append(Line2D([], [], color="black", ls="--", lw=0.9, label="typical size"))
     page.add_legend(handles, len(handles), corner=("right", "bottom"))
     page.set_heading(f"What these records can tell apart: {study}", 1 - 0.12 / height)
@@ -105,8 +105,8 @@ def _matrix(panel: Panel, table: Isolability) -> None:
     panel.background = "#E4E7EA"
     edges = np.stack(np.meshgrid(np.arange(count + 1), np.arange(count + 1)), axis=-1)
     panel.add(
-        QuadMesh(edges, array=np.ma.masked_invalid(table.correlation), cmap=COLOURS,
-                 norm=BoundaryNorm(LEVELS, COLOURS.N), edgecolors="#ECEFF1", linewidth=0.3)
+        QuadMesh(edges, array=np.ma.masked_invalid(table.correlation), cmap=CORRELATION_MAP,
+                 norm=BoundaryNorm(LEVELS, CORRELATION_MAP.N), edgecolors="#ECEFF1", linewidth=0.3)
     )  # fmt: skip
     panel.x.set_limits(0, count)
     panel.y.set_limits(count, 0)
@@ -128,7 +128,7 @@ def _sizes(panel: Panel, table: Isolability) -> None:
     panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
     places = np.arange(len(table.labels)) + 0.5
     shown = np.clip(table.detectable, SMALLEST, LARGEST)
-    panel.bars(places, SMALLEST, shown, 0.7, [BARS[s] for s in table.statuses], zorder=2)
+    panel.bars(places, SMALLEST, shown, 0.7, [BAR_COLOURS[s] for s in table.statuses], zorder=2)
     beyond = places[table.detectable > LARGEST]
     panel.plot(np.full(beyond.size, LARGEST * 0.8), beyond, "", marker=">", color="white", ms=2.6, zorder=3)
     panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=4)
@@ -140,7 +140,7 @@ def _scale(page: Sheet) -> None:
     """Every level is as wide as the next."""
     panel = page.add_panel(Box(3.0 * POINTS, 0.95 * POINTS, 2.6 * POINTS, 0.12 * POINTS))
     edges = np.arange(float(len(LEVELS)))
-    draw_color_scale(panel, edges, COLOURS(np.arange(COLOURS.N)))
+    draw_color_scale(panel, edges, CORRELATION_MAP(np.arange(CORRELATION_MAP.N)))
     outline(panel)
     panel.x.set_ticks(edges, [f"{v:g}" for v in LEVELS])
     panel.number_size["x"] = 5.5

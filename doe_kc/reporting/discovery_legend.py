@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from doe_kc.discovery.belief import RELEVANT
 
-LEGEND = {
+DISCOVERY_LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0.",
     "Signs": "Toe-in +, camber top outwards +, caster top rearwards +; forces as their load case has them.",
     "Verdict": (

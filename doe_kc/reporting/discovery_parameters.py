@@ -10,14 +10,14 @@ from matplotlib.patches import FancyArrowPatch, Patch
 
 from doe_kc.discovery.gaps import RETURNS_FROM
 from doe_kc.reporting import style
-from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.discovery_gaps import MODEL_COLOURS
 from doe_kc.reporting.discovery_tables import TunedParameter
 from doe_kc.reporting.panel import Panel
 from doe_kc.reporting.sheet import Sheet, sheet
 from doe_kc.rounding import short, unit_words
 
-SHOWN = 40
-ROW = 0.17
+PARAMETERS_SHOWN = 40
+BIAS_ROW = 0.17
 RETURNS, LEAVES, STILL = style.PALETTE["blue"], style.PALETTE["vermillion"], "#8A9199"
 NEITHER = 0.1
 """Standard deviations of the prior by which a parameter must move for its arrow to have a colour."""
@@ -26,7 +26,9 @@ NEITHER = 0.1
 def moved_parameters(parameters: Sequence[TunedParameter]) -> list[TunedParameter]:
     """Those that are off nominal in one of the two fits, the ones that return furthest first."""
     off = [p for p in parameters if p.moved >= RETURNS_FROM]
-    return sorted(off, key=lambda p: _away(p) if np.isfinite(p.with_effect_distance) else -p.moved)[:SHOWN]
+    return sorted(off, key=lambda p: _away(p) if np.isfinite(p.with_effect_distance) else -p.moved)[
+        :PARAMETERS_SHOWN
+    ]
 
 
 def _away(p: TunedParameter) -> float:
@@ -37,7 +39,7 @@ def _away(p: TunedParameter) -> float:
 def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
     """An arrow a parameter, from the re-tuned model to the one with the effect, in sd of the prior."""
     rows = moved_parameters(parameters)
-    height = ROW * max(len(rows), 4) + 1.75
+    height = BIAS_ROW * max(len(rows), 4) + 1.75
     margins = {"left": 0.15, "right": 0.66, "top": 1 - 0.75 / height, "bottom": 0.95 / height}
     page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
     panel = panels[0, 0]
@@ -64,7 +66,7 @@ def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
 
 def _arrow(panel: Panel, y: float, p: TunedParameter) -> None:
     start, end = p.tuned_distance, p.with_effect_distance
-    panel.plot(start, y, "", marker="o", color=COLOURS["tuned"], mfc="white", ms=4, mew=1.2, zorder=3)
+    panel.plot(start, y, "", marker="o", color=MODEL_COLOURS["tuned"], mfc="white", ms=4, mew=1.2, zorder=3)
     if np.isfinite(end):
         arrow = FancyArrowPatch(
             (start, y), (end, y), arrowstyle="-|>", color=arrow_colour(p), lw=1.1, mutation_scale=7,
@@ -89,7 +91,7 @@ def arrow_colour(p: TunedParameter) -> str:
 
 def _handles(rows: Sequence[TunedParameter]) -> list[Line2D | Patch]:
     out: list[Line2D | Patch] = [
-        Line2D([], [], color=COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.2,
+        Line2D([], [], color=MODEL_COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.2,
                label="re-tuned without an effect")
     ]  # fmt: skip
     if any(np.isfinite(p.with_effect_distance) for p in rows):

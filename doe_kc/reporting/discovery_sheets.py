@@ -41,28 +41,28 @@ from doe_kc.rounding import sd_format
 
 ODDS = '[>=6]"> 6";0.0'
 """log10 odds; 6 stands for 6 or more."""
-STRONG = 20.0
+FULL_COLOUR_LEVEL = 20.0
 """Standard deviations at which the colour of a disagreement is full."""
 PRINTED = 40
 """Disagreements that are printed where fewer are beyond noise."""
 
 
-def disagreement_sheet(book: Workbook, found: Discovery, study: str) -> None:
+def disagreement_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     """Every contrast of the records with the model, what re-tuning explains worst first."""
     ws = book.create_sheet("Disagreement")
     below = (
-        f"Standard deviations; beyond ±{found.tuned.threshold:.1f} (nominal ±{found.raw.threshold:.1f}) "
+        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} (nominal ±{discovery.raw.threshold:.1f}) "
         "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
         "Empty: absorbed by re-tuning."
     )
     title(ws, f"Disagreement: {study}", below)
-    maps = {"nominal": found.raw, "re-tuned": found.tuned, "with effect": found.final}
+    maps = {"nominal": discovery.raw, "re-tuned": discovery.tuned, "with effect": discovery.final}
     rows = [
         (
             case_label(r.load_case), RESPONSE_LABELS[r.response], r.shape, _wheels(r.wheels), r.z_nominal,
             r.z_tuned, r.z_with_effect, _beyond(maps, (r.z_nominal, r.z_tuned, r.z_with_effect)),
         )
-        for r in sorted(disagreement_rows(found), key=lambda r: -np.nan_to_num(abs(r.z_tuned)))
+        for r in sorted(disagreement_rows(discovery), key=lambda r: -np.nan_to_num(abs(r.z_tuned)))
     ]  # fmt: skip
     rows.sort(key=lambda row: not row[-1])
     beyond = sum(bool(row[-1]) for row in rows)
@@ -71,7 +71,7 @@ def disagreement_sheet(book: Workbook, found: Discovery, study: str) -> None:
         "Beyond noise",
     )  # fmt: skip
     last = table(ws, heads, rows, formats=["", "", "", "", "0.0", "0.0", "0.0"])
-    _diverging(ws, f"E{FIRST}:G{last}", STRONG)
+    _diverging(ws, f"E{FIRST}:G{last}", FULL_COLOUR_LEVEL)
     ws.freeze_panes = ws.cell(FIRST, 5)
     widths(ws, [28, 32, 14, 18, 12, 12, 12, 30])
     page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
@@ -87,11 +87,11 @@ def _beyond(maps: Mapping[str, Map], values: Sequence[float]) -> str:
     return ", ".join(name for (name, found), z in each if abs(z) > found.threshold)
 
 
-def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
+def effects_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     """Effects that the records ask for, a row for each of their numbers."""
     ws = book.create_sheet("Effects")
     title(ws, f"Effects: {study}", "What the records ask for; leads where the verdict is unexplained.")
-    frame = effect_frame(found)
+    frame = effect_frame(discovery)
     heads = (
         "Id", "Effect", "Place", "Kind", "Probability", "log10 odds", "Against", "Size", "Value", "sd",
         "Unit", "Typical", "Times typical", "In words", "ln evidence", "Detectability, sd",
@@ -113,7 +113,7 @@ def effects_sheet(book: Workbook, found: Discovery, study: str) -> None:
     ws.print_area = f"A1:R{FIRST - 1 + max(1, len(frame))}"  # the rest is the same of every car
 
 
-def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
+def library_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     """Where every hypothesis stands."""
     ws = book.create_sheet("Library")
     below = (
@@ -122,8 +122,8 @@ def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
         "shows too little; see what hides it, and the parts that, measured on a bench, would show it."
     )
     title(ws, f"Library of effects: {study}", below)
-    frame = library_frame(found)
-    frame["status"] = [STATUS_WORDS[s.status] for s in ordered_standings(found)]
+    frame = library_frame(discovery)
+    frame["status"] = [STATUS_WORDS[s.status] for s in ordered_standings(discovery)]
     heads = (
         "Id", "Effect", "Place", "Status", "Detectable size", "Times typical", "Typical size", "Absorbed, %",
         "Hidden by", "Parts to measure", "Looks like", "Mistaken for", "What happens in the car", "Shown by",
@@ -136,7 +136,7 @@ def library_sheet(book: Workbook, found: Discovery, study: str) -> None:
     ws.print_area = f"A1:K{FIRST - 1 + len(frame)}"  # the rest is the same of every car
 
 
-def gap_sheet(book: Workbook, found: Discovery, study: str) -> None:
+def gap_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     """Whitened RMS of each load case and response."""
     ws = book.create_sheet("Gap")
     title(ws, f"Gap: {study}", "Whitened RMS of model minus measured; 1 is noise. First row: all records.")
@@ -145,7 +145,7 @@ def gap_sheet(book: Workbook, found: Discovery, study: str) -> None:
             case_label(r.case) if r.case else "All", RESPONSE_LABELS.get(r.response, "All"), r.gap.nominal,
             r.gap.tuned, r.gap.with_effect, r.gap.best_decoy, r.gap.noise_floor,
         )
-        for r in gap_rows(found)
+        for r in gap_rows(discovery)
     ]  # fmt: skip
     heads = ("Load case", "Response", "Nominal", "Re-tuned", "With effect", "Best decoy", "Noise floor")
     last = table(ws, heads, rows, formats=["", "", *["0.00"] * 5])
@@ -156,14 +156,14 @@ def gap_sheet(book: Workbook, found: Discovery, study: str) -> None:
     page(ws, study, single=True)
 
 
-def held_out_sheet(book: Workbook, found: Discovery, study: str) -> None:
+def held_out_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     """Load cases predicted from all the others."""
     ws = book.create_sheet("Held out")
     below = "Each load case predicted by models fitted to all others; RMS 1 = as good as predicted."
     title(ws, f"Load cases held out: {study}", below)
     rows = [
         (case_label(h.load_case), h.tuned.rms, h.with_effect.rms, h.law_granted.rms, h.gain)
-        for h in found.held_out
+        for h in discovery.held_out
     ]
     heads = ("Load case", "RMS re-tuned", "RMS with effect", "RMS, law granted", "Gain, ln density")
     table(ws, heads, rows, formats=["", "0.00", "0.00", "0.00", "0.0"])
@@ -173,14 +173,14 @@ def held_out_sheet(book: Workbook, found: Discovery, study: str) -> None:
     page(ws, study)
 
 
-def parameters_sheet(book: Workbook, found: Discovery, study: str) -> None:
+def parameters_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     """Tunable parameters before and after, with their distance from nominal."""
     ws = book.create_sheet("Parameters")
     below = "Distances from nominal in standard deviations of the prior; sd: of the last value."
-    if found.beyond:
+    if discovery.beyond:
         below += " Parameters marked lie outside the study's bounds, as the records ask for."
     title(ws, f"Parameters: {study}", below)
-    frame = parameter_frame(found)
+    frame = parameter_frame(discovery)
     frame["beyond"] = np.where(frame["beyond"], "outside", "")
     heads = (
         "Path", "Parameter", "Group", "Unit", "Nominal", "Re-tuned", "With effect", "sd",

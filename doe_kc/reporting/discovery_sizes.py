@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from doe_kc.discovery.amplitudes import amplitudes
-from doe_kc.discovery.result import Discovery, Estimate, Finding
+from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate
 from doe_kc.effects.hypothesis import Size
 from doe_kc.rounding import number, unit_words, with_sd
 
-SEEN = 2.0
+SIZE_LEVEL = 2.0
 """Standard deviations above zero from which a size that cannot be negative is told from none."""
 ONE_SIDED = 1.645
 """Standard deviations of a one-sided 95 % limit."""
@@ -21,7 +21,7 @@ class FoundSize:
     """One number of a found effect. times: as a multiple of the typical size (shapes: sd off typical)."""
 
     size: Size
-    estimate: Estimate
+    estimate: ParameterEstimate
     times: float
     limit: float
     seen: bool
@@ -43,9 +43,9 @@ class FoundSize:
         return f"{self.size.name} {'= ' if self.seen else ''}{self.words}"
 
 
-def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
+def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
-    known = zip(*amplitudes(found.fitted, finding.hypothesis), strict=True)
+    known = zip(*amplitudes(discovery.fitted, finding.hypothesis), strict=True)
     for size, estimate, (amplitude, sd) in zip(
         finding.hypothesis.sizes, finding.estimates, known, strict=True
     ):
@@ -55,10 +55,10 @@ def found_sizes(found: Discovery, finding: Finding) -> Iterator[FoundSize]:
             estimate,
             float(amplitude),
             size.value(float(amplitude + ONE_SIDED * sd)),
-            bool(not one_sided or amplitude >= SEEN * sd),
+            bool(not one_sided or amplitude >= SIZE_LEVEL * sd),
         )
 
 
-def size_words(found: Discovery, finding: Finding) -> str:
+def size_words(discovery: Discovery, finding: Finding) -> str:
     """All sizes of a finding in one line."""
-    return "; ".join(s.sentence for s in found_sizes(found, finding))
+    return "; ".join(s.sentence for s in found_sizes(discovery, finding))

@@ -39,37 +39,39 @@ class DisagreementRow:
     z_with_effect: float
 
 
-def disagreement_rows(found: Discovery) -> list[DisagreementRow]:
+def disagreement_rows(discovery: Discovery) -> list[DisagreementRow]:
     """Every contrast of the records."""
-    after = found.final.z if found.fitted.model.members else np.full(len(found.final.names), np.nan)
+    after = (
+        discovery.final.z if discovery.fitted.model.members else np.full(len(discovery.final.names), np.nan)
+    )
     return [
         DisagreementRow(
             c.load_case, c.response, c.shape, c.wheels,
-            float(found.raw.z[i]), float(found.tuned.z[i]), float(after[i]),
+            float(discovery.raw.z[i]), float(discovery.tuned.z[i]), float(after[i]),
         )
-        for i, c in enumerate(found.raw.names)
+        for i, c in enumerate(discovery.raw.names)
     ]  # fmt: skip
 
 
-def disagreement_frame(found: Discovery) -> pd.DataFrame:
+def disagreement_frame(discovery: Discovery) -> pd.DataFrame:
     """One row a contrast, as `DisagreementRow`."""
-    return pd.DataFrame([vars(r) for r in disagreement_rows(found)])
+    return pd.DataFrame([vars(r) for r in disagreement_rows(discovery)])
 
 
-def library_frame(found: Discovery) -> pd.DataFrame:
+def library_frame(discovery: Discovery) -> pd.DataFrame:
     """One row a hypothesis, found ones first; detectable in words and as a multiple of the typical size."""
-    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in found.standings}
-    return pd.DataFrame([_library(s, labels) for s in ordered_standings(found)])
+    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.standings}
+    return pd.DataFrame([_library(s, labels) for s in ordered_standings(discovery)])
 
 
 STATUS_ORDER = tuple(STATUS_WORDS)
 
 
-def ordered_standings(found: Discovery) -> list[Standing]:
+def ordered_standings(discovery: Discovery) -> list[Standing]:
     """By status, then in the order of the library."""
     order = list(EFFECTS)
     return sorted(
-        found.standings,
+        discovery.standings,
         key=lambda s: (
             STATUS_ORDER.index(s.status),
             order.index(s.hypothesis.effect),
@@ -114,20 +116,22 @@ def alike_words(standing: Standing, labels: Mapping[str, str]) -> str:
     return "; ".join(f"{labels.get(name, name)} ({r:+.2f})" for name, r in standing.alike)
 
 
-def gap_frame(found: Discovery) -> pd.DataFrame:
+def gap_frame(discovery: Discovery) -> pd.DataFrame:
     """Whitened RMS of all records, then of each load case and response; 1 is noise."""
-    rows = [{"load_case": "all", "response": "all"} | vars(found.gap)]
-    rows += [{"load_case": g.load_case, "response": g.response} | vars(g.gap) for g in found.gaps]
+    rows = [{"load_case": "all", "response": "all"} | vars(discovery.gap)]
+    rows += [{"load_case": g.load_case, "response": g.response} | vars(g.gap) for g in discovery.gaps]
     frame = pd.DataFrame(rows)
-    if not found.fitted.model.members:
+    if not discovery.fitted.model.members:
         frame["with_effect"] = math.nan
     return frame[["load_case", "response", "nominal", "tuned", "with_effect", "best_decoy", "noise_floor"]]
 
 
-def held_out_frame(found: Discovery) -> pd.DataFrame:
+def held_out_frame(discovery: Discovery) -> pd.DataFrame:
     """One row a load case that was left out of the fit; RMS in sd of the prediction, gain in ln density."""
     columns = ["load_case", "rms_tuned", "rms_with_effect", "rms_law_granted", "gain_ln_density"]
-    rows = [(h.load_case, h.tuned.rms, h.with_effect.rms, h.law_granted.rms, h.gain) for h in found.held_out]
+    rows = [
+        (h.load_case, h.tuned.rms, h.with_effect.rms, h.law_granted.rms, h.gain) for h in discovery.held_out
+    ]
     return pd.DataFrame(rows, columns=columns)
 
 
@@ -155,9 +159,9 @@ class TunedParameter:
         return float(np.nanmax(np.abs([self.tuned_distance, self.with_effect_distance])))
 
 
-def tuned_parameters(found: Discovery) -> list[TunedParameter]:
+def tuned_parameters(discovery: Discovery) -> list[TunedParameter]:
     """In the order of the variables."""
-    tuned, final = found.search.tuned, found.fitted
+    tuned, final = discovery.search.tuned, discovery.fitted
     model = final.model
     has_effect = bool(model.members)
     sd = np.sqrt(np.diag(final.covariance))
@@ -176,12 +180,12 @@ def tuned_parameters(found: Discovery) -> list[TunedParameter]:
                 sd=float(sd[i]) * v.slope(two),
                 tuned_distance=float((one - start) / model.prior_sd[i]),
                 with_effect_distance=float((two - start) / model.prior_sd[i]) if has_effect else math.nan,
-                beyond=v.path in found.beyond,
+                beyond=v.path in discovery.beyond,
             )
         )
     return out
 
 
-def parameter_frame(found: Discovery) -> pd.DataFrame:
+def parameter_frame(discovery: Discovery) -> pd.DataFrame:
     """One row a tunable parameter, as `TunedParameter`."""
-    return pd.DataFrame([vars(p) for p in tuned_parameters(found)])
+    return pd.DataFrame([vars(p) for p in tuned_parameters(discovery)])

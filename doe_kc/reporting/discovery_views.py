@@ -38,49 +38,49 @@ class ModelView:
         return np.asarray(np.sqrt(np.mean((self.models[model] - self.measured) ** 2, axis=1)))
 
 
-def model_names(found: Discovery) -> list[str]:
+def model_names(discovery: Discovery) -> list[str]:
     """Models that there are, by the names of `Gap`."""
     names = ["nominal", "tuned"]
-    if found.fitted.model.members:
+    if discovery.fitted.model.members:
         names.append("with_effect")
-    return names if found.decoy is None else [*names, "best_decoy"]
+    return names if discovery.decoy is None else [*names, "best_decoy"]
 
 
-def model_values(found: Discovery) -> dict[str, list[FloatArray]]:
+def model_values(discovery: Discovery) -> dict[str, list[FloatArray]]:
     """Every model's curves in their units, in the order of the records'.
 
     Each fit's residual is in units of its own errors: those of a model with effects grant the shape of
     their laws.
     """
-    tuned = found.search.tuned
-    fits = {"nominal": (tuned.model.likelihood, found.nominal)}
-    each = {"tuned": tuned, "with_effect": found.fitted}
-    if found.decoy is not None:
-        each["best_decoy"] = found.decoy.fit
+    tuned = discovery.search.tuned
+    fits = {"nominal": (tuned.model.likelihood, discovery.nominal)}
+    each = {"tuned": tuned, "with_effect": discovery.fitted}
+    if discovery.decoy is not None:
+        each["best_decoy"] = discovery.decoy.fit
     fits |= {name: (fit.model.likelihood, fit.residual) for name, fit in each.items()}
     return {
         name: [curve.value + curve.root @ residual[place] for curve, place in likelihood.slices()]
         for name, (likelihood, residual) in fits.items()
-        if name in model_names(found)
+        if name in model_names(discovery)
     }
 
 
-def model_views(found: Discovery) -> dict[tuple[str, str, Branches], ModelView]:
+def model_views(discovery: Discovery) -> dict[tuple[str, str, Branches], ModelView]:
     """Every load case and response of the records, by (load case, response, branches)."""
-    model = found.search.tuned.model
+    model = discovery.search.tuned.model
     pairs: dict[tuple[str, str, Branches], list[tuple[int, CurveData]]] = {}
     for i, curve in enumerate(model.likelihood.curves):
         pairs.setdefault((curve.load_case, curve.response, curve.branches), []).append((i, curve))
-    values = model_values(found)
+    values = model_values(discovery)
     labels = {name: f"{case.input_label} [{case.unit}]" for name, case in model.axle.load_cases.items()}
     return {key: _view(key, labels[key[0]], members, values) for key, members in pairs.items()}
 
 
-def view_gaps(found: Discovery) -> dict[tuple[str, str, Branches], dict[str, float]]:
+def view_gaps(discovery: Discovery) -> dict[tuple[str, str, Branches], dict[str, float]]:
     """Whitened RMS of both wheels, in units of the records' own errors, by model."""
-    likelihood = found.search.tuned.model.likelihood
+    likelihood = discovery.search.tuned.model.likelihood
     squares: dict[tuple[str, str, Branches], dict[str, list[FloatArray]]] = {}
-    for name, values in model_values(found).items():
+    for name, values in model_values(discovery).items():
         for curve, value in zip(likelihood.curves, values, strict=True):
             key = (curve.load_case, curve.response, curve.branches)
             each = squares.setdefault(key, {}).setdefault(name, [])

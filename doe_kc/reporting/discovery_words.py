@@ -30,7 +30,7 @@ STATUS_WORDS: dict[Status, str] = {
     "no solution": "has no equilibrium in this axle",
 }
 SIDE_WORDS = {"L": "left", "R": "right"}
-MODELS = {
+MODEL_LABELS = {
     "nominal": "nominal",
     "tuned": "re-tuned",
     "with_effect": "with effect",
@@ -39,9 +39,9 @@ MODELS = {
 """Names of the four models that are compared, by their field in `Gap`."""
 
 
-def own_sentences(found: Discovery) -> list[str]:
+def own_sentences(discovery: Discovery) -> list[str]:
     """The verdict in words; without what remains unexplained where that is listed in full beside it."""
-    return [s for s in found.sentences if not (found.unexplained and s.startswith("Unexplained:"))]
+    return [s for s in discovery.sentences if not (discovery.unexplained and s.startswith("Unexplained:"))]
 
 
 def effect_label(ident: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from openpyxl.workbook import Workbook
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.discovery_legend import LEGEND
+from doe_kc.reporting.discovery_legend import DISCOVERY_LEGEND
 from doe_kc.reporting.discovery_sheets import (
     disagreement_sheet,
     effects_sheet,
@@ -23,7 +23,7 @@ from doe_kc.reporting.workbook_terms import terms_sheet
 
 
 def discovery_workbook(
-    found: Discovery, *, study: str, date: str, notes: Mapping[str, str] | None = None
+    discovery: Discovery, *, study: str, date: str, notes: Mapping[str, str] | None = None
 ) -> Workbook:
     """Sheets Verdict, Disagreement, Effects, Library, Gap, Held out, Parameters and Legend.
 
@@ -31,19 +31,19 @@ def discovery_workbook(
     of that, title -> text (axle file, measurement, ...).
     """
     book = new_book(f"Missing effects: {study}")
-    verdict_sheet(book, found, study, date, notes or {})
-    disagreement_sheet(book, found, study)
-    effects_sheet(book, found, study)
-    library_sheet(book, found, study)
-    gap_sheet(book, found, study)
-    held_out_sheet(book, found, study)
-    parameters_sheet(book, found, study)
-    terms_sheet(book, study, LEGEND)
+    verdict_sheet(book, discovery, study, date, notes or {})
+    disagreement_sheet(book, discovery, study)
+    effects_sheet(book, discovery, study)
+    library_sheet(book, discovery, study)
+    gap_sheet(book, discovery, study)
+    held_out_sheet(book, discovery, study)
+    parameters_sheet(book, discovery, study)
+    terms_sheet(book, study, DISCOVERY_LEGEND)
     return book
 
 
 def write_discovery_workbook(
-    path: Path, found: Discovery, *, study: str, date: str, notes: Mapping[str, str] | None = None
+    path: Path, discovery: Discovery, *, study: str, date: str, notes: Mapping[str, str] | None = None
 ) -> Path:
     """Write `discovery_workbook`; RunError naming path and remedy when the place is locked or full."""
-    return write_book(path, discovery_workbook(found, study=study, date=date, notes=notes))
+    return write_book(path, discovery_workbook(discovery, study=study, date=date, notes=notes))

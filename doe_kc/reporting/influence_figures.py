@@ -26,12 +26,12 @@ from doe_kc.typing import FloatArray
 
 ANNOTATE = 5.0
 """Percent from which a cell shows its number."""
-TOP = 10
-PANELS = 3
+STRONGEST_COUNT = 10
+INFLUENCE_PANELS = 3
 """Columns of small multiples."""
 ROW, COLUMN = 0.165, 0.36
 """Inches of a cell of the heat map."""
-LINE = PALETTE["black"]
+LINE_COLOUR = PALETTE["black"]
 GAP = 6.0
 """Points between the heat map and what is beside it."""
 HEAD = 0.72 * POINTS
@@ -88,7 +88,13 @@ def _matrix(panel: Panel, values: FloatArray) -> None:
         parts.update(dict.fromkeys(parts, False))
     for i, j in np.argwhere(np.abs(np.nan_to_num(values)) >= ANNOTATE):
         panel.text(
-            j + 0.5, i + 0.5, f"{values[i, j]:.0f}", size=5.5, color=LINE, across="center", along="center"
+            j + 0.5,
+            i + 0.5,
+            f"{values[i, j]:.0f}",
+            size=5.5,
+            color=LINE_COLOUR,
+            across="center",
+            along="center",
         )
 
 
@@ -122,24 +128,24 @@ def _lines(panel: Panel, influence: Influence, at: Layout) -> None:
     groups = [influence.parameters[i].group for i in at.rows]
     for k in range(1, len(cases)):
         if cases[k] != cases[k - 1]:
-            panel.vline(k, color=LINE, lw=0.9)
+            panel.vline(k, color=LINE_COLOUR, lw=0.9)
     for k in range(1, len(groups)):
         if groups[k] != groups[k - 1]:
-            panel.hline(k, color=LINE, lw=0.9)
+            panel.hline(k, color=LINE_COLOUR, lw=0.9)
 
 
 def influence_bars(influence: Influence, *, study: str) -> Sheet:
     """The ten strongest parameters of each characteristic, signed; one small panel each."""
     at = layout(influence)
-    rows = -(-len(at.columns) // PANELS)
+    rows = -(-len(at.columns) // INFLUENCE_PANELS)
     height = 0.8 + 1.85 * rows
     margins = {"left": 0.1, "right": 0.985, "wspace": 0.45, "hspace": 0.42}
     margins |= {"bottom": 0.5 / height, "top": 1 - 0.75 / height}
-    page, panels = sheet(rows, PANELS, size=(8.27, height), margins=margins)
+    page, panels = sheet(rows, INFLUENCE_PANELS, size=(8.27, height), margins=margins)
     for panel, j in zip(panels.flat, at.columns, strict=False):
         _bars(panel, influence, j)
     del page.panels[len(at.columns) :]
-    for panel in page.panels[-PANELS:]:
+    for panel in page.panels[-INFLUENCE_PANELS:]:
         panel.numbers["x"] = True
         panel.set_labels("percent of the largest", None)
     page.set_heading(f"Strongest parameters of each characteristic: {study}", 1 - 0.1 / height)
@@ -148,7 +154,7 @@ def influence_bars(influence: Influence, *, study: str) -> Sheet:
 
 def _bars(panel: Panel, influence: Influence, j: int) -> None:
     column = influence.percent[:, j]
-    strongest = np.argsort(-np.abs(column), kind="stable")[:TOP]
+    strongest = np.argsort(-np.abs(column), kind="stable")[:STRONGEST_COUNT]
     strongest = strongest[np.abs(column[strongest]) >= 0.5]
     entry = influence.characteristics[j]
     values = column[strongest]
@@ -160,9 +166,9 @@ def _bars(panel: Panel, influence: Influence, j: int) -> None:
             v, float(y), f"{v:+.0f}", shift=(2.0 if v > 0 else -2.0, 0.0), size=5.5, along="center",
             across="left" if v > 0 else "right",
         )  # fmt: skip
-    panel.vline(0.0, color=LINE, lw=0.6)
+    panel.vline(0.0, color=LINE_COLOUR, lw=0.6)
     panel.x.set_limits(-128.0, 128.0)
-    panel.y.set_limits(TOP - 0.4, -0.6)
+    panel.y.set_limits(STRONGEST_COUNT - 0.4, -0.6)
     panel.y.set_ticks(places, [influence.parameters[i].path for i in strongest])
     panel.number_size["y"] = 6.0
     panel.set_title(f"{case_label(entry.load_case)}\n{entry.label}", size=7.5)

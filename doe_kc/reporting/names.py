@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
 from doe_kc.solver.load_cases import LOAD_CASES
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 
 RESPONSE_NAMES = {
     "spin": "caster (knuckle)",
@@ -22,7 +22,7 @@ def case_label(load_case: str) -> str:
 
 def input_label(load_case: str, unit: str) -> str:
     """Name, sign and unit of a load case's input; the technique of a roll is told by its unit, deg or mm."""
-    cases = [LOAD_CASES[load_case], *(TECHNIQUES.values() if load_case == "roll" else ())]
+    cases = [LOAD_CASES[load_case], *(ROLL_TECHNIQUES.values() if load_case == "roll" else ())]
     name = next((c.input_label for c in cases if c.unit == unit), "Input")
     return f"{name} [{unit}]"
 

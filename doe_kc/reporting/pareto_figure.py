@@ -22,7 +22,7 @@ from doe_kc.typing import FloatArray
 
 SIZE = (11.69, 5.4)
 MARGINS = {"left": 0.065, "right": 0.985, "top": 0.86, "bottom": 0.2, "wspace": 0.14}
-MOST = 300
+DESIGNS_DRAWN = 300
 """Designs drawn, best ratings first: more lines hide each other."""
 NARROW = 0.05
 """Share of the widest range below which an objective is in no conflict worth a picture."""
@@ -53,7 +53,7 @@ def _parallel(panel: Panel, front: Front) -> list[Line2D]:
     """Lines with a word in the legend."""
     _scale(panel.y, front.values)
     places = np.arange(len(front.names))
-    for row in front.values[1:MOST]:
+    for row in front.values[1:DESIGNS_DRAWN]:
         panel.plot(places, row, color=OTHERS, lw=0.6, alpha=0.5)
     shown = [
         panel.plot(places, front.values[place], dash, marker=marker, color=color, lw=2.0, ms=5, label=text)
@@ -70,7 +70,15 @@ def _pair(panel: Panel, front: Front) -> None:
     i, j, rho = most_in_conflict(front.values)
     _scale(panel.x, front.values[:, [i]])
     _scale(panel.y, front.values[:, [j]])
-    panel.plot(front.values[:MOST, i], front.values[:MOST, j], "", marker="o", color=OTHERS, ms=3, alpha=0.7)
+    panel.plot(
+        front.values[:DESIGNS_DRAWN, i],
+        front.values[:DESIGNS_DRAWN, j],
+        "",
+        marker="o",
+        color=OTHERS,
+        ms=3,
+        alpha=0.7,
+    )
     for place, color, marker, *_ in _marked(front):
         panel.plot(front.values[place, i], front.values[place, j], "", marker=marker, color=color, ms=8)
     panel.set_labels(f"{_name(front.names[i])}: loss", f"{_name(front.names[j])}: loss")

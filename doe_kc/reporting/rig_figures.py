@@ -22,14 +22,14 @@ from doe_kc.reporting.style import A4, PALETTE
 from doe_kc.typing import FloatArray
 
 SIDE_TITLES = ("Left wheel", "Right wheel")
-LOOP = PALETTE["grey"]
-UNLOAD = PALETTE["blue"]
-LOAD = PALETTE["orange"]
-TREND = PALETTE["black"]
-GRADIENT = PALETTE["vermillion"]
-RESIDUAL = (PALETTE["blue"], PALETTE["vermillion"])
-WINDOW = "#EAF3EA"
-MARGINS = {"left": 0.09, "right": 0.988, "top": 0.948, "bottom": 0.078, "wspace": 0.355, "hspace": 0.12}
+LOOP_COLOUR = PALETTE["grey"]
+UNLOAD_COLOUR = PALETTE["blue"]
+LOAD_COLOUR = PALETTE["orange"]
+TREND_COLOUR = PALETTE["black"]
+GRADIENT_COLOUR = PALETTE["vermillion"]
+RESIDUAL_COLOURS = (PALETTE["blue"], PALETTE["vermillion"])
+WINDOW_COLOUR = "#EAF3EA"
+RIG_MARGINS = {"left": 0.09, "right": 0.988, "top": 0.948, "bottom": 0.078, "wspace": 0.355, "hspace": 0.12}
 
 
 def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
@@ -39,7 +39,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
     """
     case = measurement.curves.cases[load_case]
     run = measurement.runs[load_case][0]
-    page, panels = sheet(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=MARGINS)
+    page, panels = sheet(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=RIG_MARGINS)
     gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
     for row, response in zip(panels, RIG_RESPONSES, strict=True):
         for side, name in enumerate(SIDES):
@@ -85,13 +85,13 @@ def _without_remark(axis: str) -> str:
 def _panel(panel: Panel, measurement: Measurement, load_case: str, response: str, side: int) -> None:
     run = measurement.runs[load_case][0]
     case = measurement.curves.cases[load_case]
-    panel.plot(run.record.input, _changes(measurement, load_case, response, side), color=LOOP, lw=0.7)
+    panel.plot(run.record.input, _changes(measurement, load_case, response, side), color=LOOP_COLOUR, lw=0.7)
     half = case.half_width[response][side]
     mean = case.mean[response][side]
-    panel.plot(case.input, mean + half, color=UNLOAD, lw=0.9)
-    panel.plot(case.input, mean - half, color=LOAD, lw=0.9)
+    panel.plot(case.input, mean + half, color=UNLOAD_COLOUR, lw=0.9)
+    panel.plot(case.input, mean - half, color=LOAD_COLOUR, lw=0.9)
     fit = measurement.trends[load_case][response][side]
-    panel.plot(case.input, fit(case.input), dash="--", color=TREND, lw=0.8)
+    panel.plot(case.input, fit(case.input), dash="--", color=TREND_COLOUR, lw=0.8)
 
 
 def _changes(measurement: Measurement, load_case: str, response: str, side: int) -> FloatArray:
@@ -105,10 +105,10 @@ def _changes(measurement: Measurement, load_case: str, response: str, side: int)
 
 def _gradient(panel: Panel, gradient: Gradient) -> None:
     window = np.array([-gradient.window, gradient.window])
-    panel.vspan(window[0], window[1], color=WINDOW, zorder=0)
-    panel.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT, lw=1.6)
+    panel.vspan(window[0], window[1], color=WINDOW_COLOUR, zorder=0)
+    panel.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT_COLOUR, lw=1.6)
     scale, unit = _readable(gradient.unit)
-    _note(panel, f"{scale * gradient.value:.4g} ± {scale * gradient.sd:.1g} {unit}", GRADIENT)
+    _note(panel, f"{scale * gradient.value:.4g} ± {scale * gradient.sd:.1g} {unit}", GRADIENT_COLOUR)
 
 
 def _readable(unit: str) -> tuple[float, str]:
@@ -145,12 +145,12 @@ def _residual(panel: Panel, measurement: Measurement, load_case: str, response: 
             "",
             marker=".",
             ms=1.2,
-            color=RESIDUAL[side],
+            color=RESIDUAL_COLOURS[side],
             rasterized=True,
         )
     degrees = ", ".join(str(t.degree) for t in measurement.trends[load_case][response])
-    _note(panel, f"trend degree {degrees}", TREND)
-    panel.hline(0.0, color=TREND, lw=0.6)
+    _note(panel, f"trend degree {degrees}", TREND_COLOUR)
+    panel.hline(0.0, color=TREND_COLOUR, lw=0.6)
     low, high = panel.y.limits
     panel.y.set_limits(low, high + 0.15 * (high - low))
 
@@ -165,14 +165,14 @@ def _same_scale(left: Panel, right: Panel) -> None:
 
 def _legend(page: Sheet, runs: int) -> None:
     handles: list[Line2D | Patch] = [
-        Line2D([], [], color=LOOP, lw=1, label="main run, samples"),
-        Line2D([], [], color=UNLOAD, label=f"input falling, {_runs(runs)}"),
-        Line2D([], [], color=LOAD, label=f"input rising, {_runs(runs)}"),
-        Line2D([], [], color=TREND, ls="--", label="polynomial trend"),
-        Line2D([], [], color=GRADIENT, lw=1.6, label="gradient at static"),
-        Patch(color=WINDOW, label="fit window"),
-        Line2D([], [], color=RESIDUAL[0], ls="", marker=".", label="residual left"),
-        Line2D([], [], color=RESIDUAL[1], ls="", marker=".", label="residual right"),
+        Line2D([], [], color=LOOP_COLOUR, lw=1, label="main run, samples"),
+        Line2D([], [], color=UNLOAD_COLOUR, label=f"input falling, {_runs(runs)}"),
+        Line2D([], [], color=LOAD_COLOUR, label=f"input rising, {_runs(runs)}"),
+        Line2D([], [], color=TREND_COLOUR, ls="--", label="polynomial trend"),
+        Line2D([], [], color=GRADIENT_COLOUR, lw=1.6, label="gradient at static"),
+        Patch(color=WINDOW_COLOUR, label="fit window"),
+        Line2D([], [], color=RESIDUAL_COLOURS[0], ls="", marker=".", label="residual left"),
+        Line2D([], [], color=RESIDUAL_COLOURS[1], ls="", marker=".", label="residual right"),
     ]
     page.add_legend(handles, 4)
 

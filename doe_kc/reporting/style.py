@@ -34,7 +34,7 @@ PALETTE: Mapping[str, str] = {
 }
 """Okabe & Ito (2008), distinguishable with the common kinds of colour blindness."""
 
-CYCLE = tuple(PALETTE[k] for k in ("blue", "vermillion", "green", "orange", "purple", "sky", "black"))
+COLOUR_CYCLE = tuple(PALETTE[k] for k in ("blue", "vermillion", "green", "orange", "purple", "sky", "black"))
 
 RC: Mapping[str, object] = {"svg.fonttype": "none", "svg.hashsalt": "doe_kc"}
 """SVG: texts that can be searched and edited, and the same names of its parts every time."""

@@ -14,36 +14,36 @@ from doe_kc.reporting.panel import Panel
 from doe_kc.reporting.panel_axis import ticks
 from doe_kc.reporting.series import draw_series
 from doe_kc.reporting.sheet import Sheet, sheet
-from doe_kc.reporting.style import CYCLE, PALETTE
+from doe_kc.reporting.style import COLOUR_CYCLE, PALETTE
 from doe_kc.reporting.surrogate_tables import left_out_predictions, left_out_sd
 from doe_kc.reporting.words import POINTS
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
-from doe_kc.surrogates.validation import NOMINAL, WIDTH
+from doe_kc.surrogates.validation import NOMINAL, NOMINAL_WIDTH
 from doe_kc.typing import FloatArray
 
-PANELS = 5
+SURROGATE_PANELS = 5
 """Columns of small multiples."""
 MARKERS = "osD^vPX"
-LEAST = 1e-5
+QUALITY_AXIS_END = 1e-5
 """1 - Q2 at which the axis of the quality ends."""
 
 
 def predicted_against_true(report: SurrogateReport, *, study: str) -> Sheet:
     """One panel a characteristic: left-out predictions with their calibrated 95 % intervals."""
     count = len(report.designs.characteristics)
-    rows = -(-count // PANELS)
+    rows = -(-count // SURROGATE_PANELS)
     height = 1.2 + 2.05 * rows
     margins = {"left": 0.075, "right": 0.985, "wspace": 0.5, "hspace": 0.62}
     margins |= {"bottom": 0.6 / height, "top": 1.0 - 1.15 / height}
-    page, panels = sheet(rows, PANELS, size=(11.69, height), share_x=False, margins=margins)
+    page, panels = sheet(rows, SURROGATE_PANELS, size=(11.69, height), share_x=False, margins=margins)
     predicted, sd = left_out_predictions(report), left_out_sd(report)
     for j, panel in enumerate(panels.flat[:count]):
         _panel(panel, report, j, predicted[:, j], sd[:, j])
     del page.panels[count:]
     for panel in panels[:, 0]:
         panel.set_labels(None, "predicted")
-    for panel in page.panels[-PANELS:]:
+    for panel in page.panels[-SURROGATE_PANELS:]:
         panel.set_labels("true value", None)
     title = f"Left-out predictions with 95 % intervals against the true solver: {study}"
     if report.targets:
@@ -55,7 +55,7 @@ def predicted_against_true(report: SurrogateReport, *, study: str) -> Sheet:
 def _panel(panel: Panel, report: SurrogateReport, j: int, predicted: FloatArray, sd: FloatArray) -> None:
     entry, true = report.designs.characteristics[j], report.designs.y[:, j]
     name = report.fitted.chosen[j]
-    bars = WIDTH * sd
+    bars = NOMINAL_WIDTH * sd
     panel.segments(
         true, predicted - bars, true, predicted + bars, colors=PALETTE["sky"], linewidths=0.6, zorder=1
     )
@@ -116,8 +116,8 @@ def _missed(panel: Panel, report: SurrogateReport, places: FloatArray) -> list[L
     chosen = np.array(report.fitted.chosen)
     handles = []
     for k, (name, judged) in enumerate(report.fitted.models.items()):
-        missed = np.clip(1.0 - judged.quality.q2, LEAST, None)
-        color = CYCLE[k % len(CYCLE)]
+        missed = np.clip(1.0 - judged.quality.q2, QUALITY_AXIS_END, None)
+        color = COLOUR_CYCLE[k % len(COLOUR_CYCLE)]
         marker = MARKERS[k % len(MARKERS)]
         panel.plot(missed, places, "", marker=marker, ms=3.5, mfc="none", mew=0.8, color=color)
         used = np.where(chosen == name, missed, np.nan)

@@ -27,15 +27,15 @@ from doe_kc.reporting.workbook_file import new_book, write_book
 from doe_kc.reporting.workbook_table import FIRST, Value, table
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
-from doe_kc.surrogates.selection import EXACT, MARGIN
+from doe_kc.surrogates.selection import ERROR_MARGIN, EXACT
 from doe_kc.typing import FloatArray
 
-LEGEND = (
+SURROGATE_LEGEND = (
     ("Q2", "1 - left-out squared error / squares about the mean: 1 = perfect, 0 = no better than the mean."),
     ("RMSE", "Root mean square left-out error, in the characteristic's unit."),
     ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration."),
     ("Sharpness", "Half width of the 95 % interval over the characteristic's standard deviation."),
-    ("Chosen", f"The simplest model whose left-out squared error is within {MARGIN:.0%} of the best one's, "
+    ("Chosen", f"The simplest model whose left-out squared error is within {ERROR_MARGIN:.0%} of the best one's, "
      f"or whose 1 - Q2 is at most {EXACT:g}."),
     ("Left out", "Models with many hyper-parameters are refitted to each fold; linear and radial ones leave "
      "one design out in closed form; the quadratic one chooses its terms anew in each fold."),
@@ -136,7 +136,7 @@ def _legend(book: Workbook, report: SurrogateReport, study: str, date: str) -> N
         f"{len(designs.x)} used; {designs.failed} failed, {designs.elsewhere} of other variables or bounds"
     )
     skipped = [(f"{name} left out", reason) for name, reason in report.fitted.skipped.items()]
-    rows: list[Sequence[Value]] = [*LEGEND, ("Designs", counts), *skipped]
+    rows: list[Sequence[Value]] = [*SURROGATE_LEGEND, ("Designs", counts), *skipped]
     table(ws, ("Term", "Meaning"), rows, filtered=False)
     widths(ws, [18, 130])
     page(ws, study)

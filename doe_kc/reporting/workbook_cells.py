@@ -58,7 +58,7 @@ class CellFill(PatternFill):  # type: ignore[misc]
 
 cell_font, cell_alignment = lru_cache(CellFont), lru_cache(CellAlignment)
 
-HEADER = CellFill("solid", fgColor="E4E8EC")
+HEADER_FILL = CellFill("solid", fgColor="E4E8EC")
 FLAGGED = CellFill("solid", fgColor="FBE3F0")
 MUTED = "8A9199"
 THIN, THICK = Side(style="thin", color="C3C9CF"), Side(style="medium", color="3C4650")

@@ -42,7 +42,7 @@ SELECTION = {
     "Selection: bounds": "Default bounds, widened where the expected move ends at a bound; never across "
     "zero for what must stay positive.",
 }
-LINE = 115
+LEGEND_LINE_LENGTH = 115
 """Characters that fit one line of the text column."""
 
 
@@ -71,7 +71,7 @@ def legend_sheet(
     for row, (key, text) in enumerate(lines.items(), start=4):
         put(ws, row, 1, key, bold=True, vertical="top", wrap=True)
         put(ws, row, 2, text, wrap=True, vertical="top")
-        ws.row_dimensions[row].height = 14.5 * (1 + max(len(text) // LINE, len(key) // 26))
+        ws.row_dimensions[row].height = 14.5 * (1 + max(len(text) // LEGEND_LINE_LENGTH, len(key) // 26))
     frame(ws, range(4, 4 + len(lines)), range(1, 3))
     widths(ws, [28, 120])
     page(ws, study)

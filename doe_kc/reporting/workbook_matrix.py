@@ -17,7 +17,7 @@ from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
     FLAGGED,
-    HEADER,
+    HEADER_FILL,
     MUTED,
     colour_scale,
     frame,
@@ -40,7 +40,7 @@ SECTION, CASE, NAME, BASELINE, UNIT, FIRST = 4, 5, 6, 7, 8, 9
 REMARK = "Description, remark"
 LABELS = 4
 """Columns before the matrix: group, label, path, step."""
-WIDTH = 8.0
+PERCENT_WIDTH = 8.0
 """Characters of a percent column; values with their decimals need more."""
 
 
@@ -157,16 +157,16 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
     _merged(ws, CASE, [case_label(e.load_case) for e in entries])
     decimals = _formats(influence.baseline[list(at.columns)][None, :])
     for c, (entry, j) in enumerate(zip(entries, at.columns, strict=True), start=LABELS + 1):
-        put(ws, NAME, c, entry.label, rotation=90, horizontal="center", vertical="bottom", fill=HEADER)
+        put(ws, NAME, c, entry.label, rotation=90, horizontal="center", vertical="bottom", fill=HEADER_FILL)
         value = float(influence.baseline[j])
         number = decimals[c - LABELS - 1]
-        put(ws, BASELINE, c, value, number=number, horizontal="center", fill=HEADER, color=MUTED)
-        put(ws, UNIT, c, entry.unit, horizontal="center", vertical="top", fill=HEADER)
+        put(ws, BASELINE, c, value, number=number, horizontal="center", fill=HEADER_FILL, color=MUTED)
+        put(ws, UNIT, c, entry.unit, horizontal="center", vertical="top", fill=HEADER_FILL)
     for c, text in enumerate(("Group", "Parameter", "Path", "Step"), start=1):
-        put(ws, UNIT, c, text, bold=True, vertical="top", fill=HEADER)
-    put(ws, BASELINE, 1, "Nominal value of the characteristic", fill=HEADER, color=MUTED)
-    put(ws, NAME, 1, "Characteristic", bold=True, vertical="bottom", fill=HEADER)
-    put(ws, CASE, 1, "Load case", bold=True, fill=HEADER)
+        put(ws, UNIT, c, text, bold=True, vertical="top", fill=HEADER_FILL)
+    put(ws, BASELINE, 1, "Nominal value of the characteristic", fill=HEADER_FILL, color=MUTED)
+    put(ws, NAME, 1, "Characteristic", bold=True, vertical="bottom", fill=HEADER_FILL)
+    put(ws, CASE, 1, "Load case", bold=True, fill=HEADER_FILL)
     for row in (SECTION, CASE, NAME, BASELINE):
         ws.merge_cells(start_row=row, end_row=row, start_column=1, end_column=LABELS)
     extra = 3 if sums else 1
@@ -183,7 +183,7 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
             20,
             20,
             9,
-            *[WIDTH if sums else 1.3 * WIDTH] * len(at.columns),
+            *[PERCENT_WIDTH if sums else 1.3 * PERCENT_WIDTH] * len(at.columns),
             *([6.5, 5.0] if sums else []),
             46,
         ],
@@ -205,14 +205,14 @@ def _tail_heads(ws: Worksheet, at: Layout, *, sums: bool) -> None:
         c = at.last_column + k
         put(ws, NAME, c, text, bold=True, rotation=rotation, horizontal="center", vertical="bottom")
         for row in (SECTION, CASE, NAME, BASELINE, UNIT):
-            ws.cell(row, c).fill = HEADER
+            ws.cell(row, c).fill = HEADER_FILL
 
 
 def _merged(ws: Worksheet, row: int, names: list[str]) -> None:
     column = LABELS + 1
     for name, members in groupby(names):
         count = len(list(members))
-        put(ws, row, column, name, bold=True, horizontal="center", fill=HEADER, wrap=True)
+        put(ws, row, column, name, bold=True, horizontal="center", fill=HEADER_FILL, wrap=True)
         ws.merge_cells(start_row=row, end_row=row, start_column=column, end_column=column + count - 1)
         column += count
     ws.row_dimensions[row].height = 30 if row == CASE else 18

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
-from doe_kc.reporting.workbook_cells import HEADER, MUTED, cell_alignment, frame, put
+from doe_kc.reporting.workbook_cells import HEADER_FILL, MUTED, cell_alignment, frame, put
 
 FIRST = 5
 """Row of the first entry below title, remark, gap and heads."""
@@ -31,7 +31,7 @@ def table(
     """
     numeric = [any(len(r) > c and not isinstance(r[c], str) for r in rows) for c in range(len(heads))]
     for c, text in enumerate(heads, start=1):
-        head = put(ws, start, c, text, bold=True, fill=HEADER)
+        head = put(ws, start, c, text, bold=True, fill=HEADER_FILL)
         head.alignment = cell_alignment(
             horizontal="right" if numeric[c - 1] else "left",
             vertical="bottom",

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from openpyxl.workbook import Workbook
 
 from doe_kc.influence.relations import STRONG_PERCENT, Link, Relations
-from doe_kc.influence.selection_result import Selection, Variable
+from doe_kc.influence.selection_result import Selection, VariableAdvice
 from doe_kc.reporting.names import case_label
 from doe_kc.reporting.workbook_cells import (
     A3,
@@ -140,7 +140,7 @@ def _summary(selection: Selection) -> str:
     )
 
 
-def _variable(v: Variable) -> Sequence[Value]:
+def _variable(v: VariableAdvice) -> Sequence[Value]:
     p = v.parameter
     note = ""
     if v.at_bound:

@@ -13,7 +13,7 @@ from doe_kc.sampling.design import Design
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-MOST = 20_000
+DESIGNS_MOST = 20_000
 """Designs; some minutes of the own solver."""
 
 
@@ -32,10 +32,10 @@ class FullFactorial(Sampler):
     def sample(self, space: Space, request: Request) -> Design:
         columns = level_columns(space, request.levels)
         count = np.prod([float(len(c)) for c in columns])
-        if count > MOST:
+        if count > DESIGNS_MOST:
             raise InputError(
                 f"sampling: a full factorial of {space.dimension} variables with {request.levels} levels "
-                f"has {count:.6g} designs, more than {MOST}; take fewer variables or levels, or another "
+                f"has {count:.6g} designs, more than {DESIGNS_MOST}; take fewer variables or levels, or another "
                 "method such as lhs."
             )
         points = np.array(list(product(*columns)))

@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 LABEL = "label"
 EXCEL = (".xlsx", ".xlsm")
-HEADER = 1
-SLACK = 1e-9
+HEADER_ROWS = 1
+BOUND_SLACK = 1e-9
 """Share of the range by which a rounded value may be beyond a bound."""
 
 
 @sampler
-class Table(Sampler):
+class TableSampler(Sampler):
     """Values as they are in the table; a variable without a column keeps its start, and a column `label`
     names the rows."""
 
     id: ClassVar[str] = "table"
-    label: ClassVar[str] = "Table of designs"
+    label: ClassVar[str] = "TableSampler of designs"
     sized: ClassVar[bool] = False
     seeded: ClassVar[bool] = False
 
@@ -90,7 +90,9 @@ def _columns(frame: pd.DataFrame, space: Space, file: Path) -> set[str]:
 def _places(frame: pd.DataFrame, variable: Variable, file: Path) -> FloatArray:
     """(n,) u of a column."""
     cells = [str(c) for c in frame[variable.path].where(frame[variable.path].notna(), "")]
-    return np.array([_place(cell, variable, f"{file}: row {i + HEADER + 1}") for i, cell in enumerate(cells)])
+    return np.array(
+        [_place(cell, variable, f"{file}: row {i + HEADER_ROWS + 1}") for i, cell in enumerate(cells)]
+    )
 
 
 def _place(cell: str, variable: Variable, where: str) -> float:
@@ -103,7 +105,7 @@ def _place(cell: str, variable: Variable, where: str) -> float:
         raise InputError(f"{where}: {cell!r} is not a number.") from None
     if not math.isfinite(value):
         raise InputError(f"{where}: {cell}, expected a finite number.")
-    slack = SLACK * (variable.upper - variable.lower)
+    slack = BOUND_SLACK * (variable.upper - variable.lower)
     if not variable.lower - slack <= value <= variable.upper + slack:
         raise InputError(
             f"{where}: {value:g} is outside the bounds [{variable.lower:g}, {variable.upper:g}] "
@@ -115,4 +117,4 @@ def _place(cell: str, variable: Variable, where: str) -> float:
 def _labels(frame: pd.DataFrame) -> list[str]:
     if LABEL in frame:
         return [str(text) for text in frame[LABEL].fillna("")]
-    return [f"row {i + HEADER + 1}" for i in range(len(frame))]
+    return [f"row {i + HEADER_ROWS + 1}" for i in range(len(frame))]

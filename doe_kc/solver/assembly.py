@@ -7,10 +7,10 @@ from functools import lru_cache
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.equations import Equations, finish
-from doe_kc.solver.topology import KEPT, Topology
+from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=TOPOLOGY_CACHE)
 def assemble(topology: Topology) -> Equations:
     """Every registered element, in order, then virtual work (cached per topology: a pure function)."""
     builder = Builder(topology)

@@ -18,7 +18,7 @@ from doe_kc.solver.compiled import (
     library_of,
 )
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
-from doe_kc.solver.topology import KEPT, Topology
+from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.typing import FloatArray
 
 Points = Sequence[tuple[FloatArray, ...]]
@@ -27,7 +27,7 @@ FLAGS = "-O0"
 """Long functions: at -O1 they take three times as long to compile and no less to run."""
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=TOPOLOGY_CACHE)
 def blocks(topology: Topology) -> Mapping[str, ca.Function]:
     """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on.
 
@@ -61,7 +61,7 @@ def _function(name: str) -> str:
     return f"{name}_block"
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=TOPOLOGY_CACHE)
 def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
     """The same as symbolic expressions have them."""
     k = kernel(topology)

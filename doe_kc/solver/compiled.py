@@ -23,7 +23,7 @@ import numpy as np
 
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.topology import KEPT, Topology
+from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.typing import FloatArray
 
 if TYPE_CHECKING:
@@ -86,8 +86,8 @@ class CompiledKernel:
         s: FloatArray,
         u: FloatArray,
         active: int,
-        settings: _march.Settings,
-    ) -> _march.Path:
+        settings: _march.NewtonSettings,
+    ) -> _march.March:
         """See `march.march`."""
         capacity = SUBSTEPS * len(s) if kernel.nz else 0
         path, passed = self._march(kernel, c, start, s, u, active, settings, capacity)
@@ -103,12 +103,12 @@ class CompiledKernel:
         s: FloatArray,
         u: FloatArray,
         active: int,
-        settings: _march.Settings,
+        settings: _march.NewtonSettings,
         capacity: int,
-    ) -> tuple[_march.Path, int]:
+    ) -> tuple[_march.March, int]:
         """The path, with `capacity` of its substeps, and how many there were."""
         from doe_kc.solver.march import Halt, substeps
-        from doe_kc.solver.march import Path as Marched
+        from doe_kc.solver.march import March as Marched
 
         n = len(s)
         x, z = np.zeros((n, kernel.nx)), np.zeros((n, kernel.nz))
@@ -154,7 +154,7 @@ def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=TOPOLOGY_CACHE)
 def compiled_kernel(topology: Topology) -> CompiledKernel:
     """Build or load the library of a topology; CompileError when that cannot be done."""
 

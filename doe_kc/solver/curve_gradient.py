@@ -42,19 +42,22 @@ def curve_gradients(
     return gradients_of(solution, exact if exact is not None else sensitivities(axle, solution, paths))
 
 
-def gradients_of(solution: Solution, found: Sensitivities) -> CurveGradients:
+def gradients_of(solution: Solution, sensitivity: Sensitivities) -> CurveGradients:
     """Derivatives of every curve from those of every equilibrium."""
     static = {
-        name: np.array([found.static[solution.column(f"{name}@{side}")] for side in SIDES]) for name in ANGLES
+        name: np.array([sensitivity.static[solution.column(f"{name}@{side}")] for side in SIDES])
+        for name in ANGLES
     }
-    cases = {ident: _case(solution, case, found.branches[ident]) for ident, case in solution.cases.items()}
+    cases = {
+        ident: _case(solution, case, sensitivity.branches[ident]) for ident, case in solution.cases.items()
+    }
     inputs = {ident: rising(case) for ident, case in solution.cases.items()}
     half = {
-        ident: _half_widths(solution, case, found.branches[ident])
+        ident: _half_widths(solution, case, sensitivity.branches[ident])
         for ident, case in solution.cases.items()
         if is_loop(case.branches)
     }
-    return CurveGradients(found.paths, inputs, cases, static, half)
+    return CurveGradients(sensitivity.paths, inputs, cases, static, half)
 
 
 def _case(solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]) -> dict[str, FloatArray]:

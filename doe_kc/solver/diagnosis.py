@@ -6,8 +6,8 @@ import numpy as np
 
 from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE
 from doe_kc.solver.kernel import Buffered, Kernel
-from doe_kc.solver.march import Halt, Path, Start
-from doe_kc.solver.newton import Newton, Settings
+from doe_kc.solver.march import Halt, March, Start
+from doe_kc.solver.newton import Newton, NewtonSettings
 from doe_kc.solver.result import Failure
 from doe_kc.typing import FloatArray
 
@@ -15,21 +15,21 @@ SINGULAR = 1e-9
 """Smallest over largest stiffness below which nothing resists; the softest sound axle has 1e-6."""
 RUNAWAY = 3.0
 """Growth of the travel per input since the branch began that announces a fold, where it is infinite."""
-SHORT = 1e-3
+TANGENT_SHARE = 1e-3
 """Part of the way on which a tangent is measured."""
 SOFT = 20.0
 """mm that a sub-frame gives way on its bushings; sound ones do by less than 3 mm."""
 SUBFRAME = "sub-frame"
 TWIST = "strut twist"
 """The rod turns in its tube as the wheel steers: it follows, and is no sign of trouble."""
-SIDES = {" L": " left", " R": " right"}
+SIDE_SUFFIXES = {" L": " left", " R": " right"}
 
 
 def sweep_failure(
     k: Kernel,
     c: FloatArray,
     start: Start,
-    path: Path,
+    path: March,
     s: FloatArray,
     u: FloatArray,
     names: tuple[str, str, str],
@@ -65,7 +65,7 @@ def static_failure(k: Kernel, c: FloatArray, x: FloatArray, u: FloatArray, share
 
 def in_words(name: str) -> str:
     """A joint's or freedom's name with its side written out: `knuckle L` -> `knuckle left`."""
-    for short, long in SIDES.items():
+    for short, long in SIDE_SUFFIXES.items():
         name = name.replace(short, long)
     return name
 
@@ -105,7 +105,7 @@ def cause(k: Kernel, c: FloatArray, start: Start, halt: Halt, s: float, u: Float
     weakest = unresisted(k, c, halt, active)
     if weakest:
         return f"no stiffness along {weakest}"
-    newton = Newton(k, c, active, Settings())
+    newton = Newton(k, c, active, NewtonSettings())
     begin = Halt(float(start.s[-1]), start.x[-1], start.u, start.z, 0.0)
     first, ahead = (_travel(newton, at, s, u) for at in (begin, halt))
     joint = in_words(k.equations.unknowns[int(np.argmax(ahead))].joint)
@@ -122,12 +122,12 @@ def _travel(newton: Newton, at: Halt, s: float, u: FloatArray) -> FloatArray:
     """(nx,) travel of the coordinates from an equilibrium towards the controls u at s, per unit of s: along
     the tangent, in mm; 100 mm per Gibbs unit."""
     k = newton.kernel
-    part = at.u + SHORT * (u - at.u)
+    part = at.u + TANGENT_SHARE * (u - at.u)
     newton.forget()
     moved = newton.step_from(newton.with_tail(at.x.copy(), part), part, at.z) - at.x
     moved[(k.scale < FORCE_SCALE) | (np.arange(k.nx) >= k.nx - k.equations.tail)] = 0.0
     moved[[u.name.startswith(TWIST) for u in k.equations.unknowns]] = 0.0
-    return np.asarray(np.abs(moved) * k.scale / (SHORT * abs(s - at.s)))
+    return np.asarray(np.abs(moved) * k.scale / (TANGENT_SHARE * abs(s - at.s)))
 
 
 def unresisted(k: Kernel, c: FloatArray, halt: Halt, active: int) -> str:

@@ -13,7 +13,7 @@ from doe_kc.solver.assembly import assemble
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change
 from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.probe import Probe
-from doe_kc.solver.topology import KEPT, Topology
+from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.typing import FloatArray
 
 
@@ -27,7 +27,7 @@ class _ProbeFunctions:
     of: dict[str, ca.Function]
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=TOPOLOGY_CACHE)
 def _functions(topology: Topology) -> _ProbeFunctions:
     """Of a topology without probes: theirs are zero, so that both have the same equilibria."""
     plain, eq = kernel(topology).equations, assemble(replace(topology, probes=True))

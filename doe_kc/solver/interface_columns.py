@@ -50,13 +50,19 @@ def law_columns(
     return gradients_of(found.solution, Sensitivities(names, start[0], branches))
 
 
-def _pointwise(found: Influences, law: Law) -> tuple[dict[str, list[FloatArray]], FloatArray, FloatArray]:
+def _pointwise(
+    influences: Influences, law: Law
+) -> tuple[dict[str, list[FloatArray]], FloatArray, FloatArray]:
     """Values h of a law without memory: by load case and branch, static at design height, static."""
     assert law.value is not None
-    seen = [b.seen for case in found.branches.values() for b in case]
-    largest = np.abs(np.vstack([*seen, found.static.seen[None]])).max(axis=0)
-    values = {i: [law.value(b.seen, largest) for b in case] for i, case in found.branches.items()}
-    return values, law.value(found.static.seen_design, largest), law.value(found.static.seen, largest)
+    seen = [b.seen for case in influences.branches.values() for b in case]
+    largest = np.abs(np.vstack([*seen, influences.static.seen[None]])).max(axis=0)
+    values = {i: [law.value(b.seen, largest) for b in case] for i, case in influences.branches.items()}
+    return (
+        values,
+        law.value(influences.static.seen_design, largest),
+        law.value(influences.static.seen, largest),
+    )
 
 
 def _case(
@@ -84,9 +90,11 @@ def _case(
     return tuple(out)
 
 
-def picked(found: Influences, probes: FloatArray) -> Influences:
+def picked(influences: Influences, probes: FloatArray) -> Influences:
     """The influences of some probes, by their index."""
-    static = StaticInfluences(**{n: getattr(found.static, n)[..., probes] for n in vars(found.static)})
+    static = StaticInfluences(
+        **{n: getattr(influences.static, n)[..., probes] for n in vars(influences.static)}
+    )
     branches = {
         ident: tuple(
             replace(
@@ -97,22 +105,22 @@ def picked(found: Influences, probes: FloatArray) -> Influences:
             )
             for b in case
         )
-        for ident, case in found.branches.items()
+        for ident, case in influences.branches.items()
     }
-    return Influences(found.solution, tuple(found.probes[i] for i in probes), static, branches)
+    return Influences(influences.solution, tuple(influences.probes[i] for i in probes), static, branches)
 
 
-def looped(found: Influences) -> Influences:
+def looped(influences: Influences) -> Influences:
     """The same with two branches from zero rearranged as the loop that a rig runs: 0, +A, -A, +A."""
-    cases, branches = dict(found.solution.cases), dict(found.branches)
-    for ident, case in found.solution.cases.items():
+    cases, branches = dict(influences.solution.cases), dict(influences.branches)
+    for ident, case in influences.solution.cases.items():
         if is_loop(case.branches):
             continue
         cases[ident] = _looped_case(case)
-        pos, neg = found.branches[ident]
+        pos, neg = influences.branches[ident]
         rising = _joined(neg, pos)
         branches[ident] = (pos, _reversed(rising), rising)
-    return replace(found, solution=replace(found.solution, cases=cases), branches=branches)
+    return replace(influences, solution=replace(influences.solution, cases=cases), branches=branches)
 
 
 def _looped_case(case: CaseSolution) -> CaseSolution:

@@ -10,7 +10,7 @@ import numpy as np
 from doe_kc.solver.probe import Kind, Probe
 from doe_kc.typing import FloatArray
 
-CORNER = 0.005
+CLEARANCE_ROUNDING = 0.005
 """Share of a probe's largest response over which the sign of a clearance is rounded."""
 
 
@@ -34,7 +34,7 @@ class Law:
 
 
 def _rounded_sign(v: FloatArray, largest: FloatArray) -> FloatArray:
-    corner = CORNER * np.where(largest > 0.0, largest, 1.0)
+    corner = CLEARANCE_ROUNDING * np.where(largest > 0.0, largest, 1.0)
     return np.asarray(v / np.hypot(v, corner))
 
 

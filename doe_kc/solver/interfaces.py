@@ -95,16 +95,16 @@ def interface_influences(axle: Axle, solution: Solution) -> Influences:
     return Influences(solution, found.probes, static, branches)
 
 
-def _static(found: InterfaceBlocks, s: StaticState) -> StaticInfluences:
-    k, m = found.kernel, len(found.probes)
+def _static(blocks: InterfaceBlocks, s: StaticState) -> StaticInfluences:
+    k, m = blocks.kernel, len(blocks.probes)
     z0 = np.zeros(k.nz)
     unknowns = [k.index(name) for name in ("pad L", "pad R", "preload")]
     controls = [k.equations.control_names.index(name) for name in ("pad_L", "pad_R", "preload")]
     centres = [k.equations.output_names.index(name) for name in WHEEL_CENTRES]
-    design = found.at(s.x0, s.u0, z0, np.zeros((k.nu, AT_REST)))
+    design = blocks.at(s.x0, s.u0, z0, np.zeros((k.nu, AT_REST)))
     du = np.zeros((k.nu, AT_REST))
     du[controls, GIVEN] = 1.0
-    raised = found.at(s.x, s.u, z0, du)
+    raised = blocks.at(s.x, s.u, z0, du)
     datum_design, datum = np.zeros((AT_REST, m)), np.zeros((AT_REST, m))
     datum_design[list(GIVEN)] = design.dx[unknowns, :m]
     output_design = raised.dy[:, m : m + AT_REST] @ datum_design
@@ -122,18 +122,18 @@ def _static(found: InterfaceBlocks, s: StaticState) -> StaticInfluences:
 
 
 def _branch(
-    found: InterfaceBlocks, static: StaticState, case: LoadCase, branch: BranchSolution
+    blocks: InterfaceBlocks, static: StaticState, case: LoadCase, branch: BranchSolution
 ) -> BranchInfluences:
     """Of all rows; the first is where the branch starts, under its own controls."""
-    du = control_gradient(found.kernel, case, branch.input, static.datum)[..., :AT_REST]
+    du = control_gradient(blocks.kernel, case, branch.input, static.datum)[..., :AT_REST]
     x, u, before = branch.x, branch.u, np.vstack([branch.z[:1], branch.z[:-1]])
     ends = np.ones(len(x), dtype=bool)
     if (inside := branch.path.between) is not None:
         x, u, before = (np.vstack([a[:1], b]) for a, b in ((x, inside.x), (u, inside.u), (before, inside.z)))
         du = np.concatenate([du[:1], gradient_between(du, inside)])
         ends = np.concatenate([[True], inside.share == 1.0])
-    steps = [found.at(*each) for each in zip(x, u, before, du, strict=True)]
-    return _stacked(steps, len(found.probes), ends)
+    steps = [blocks.at(*each) for each in zip(x, u, before, du, strict=True)]
+    return _stacked(steps, len(blocks.probes), ends)
 
 
 def _stacked(steps: list[Local], m: int, ends: np.ndarray) -> BranchInfluences:

@@ -10,7 +10,7 @@ import numpy as np
 
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.equations import Equations
-from doe_kc.solver.topology import KEPT, Topology
+from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.typing import FloatArray
 
 
@@ -68,7 +68,7 @@ class Kernel:
         return np.asarray(self.constants(p)).ravel()
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=TOPOLOGY_CACHE)
 def kernel(topology: Topology) -> Kernel:
     """The kernel of a topology (cached: a pure function of it)."""
     eq = assemble(topology)

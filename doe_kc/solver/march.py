@@ -15,22 +15,22 @@ import numpy as np
 from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.kernel import Buffered, Kernel
-from doe_kc.solver.newton import Iterate, Newton, Settings
+from doe_kc.solver.newton import Iterate, Newton, NewtonSettings
 from doe_kc.typing import FloatArray
 
-__all__ = ["Halt", "Path", "Settings", "Start", "distance", "march"]
+__all__ = ["Halt", "March", "NewtonSettings", "Start", "distance", "march"]
 
 HISTORY = 4
-NEAR = 0.1
+PREDICTION_SHARE = 0.1
 """Largest distance between prediction and equilibrium, over the length of the predicted step."""
 SMOOTH = 0.03
 """The same below which a halved step may grow again."""
 GROWTH = 2.0
 """Longest step over the one before, per input. Both hold with room where the axle touches a bump stop."""
-CORNER = 0.5
+CORNER_DISTANCE = 0.5
 """mm, and 1/100 Gibbs unit (1.1 deg): farthest equilibrium from its prediction where the path has a corner
 (contact, lift-off, reversal of friction); the way back must then end where the step began."""
-UNSEEN = 0.02
+NEGLIGIBLE_DISTANCE = 0.02
 """mm, and 1/100 Gibbs unit: a distance that needs no explanation."""
 SLIP = 2e-3
 """mm; a motion under friction that is shorter may reverse unseen."""
@@ -77,7 +77,7 @@ def substeps(kernel: Kernel, rows: FloatArray) -> Substeps:
 
 
 @dataclass(frozen=True)
-class Path:
+class March:
     """Equilibria along a branch. x: (n, nx); z: (n, nz) states after each step; y: (n, ny) outputs.
 
     failed: index of the step that did not converge, or None; rows after it are not filled.
@@ -120,13 +120,13 @@ def march(
     u: FloatArray,
     *,
     full: bool = False,
-    settings: Settings | None = None,
-) -> Path:
+    settings: NewtonSettings | None = None,
+) -> March:
     """Equilibria at path coordinates s (n,) under controls u (n, nu).
 
     full: solve for the tail (pads, preload) too; otherwise the controls prescribe it.
     """
-    chosen = settings or Settings()
+    chosen = settings or NewtonSettings()
     active = kernel.nx if full else kernel.nx - kernel.equations.tail
     if compiled is not None:
         return compiled.march(kernel, c, start, s, u, active, chosen)
@@ -136,7 +136,9 @@ def march(
 class _Marcher:
     """The Python twin of driver.c."""
 
-    def __init__(self, kernel: Kernel, c: FloatArray, start: Start, active: int, settings: Settings) -> None:
+    def __init__(
+        self, kernel: Kernel, c: FloatArray, start: Start, active: int, settings: NewtonSettings
+    ) -> None:
         self._kernel, self._c, self._guess = kernel, c, start.guess
         self._newton = Newton(kernel, c, active, settings)
         self._finest = 0.5**settings.max_halvings * (1.0 + 1e-9)
@@ -147,7 +149,7 @@ class _Marcher:
         self._rows: list[FloatArray] = []
         self._snap, self._smooth, self._part = 0.0, True, 1.0
 
-    def run(self, s: FloatArray, u: FloatArray) -> Path:
+    def run(self, s: FloatArray, u: FloatArray) -> March:
         k, n = self._kernel, len(s)
         x, z, y = np.zeros((n, k.nx)), np.zeros((n, k.nz)), np.zeros((n, k.ny))
         iterations, level = np.zeros(n, dtype=np.int32), np.zeros(n)
@@ -161,7 +163,7 @@ class _Marcher:
             x[step], z[step] = self._hx[-1], self._z
             y[step] = self._out(x[step], self._c, u[step], self._z)
         between = substeps(k, np.array(self._rows)) if self._rows else None
-        return Path(x, z, y, iterations, level, failed, self._newton.counts, halt, between)
+        return March(x, z, y, iterations, level, failed, self._newton.counts, halt, between)
 
     def _one_step(self, step: int, s_to: float, u_to: FloatArray) -> tuple[bool, int, float]:
         """(reached, Newton iterations, norm of the residual) of the step to s_to."""
@@ -219,13 +221,13 @@ class _Marcher:
             return True
         last = self._hx[-1]
         gap, moved = distance(self._kernel, reached.x, predicted), distance(self._kernel, reached.x, last)
-        if gap <= UNSEEN:
+        if gap <= NEGLIGIBLE_DISTANCE:
             return True
         stride = distance(self._kernel, predicted, last)
         self._smooth = gap <= SMOOTH * stride
-        if gap <= NEAR * stride and moved <= self._longest(at):
+        if gap <= PREDICTION_SHARE * stride and moved <= self._longest(at):
             return True
-        if gap <= CORNER and self._returns(reached.x, max(gap, moved)):
+        if gap <= CORNER_DISTANCE and self._returns(reached.x, max(gap, moved)):
             return True
         self._snap = gap
         return False

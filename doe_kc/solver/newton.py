@@ -17,7 +17,7 @@ STALL_STEP = 1e-10
 
 
 @dataclass(frozen=True)
-class Settings:
+class NewtonSettings:
     """tol: largest residual in N (moments over 100 mm, lengths times 1000 N/mm); refresh: contraction
     above which the Jacobian is renewed; max_halvings: a step is given up at 1 / 2^max_halvings of it."""
 
@@ -48,7 +48,7 @@ class Newton:
     kernel: Kernel
     c: FloatArray
     active: int
-    settings: Settings
+    settings: NewtonSettings
     counts: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
 
     def __post_init__(self) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.errors import RunError
 from doe_kc.solver.load_cases import Datum, LoadCase
-from doe_kc.solver.march import Path
+from doe_kc.solver.march import March
 from doe_kc.typing import FloatArray
 
 
@@ -78,7 +78,7 @@ class BranchSolution:
     x: FloatArray
     z: FloatArray
     u: FloatArray
-    path: Path
+    path: March
 
 
 @dataclass(frozen=True)

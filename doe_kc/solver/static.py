@@ -11,7 +11,7 @@ from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.diagnosis import static_failure, sweep_failure
 from doe_kc.solver.kernel import Kernel
 from doe_kc.solver.load_cases import Datum
-from doe_kc.solver.march import Settings, Start, distance, march
+from doe_kc.solver.march import NewtonSettings, Start, distance, march
 from doe_kc.solver.result import Failure, StaticState
 from doe_kc.typing import FloatArray
 
@@ -33,7 +33,7 @@ LOADS = ("tyre.static_load", "damper.gas_force")
 
 
 def static_state(
-    kernel: Kernel, compiled: CompiledKernel | None, c: FloatArray, axle: Axle, settings: Settings
+    kernel: Kernel, compiled: CompiledKernel | None, c: FloatArray, axle: Axle, settings: NewtonSettings
 ) -> StaticState | Failure:
     """The state at rest, or why there is none.
 
@@ -73,7 +73,7 @@ def _at_design_height(
     c: FloatArray,
     axle: Axle,
     u: FloatArray,
-    settings: Settings,
+    settings: NewtonSettings,
 ) -> FloatArray | Failure:
     """(nx,) the state at the design height: Newton's from design, or, where that fails or leads far off, the
     end of a ramp of the load."""
@@ -87,7 +87,7 @@ def _at_design_height(
 
 
 def _ramped(
-    kernel: Kernel, compiled: CompiledKernel | None, axle: Axle, u: FloatArray, settings: Settings
+    kernel: Kernel, compiled: CompiledKernel | None, axle: Axle, u: FloatArray, settings: NewtonSettings
 ) -> FloatArray | Failure:
     """(nx,) the state reached from the unloaded axle, whose bushings are stress-free at design."""
     x, share, part = np.zeros(kernel.nx), 0.0, 0.25

@@ -20,7 +20,7 @@ from doe_kc.solver.compiled import (
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.load_cases import CASE_ORDER, LoadCase
-from doe_kc.solver.march import Settings, Start, march
+from doe_kc.solver.march import NewtonSettings, Start, march
 from doe_kc.solver.result import (
     BranchSolution,
     CaseSolution,
@@ -42,7 +42,7 @@ def solve(
     cases: Sequence[str] | None = None,
     *,
     compiled: bool | None = None,
-    settings: Settings | None = None,
+    settings: NewtonSettings | None = None,
     throw: bool = True,
 ) -> Solution:
     """All equilibria of the axle's load cases (all, or those named in `cases`).
@@ -53,7 +53,7 @@ def solve(
     chosen = _chosen(axle, cases)
     k = kernel(axle.topology)
     library = library_for(axle.topology, compiled)
-    options = settings or Settings()
+    options = settings or NewtonSettings()
     c = k.constant_values(dict(axle.values))
     static = static_state(k, library, c, axle, options)
     if isinstance(static, Failure):
@@ -133,7 +133,7 @@ def _solve_case(
     c: FloatArray,
     static: StaticState,
     case: LoadCase,
-    settings: Settings,
+    settings: NewtonSettings,
 ) -> CaseSolution | Failure:
     loop = k.topology.frictional
     done: list[BranchSolution] = []

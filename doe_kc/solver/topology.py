@@ -7,7 +7,7 @@ from typing import Literal
 
 FrictionLaw = Literal["none", "dahl", "iwan"]
 
-KEPT = 64
+TOPOLOGY_CACHE = 64
 """Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""
 
 

@@ -10,45 +10,45 @@ from typing import final
 
 import numpy as np
 
-from doe_kc.surrogates.interface import Fitted, Held
-from doe_kc.surrogates.validation import NOMINAL, WIDTH
+from doe_kc.surrogates.interface import Fitted, LeftOut
+from doe_kc.surrogates.validation import NOMINAL, NOMINAL_WIDTH
 from doe_kc.typing import FloatArray
 
-SMALLEST = 1e-12
+LEAST_VARIANCE_RATIO = 1e-12
 """Variance ratio below which a residual of zero against a variance of zero counts as in order."""
 
 
-def calibration_factors(held: Held) -> FloatArray:
+def calibration_factors(left_out: LeftOut) -> FloatArray:
     """(m,) factors of the variance that put 95 % of the left-out rows inside their 95 % interval.
 
     The quantile is the ceil(0.95 (n + 1))-th smallest standardised residual, the largest for n < 39 rows.
     """
-    ratio = _standardised(held)
+    ratio = _standardised(left_out)
     rank = min(len(ratio), int(np.ceil(NOMINAL * (len(ratio) + 1)))) - 1
-    return np.asarray(np.maximum(np.sort(ratio, axis=0)[rank] / WIDTH**2, SMALLEST))
+    return np.asarray(np.maximum(np.sort(ratio, axis=0)[rank] / NOMINAL_WIDTH**2, LEAST_VARIANCE_RATIO))
 
 
-def _standardised(held: Held) -> FloatArray:
+def _standardised(left_out: LeftOut) -> FloatArray:
     """(n, m) squared residuals over their variances; 1 for an output that is known exactly."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.square(held.residual) / held.variance
-    return np.where(np.isfinite(ratio), ratio, WIDTH**2)
+        ratio = np.square(left_out.residual) / left_out.variance
+    return np.where(np.isfinite(ratio), ratio, NOMINAL_WIDTH**2)
 
 
-def scaled(held: Held, factors: FloatArray) -> Held:
+def scaled(left_out: LeftOut, factors: FloatArray) -> LeftOut:
     """The same residuals with variances times factors (m,)."""
-    return Held(held.residual, held.variance * factors)
+    return LeftOut(left_out.residual, left_out.variance * factors)
 
 
-def coverage_after(held: Held, *, seed: int) -> FloatArray:
+def coverage_after(left_out: LeftOut, *, seed: int) -> FloatArray:
     """(m,) honest coverage after calibration: factors from one half of the rows, counted on the other."""
-    order = np.random.default_rng(seed).permutation(len(held.residual))
-    inside = np.zeros_like(held.residual)
+    order = np.random.default_rng(seed).permutation(len(left_out.residual))
+    inside = np.zeros_like(left_out.residual)
     for part in (order[::2], order[1::2]):
         other = np.setdiff1d(order, part)
-        factors = calibration_factors(Held(held.residual[part], held.variance[part]))
-        limit = WIDTH * np.sqrt(held.variance[other] * factors)
-        inside[other] = np.abs(held.residual[other]) <= limit
+        factors = calibration_factors(LeftOut(left_out.residual[part], left_out.variance[part]))
+        limit = NOMINAL_WIDTH * np.sqrt(left_out.variance[other] * factors)
+        inside[other] = np.abs(left_out.residual[other]) <= limit
     return np.asarray(inside.mean(axis=0))
 
 
@@ -70,7 +70,7 @@ class Calibrated(Fitted):
         """m."""
         return self.inner.outputs
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Of the inner model, variances scaled."""
         return scaled(self.inner.cross_validate(), self.factors)
 

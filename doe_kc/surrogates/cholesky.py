@@ -8,7 +8,7 @@ from scipy.linalg import lapack
 from doe_kc.errors import RunError
 from doe_kc.typing import FloatArray
 
-ALIKE = "surrogate: designs are nearly equal and cannot be told apart; spread them or leave one out."
+INDISTINCT = "surrogate: designs are nearly equal and cannot be told apart; spread them or leave one out."
 
 
 def inverses(matrices: FloatArray) -> FloatArray:
@@ -35,5 +35,5 @@ def _factor(matrix: FloatArray) -> FloatArray:
     """Lower factor of a C-ordered matrix in its place: the transposed view is what LAPACK wants."""
     factor, failed = lapack.dpotrf(matrix.T, lower=1, overwrite_a=1)
     if failed:
-        raise RunError(ALIKE)
+        raise RunError(INDISTINCT)
     return np.asarray(factor)

@@ -15,7 +15,7 @@ from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-CLOSE = 1e-9
+EQUAL_TOLERANCE = 1e-9
 """Relative difference below which two parameter values are the same."""
 EDGE = 1e-6
 """Of the unit cube, within which a design counts as inside."""
@@ -78,7 +78,7 @@ def _same(
     for path in paths:
         own = parameter_value(axle, path) if path not in parameters or path not in expected else 0.0
         given, wanted = parameters.get(path, own), expected.get(path, own)
-        if not math.isclose(given, wanted, rel_tol=CLOSE, abs_tol=CLOSE):
+        if not math.isclose(given, wanted, rel_tol=EQUAL_TOLERANCE, abs_tol=EQUAL_TOLERANCE):
             return False
     return True
 

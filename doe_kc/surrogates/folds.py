@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.surrogates.interface import Held, Surrogate
+from doe_kc.surrogates.interface import LeftOut, Surrogate
 from doe_kc.surrogates.varying import fit_varying
 from doe_kc.typing import FloatArray
 
@@ -15,7 +15,7 @@ def fold_rows(rows: int, folds: int, seed: int) -> list[np.ndarray]:
     return [np.sort(order[k::folds]) for k in range(min(folds, rows))]
 
 
-def refit_folds(model: Surrogate, x: FloatArray, y: FloatArray, *, folds: int, seed: int) -> Held:
+def refit_folds(model: Surrogate, x: FloatArray, y: FloatArray, *, folds: int, seed: int) -> LeftOut:
     """Residuals of rows predicted by a model refitted, hyper-parameters and all, to the other folds.
 
     Leaving rows out with hyper-parameters held flatters models that learn many of them (docs/surrogates.md).
@@ -23,7 +23,7 @@ def refit_folds(model: Surrogate, x: FloatArray, y: FloatArray, *, folds: int, s
     residual, variance = np.empty_like(y), np.empty_like(y)
     for left in fold_rows(len(x), folds, seed):
         residual[left], variance[left] = fold(model, x, y, left, seed)
-    return Held(residual, variance)
+    return LeftOut(residual, variance)
 
 
 def fold(

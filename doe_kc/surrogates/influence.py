@@ -11,7 +11,7 @@ from doe_kc.surrogates.interface import Fitted
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-STRONG = 0.05
+SIGN_SHARE = 0.05
 """Share of a column's largest magnitude from which the sign of an entry counts."""
 
 
@@ -51,7 +51,7 @@ def agreement(changes: FloatArray, reference: FloatArray) -> Agreement:
     known = np.isfinite(reference).all(axis=1)
     ours, theirs = changes[known], reference[known]
     peaks = column_peaks(theirs)
-    strong = np.abs(theirs) >= STRONG * peaks
+    strong = np.abs(theirs) >= SIGN_SHARE * peaks
     with np.errstate(invalid="ignore", divide="ignore"):
         same = ((np.sign(ours) == np.sign(theirs)) & strong).sum(axis=0) / strong.sum(axis=0)
         a, b = ours - ours.mean(axis=0), theirs - theirs.mean(axis=0)

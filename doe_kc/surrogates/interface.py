@@ -25,7 +25,7 @@ class Prediction:
 
 
 @dataclass(frozen=True)
-class Held:
+class LeftOut:
     """What models say of n training rows that they were not fitted to.
 
     residual: (n, m) true minus predicted. variance: (n, m) predicted for it.
@@ -84,7 +84,7 @@ class Fitted(ABC):
             return self._everything(points)
 
     @abstractmethod
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Left-out residuals of the training rows: leave-one-out in closed form, or folds (see the model)."""
 
     @abstractmethod

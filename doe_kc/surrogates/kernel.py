@@ -17,7 +17,7 @@ from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
-class Kernel:
+class CovarianceKernel:
     """m kernels over d variables of standardised outputs.
 
     relevance: (m, d) diagonal of W, the variance of each linear coefficient. curvature: (m, d) diagonal of V,
@@ -31,7 +31,7 @@ class Kernel:
     nugget: FloatArray
     pinned: bool = False
 
-    def scaled(self, factor: FloatArray) -> Kernel:
+    def scaled(self, factor: FloatArray) -> CovarianceKernel:
         """The same functions, of outputs with variances times `factor` (m,); the nugget stays."""
         return replace(
             self,
@@ -58,7 +58,7 @@ def weighted_inner(weights: FloatArray, z: FloatArray, other: FloatArray) -> Flo
     return np.asarray((z[None] * weights[:, None]) @ other.T)
 
 
-def bend(kernel: Kernel, z: FloatArray, other: FloatArray) -> Bend:
+def bend(kernel: CovarianceKernel, z: FloatArray, other: FloatArray) -> Bend:
     """E of points (p, d) and (n, d)."""
     square = kernel.curvature @ (z * z).T
     other_square = kernel.curvature @ (other * other).T
@@ -72,7 +72,7 @@ def bend(kernel: Kernel, z: FloatArray, other: FloatArray) -> Bend:
     return Bend(value, -value, full - damping)
 
 
-def bend_at_itself(kernel: Kernel, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+def bend_at_itself(kernel: CovarianceKernel, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """E(x, x) (m, p) of points (p, d), and f (m, p) with dE(x, x)/dz = f V z."""
     square = kernel.curvature @ (z * z).T
     if not kernel.pinned:
@@ -81,13 +81,13 @@ def bend_at_itself(kernel: Kernel, z: FloatArray) -> tuple[FloatArray, FloatArra
     return 1.0 - (1.0 + square) * damping, 2.0 * square * damping
 
 
-def covariance(kernel: Kernel, z: FloatArray, other: FloatArray, curved: Bend) -> FloatArray:
+def covariance(kernel: CovarianceKernel, z: FloatArray, other: FloatArray, curved: Bend) -> FloatArray:
     """(m, p, n) of points (p, d) and (n, d) without the nugget; curved: their `bend`."""
     linear = 0.0 if kernel.pinned else weighted_inner(kernel.relevance, z, other)
     return np.asarray(linear + kernel.bend[:, None, None] * curved.value + kernel.constant[:, None, None])
 
 
-def training_covariance(kernel: Kernel, z: FloatArray) -> tuple[FloatArray, Bend]:
+def training_covariance(kernel: CovarianceKernel, z: FloatArray) -> tuple[FloatArray, Bend]:
     """(m, n, n) of the training rows (n, d) with the nugget, and their bend."""
     curved = bend(kernel, z, z)
     total = covariance(kernel, z, z, curved)

@@ -15,12 +15,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.surrogates.cholesky import inverses
-from doe_kc.surrogates.kernel import Bend, Kernel, training_covariance
+from doe_kc.surrogates.kernel import Bend, CovarianceKernel, training_covariance
 from doe_kc.typing import FloatArray
 
-LEAST = 1e-6
+LEAST_RELEVANCE = 1e-6
 """Smallest relevance, share of what it is when all variables are equally relevant."""
-BENDS = (1e-6, 1e4)
+BEND_RANGE = (1e-6, 1e4)
 
 
 @dataclass(frozen=True)
@@ -57,21 +57,21 @@ class Sample:
         return np.asarray(np.where(square > 0.0, square, square.mean()))
 
 
-def even_kernel(sample: Sample, learning: Learning) -> Kernel:
+def even_kernel(sample: Sample, learning: Learning) -> CovarianceKernel:
     """Every variable equally relevant, the linear part of variance 1, a small bend."""
     outputs = sample.values.shape[1]
     relevance = np.full((outputs, sample.spread.size), 1.0 / sample.spread.sum())
     one = np.ones(outputs)
     curvature = along(relevance, sample, learning)
-    return Kernel(relevance, curvature, 0.1 * one, one, learning.nugget * one)
+    return CovarianceKernel(relevance, curvature, 0.1 * one, one, learning.nugget * one)
 
 
-def pinned_kernel(slope: FloatArray, sample: Sample, learning: Learning) -> Kernel:
+def pinned_kernel(slope: FloatArray, sample: Sample, learning: Learning) -> CovarianceKernel:
     """Bend alone, along the known slopes (m, d) of standardised outputs."""
     relevance = _shrunk(slope**2, sample, learning)
     one, zero = np.ones(len(slope)), np.zeros(len(slope))
     curvature = along(relevance, sample, learning)
-    return Kernel(relevance, curvature, one, zero, learning.nugget * one, pinned=True)
+    return CovarianceKernel(relevance, curvature, one, zero, learning.nugget * one, pinned=True)
 
 
 def along(relevance: FloatArray, sample: Sample, learning: Learning) -> FloatArray:
@@ -81,7 +81,7 @@ def along(relevance: FloatArray, sample: Sample, learning: Learning) -> FloatArr
     return np.asarray(curvature + learning.floor * curvature.mean(axis=1, keepdims=True))
 
 
-def learn(kernel: Kernel, sample: Sample, learning: Learning) -> Kernel:
+def learn(kernel: CovarianceKernel, sample: Sample, learning: Learning) -> CovarianceKernel:
     """Kernels learnt from the sample, starting from `kernel`."""
     departure = np.log(kernel.curvature / along(kernel.relevance, sample, learning))
     adam = _Adam(departure.shape)
@@ -119,10 +119,10 @@ class _Adam:
 def _shrunk(squares: FloatArray, sample: Sample, learning: Learning) -> FloatArray:
     """(m, d) relevances between an output's own squared coefficients and their mean over all outputs."""
     shrunk = (squares + learning.shrink * squares.mean(axis=0)) / (1.0 + learning.shrink)
-    return np.asarray(np.maximum(shrunk, LEAST / sample.spread.sum()))
+    return np.asarray(np.maximum(shrunk, LEAST_RELEVANCE / sample.spread.sum()))
 
 
-def _expected(kernel: Kernel, z: FloatArray, inverse: FloatArray, alpha: FloatArray) -> FloatArray:
+def _expected(kernel: CovarianceKernel, z: FloatArray, inverse: FloatArray, alpha: FloatArray) -> FloatArray:
     """(m, d) expected squares of the linear coefficients."""
     w = kernel.relevance
     coefficient = w * (alpha @ z)
@@ -133,11 +133,11 @@ def _bend_variance(bend: FloatArray, inverse: FloatArray, alpha: FloatArray, cur
     """(m,) fixed point of the likelihood's derivative by b, damped by the square root."""
     explained = np.maximum(((curved.value @ alpha[:, :, None])[:, :, 0] * alpha).sum(axis=1), 0.0)
     expected = (inverse * curved.value).sum(axis=(1, 2))
-    return np.asarray(np.clip(bend * np.sqrt(explained / expected), *BENDS))
+    return np.asarray(np.clip(bend * np.sqrt(explained / expected), *BEND_RANGE))
 
 
 def _curvature_slope(
-    kernel: Kernel, z: FloatArray, inverse: FloatArray, alpha: FloatArray, curved: Bend
+    kernel: CovarianceKernel, z: FloatArray, inverse: FloatArray, alpha: FloatArray, curved: Bend
 ) -> FloatArray:
     """(m, d) derivative of the log marginal likelihood by the logarithms of the curvatures, eq. 5.9."""
     push = 0.5 * kernel.bend[:, None, None] * (alpha[:, :, None] * alpha[:, None, :] - inverse)

@@ -13,8 +13,8 @@ from typing import final
 import numpy as np
 
 from doe_kc.errors import RunError
-from doe_kc.surrogates.cholesky import ALIKE, inverse_roots
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.cholesky import INDISTINCT, inverse_roots
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.typing import FloatArray
 
 NUGGETS = (1e-10, 1e-8)
@@ -51,11 +51,11 @@ class OrdinaryKriging(Fitted):
         """As many points as make arrays of some 30 MB."""
         return 4_000_000 // self.weight.size
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Leave-one-out with the rates held, the mean estimated anew without the row."""
         total = self.ones.sum(axis=1)
         diagonal = (self.root**2).sum(axis=1) - self.ones**2 / total[:, None]
-        return Held((self.weight / diagonal).T, (self.variance0[:, None] / diagonal).T)
+        return LeftOut((self.weight / diagonal).T, (self.variance0[:, None] / diagonal).T)
 
     def _correlation(self, x: FloatArray) -> FloatArray:
         return correlation(self.theta, x, self.x)
@@ -114,4 +114,4 @@ def _inverse_root(matrix: FloatArray) -> FloatArray:
             return inverse_roots(matrix + nugget * np.eye(matrix.shape[1]))
         except RunError:
             continue
-    raise RunError(ALIKE)
+    raise RunError(INDISTINCT)

@@ -11,19 +11,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.surrogates.cholesky import inverse_roots
-from doe_kc.surrogates.kernel import Bend, Kernel, bend, bend_at_itself, covariance, training_covariance
+from doe_kc.surrogates.kernel import (
+    Bend,
+    CovarianceKernel,
+    bend,
+    bend_at_itself,
+    covariance,
+    training_covariance,
+)
 from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)
-class Posterior:
+class ProcessPosterior:
     """m kernels conditioned on n rows of standardised outputs; points z are measured from the centre.
 
     z: (n, d). root: (m, n, n) inverse of the covariance's lower Cholesky factor. alpha: (m, n) inverse
     covariance times the values. slope: (m, d) of the linear part. evidence: (m,) log marginal likelihood.
     """
 
-    kernel: Kernel
+    kernel: CovarianceKernel
     z: FloatArray
     root: FloatArray
     alpha: FloatArray
@@ -42,12 +49,12 @@ class Cross:
     total: FloatArray
     curved: Bend
 
-    def white(self, p: Posterior) -> FloatArray:
+    def white(self, p: ProcessPosterior) -> FloatArray:
         """(m, p, n) root times the covariances: their squares are the variance that the rows explain."""
         return np.asarray(self.total @ p.root.transpose(0, 2, 1))
 
 
-def condition(kernel: Kernel, z: FloatArray, values: FloatArray) -> Posterior:
+def condition(kernel: CovarianceKernel, z: FloatArray, values: FloatArray) -> ProcessPosterior:
     """Posterior of z (n, d), values (n, m); RunError when a covariance cannot be factorised."""
     total, _ = training_covariance(kernel, z)
     root = inverse_roots(total)
@@ -56,26 +63,26 @@ def condition(kernel: Kernel, z: FloatArray, values: FloatArray) -> Posterior:
     half_log = -np.log(np.einsum("jii->ji", root)).sum(axis=1)
     evidence = -0.5 * (white**2).sum(axis=1) - half_log - 0.5 * len(z) * np.log(2.0 * np.pi)
     slope = np.zeros_like(kernel.relevance) if kernel.pinned else kernel.relevance * (alpha @ z)
-    return Posterior(kernel, z, root, alpha, slope, evidence)
+    return ProcessPosterior(kernel, z, root, alpha, slope, evidence)
 
 
-def cross(p: Posterior, z: FloatArray) -> Cross:
+def cross(p: ProcessPosterior, z: FloatArray) -> Cross:
     """Covariances of points z (p, d)."""
     curved = bend(p.kernel, z, p.z)
     return Cross(z, covariance(p.kernel, z, p.z, curved), curved)
 
 
-def mean(p: Posterior, c: Cross) -> FloatArray:
+def mean(p: ProcessPosterior, c: Cross) -> FloatArray:
     """(p, m), eq. 2.25."""
     return np.asarray((c.total @ p.alpha[:, :, None])[:, :, 0].T)
 
 
-def mean_gradient(p: Posterior, c: Cross) -> FloatArray:
+def mean_gradient(p: ProcessPosterior, c: Cross) -> FloatArray:
     """(p, m, d)."""
     return np.asarray((p.slope[:, None] + _bent(p, c, p.alpha[:, None])).transpose(1, 0, 2))
 
 
-def variance(p: Posterior, c: Cross, white: FloatArray) -> FloatArray:
+def variance(p: ProcessPosterior, c: Cross, white: FloatArray) -> FloatArray:
     """(p, m), eq. 2.26, of the function, that is without the nugget; white: of `c`."""
     k = p.kernel
     itself, _ = bend_at_itself(k, c.z)
@@ -85,7 +92,7 @@ def variance(p: Posterior, c: Cross, white: FloatArray) -> FloatArray:
     return np.asarray(np.maximum(prior - (white**2).sum(axis=2), 0.0).T)
 
 
-def variance_gradient(p: Posterior, c: Cross, white: FloatArray) -> FloatArray:
+def variance_gradient(p: ProcessPosterior, c: Cross, white: FloatArray) -> FloatArray:
     """(p, m, d); white: of `c`."""
     k, solved = p.kernel, white @ p.root
     _, factor = bend_at_itself(k, c.z)
@@ -97,14 +104,14 @@ def variance_gradient(p: Posterior, c: Cross, white: FloatArray) -> FloatArray:
     return np.asarray((prior - 2.0 * known).transpose(1, 0, 2))
 
 
-def _bent(p: Posterior, c: Cross, by: FloatArray) -> FloatArray:
+def _bent(p: ProcessPosterior, c: Cross, by: FloatArray) -> FloatArray:
     """(m, p, d) sum over the training rows of `by` (m, p or 1, n) times the bend's derivative."""
     own = (c.curved.own * by).sum(axis=2)[:, :, None] * c.z[None]
     scale = p.kernel.bend[:, None] * p.kernel.curvature
     return np.asarray((own + (c.curved.other * by) @ p.z) * scale[:, None])
 
 
-def left_out(p: Posterior) -> tuple[FloatArray, FloatArray]:
+def left_out(p: ProcessPosterior) -> tuple[FloatArray, FloatArray]:
     """Residuals (n, m) and variances (n, m) of rows left out with the kernels held, eq. 5.10-5.12."""
     diagonal = (p.root**2).sum(axis=1)
     return (p.alpha / diagonal).T, (1.0 / diagonal).T

@@ -10,13 +10,13 @@ from typing import final
 
 import numpy as np
 
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.typing import FloatArray
 
-PENALTIES = np.logspace(-6.0, 2.0, 33)
+RIDGE_PENALTIES = np.logspace(-6.0, 2.0, 33)
 
 
-def fit_ridge(x: FloatArray, y: FloatArray, penalties: FloatArray = PENALTIES) -> FittedLinear:
+def fit_ridge(x: FloatArray, y: FloatArray, penalties: FloatArray = RIDGE_PENALTIES) -> FittedLinear:
     """y = a + b x of x (n, d), y (n, m) with penalty |b|² times the best of `penalties`; a is free."""
     centre, level = x.mean(axis=0), y.mean(axis=0)
     u, s, vt = np.linalg.svd(x - centre, full_matrices=False)
@@ -65,9 +65,9 @@ class FittedLinear(Fitted):
         """(m,) mean square of the left-out residuals."""
         return np.asarray((self.left_out**2).mean(axis=0))
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Leave-one-out with the penalties held, closed form."""
-        return Held(self.left_out.copy(), np.tile(self.noise, (len(self.left_out), 1)))
+        return LeftOut(self.left_out.copy(), np.tile(self.noise, (len(self.left_out), 1)))
 
     def _mean(self, x: FloatArray) -> FloatArray:
         return self.level + (x - self.centre) @ self.slope.T

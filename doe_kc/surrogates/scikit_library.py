@@ -22,7 +22,7 @@ def _library(part: str) -> Any:
 
 
 @dataclass(frozen=True)
-class Path:
+class PenaltyPath:
     """penalties: (k,) decreasing. coefficients: (p, k) at them; between two they are straight lines."""
 
     penalties: FloatArray
@@ -38,7 +38,7 @@ class Path:
         return np.asarray((1.0 - share) * self.coefficients[:, k - 1] + share * self.coefficients[:, k])
 
 
-def lasso_path(features: FloatArray, y: FloatArray, *, least: float, steps: int) -> Path:
+def lasso_path(features: FloatArray, y: FloatArray, *, least: float, steps: int) -> PenaltyPath:
     """Lasso path by least-angle regression of y (n,) on features (n, p), both centred here.
 
     least: penalty to stop at. Reference: B. Efron et al., Annals of Statistics 32(2), 2004.
@@ -49,7 +49,7 @@ def lasso_path(features: FloatArray, y: FloatArray, *, least: float, steps: int)
             features - features.mean(axis=0), y - y.mean(), method="lasso", alpha_min=least, max_iter=steps,
             copy_X=False,
         )  # fmt: skip
-    return Path(np.asarray(penalties), np.asarray(coefficients))
+    return PenaltyPath(np.asarray(penalties), np.asarray(coefficients))
 
 
 @dataclass(frozen=True)

@@ -8,10 +8,10 @@ from typing import final
 
 import numpy as np
 
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.typing import FloatArray
 
-MARGIN = 0.1
+ERROR_MARGIN = 0.1
 """Share by which the left-out squared error may exceed the best model's for the sake of simplicity."""
 EXACT = 1e-4
 """1 - Q2 below which a model counts as exact, and the simplest such model is taken."""
@@ -24,7 +24,7 @@ def choose(q2: Mapping[str, FloatArray], complexity: Mapping[str, int]) -> tuple
     """
     order = sorted(q2, key=lambda name: complexity[name])
     missed = np.array([np.nan_to_num(1.0 - q2[name], nan=0.0) for name in order])
-    allowed = np.maximum((1.0 + MARGIN) * missed.min(axis=0), EXACT)
+    allowed = np.maximum((1.0 + ERROR_MARGIN) * missed.min(axis=0), EXACT)
     return tuple(order[int(k)] for k in np.argmax(missed <= allowed, axis=0))
 
 
@@ -46,10 +46,10 @@ class Chosen(Fitted):
         """m."""
         return len(self.part)
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Of each output's own model."""
         held = [p.cross_validate() for p in self.parts]
-        return Held(self._pick([h.residual for h in held]), self._pick([h.variance for h in held]))
+        return LeftOut(self._pick([h.residual for h in held]), self._pick([h.variance for h in held]))
 
     def _pick(self, values: Sequence[FloatArray]) -> FloatArray:
         """(p, m, ...) each output from its own model."""

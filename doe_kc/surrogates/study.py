@@ -15,7 +15,7 @@ from doe_kc.campaign.processes import available_cores
 from doe_kc.errors import DoeKcError, InputError, RunError
 from doe_kc.surrogates.calibration import Calibrated, calibration_factors, coverage_after
 from doe_kc.surrogates.folds import fold, fold_rows
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.surrogates.models import SURROGATES, make
 from doe_kc.surrogates.selection import choose, join
 from doe_kc.surrogates.validation import Quality, quality
@@ -23,7 +23,7 @@ from doe_kc.surrogates.varying import fit_varying
 from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
 
-FEWEST = 10
+VALIDATION_DESIGNS = 10
 """Designs below which a cross-validation says little."""
 Progress = Callable[[int], None]
 
@@ -35,7 +35,7 @@ class Judged:
     """
 
     fitted: Fitted
-    held: Held
+    held: LeftOut
     quality: Quality
     factors: FloatArray
     covered: FloatArray
@@ -91,9 +91,9 @@ def fit_study(
     refitting them to `folds`; the others by their own cross-validation. A model that cannot be fitted is
     skipped with its reason; InputError when none can, or there are fewer than 10 designs.
     """
-    if len(x) < FEWEST:
+    if len(x) < VALIDATION_DESIGNS:
         raise InputError(
-            f"surrogates: {len(x)} designs, needs at least {FEWEST}; run more with doe-kc sample."
+            f"surrogates: {len(x)} designs, needs at least {VALIDATION_DESIGNS}; run more with doe-kc sample."
         )
     names = sorted(models or default_models(*x.shape), key=lambda n: make(n).complexity)
     results = _all(_tasks(names, x, y, folds, seed), workers, progress)
@@ -181,6 +181,6 @@ def _judged(parts: list[_Part], x: FloatArray, y: FloatArray, folds: int, seed: 
         residual, variance = np.empty_like(y), np.empty_like(y)
         for left, (e, v) in zip(fold_rows(len(x), folds, seed), refits, strict=True):
             residual[left], variance[left] = e, v
-        held = Held(residual, variance)
+        held = LeftOut(residual, variance)
     covered = coverage_after(held, seed=seed)
     return Judged(whole.fitted, held, quality(y, held), calibration_factors(held), covered, whole.seconds)

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.typing import FloatArray
 
 NOMINAL = 0.95
 """Coverage that an interval promises."""
-WIDTH = float(norm.ppf(0.5 + NOMINAL / 2.0))
+NOMINAL_WIDTH = float(norm.ppf(0.5 + NOMINAL / 2.0))
 """Standard deviations to either side of it."""
 
 
@@ -32,17 +32,17 @@ class Quality:
     sharpness: FloatArray
 
 
-def quality(values: FloatArray, held: Held) -> Quality:
+def quality(values: FloatArray, left_out: LeftOut) -> Quality:
     """Of true values (n, m), their residuals and predicted variances."""
     total = np.square(values - values.mean(axis=0)).sum(axis=0)
-    square = np.square(held.residual)
+    square = np.square(left_out.residual)
     with np.errstate(invalid="ignore", divide="ignore"):
         q2 = np.where(total > 0.0, 1.0 - square.sum(axis=0) / total, np.nan)
-        half = WIDTH * np.sqrt(held.variance.mean(axis=0) / (total / len(values)))
-    inside = np.sqrt(square) <= WIDTH * np.sqrt(held.variance)
+        half = NOMINAL_WIDTH * np.sqrt(left_out.variance.mean(axis=0) / (total / len(values)))
+    inside = np.sqrt(square) <= NOMINAL_WIDTH * np.sqrt(left_out.variance)
     return Quality(q2, np.sqrt(square.mean(axis=0)), inside.mean(axis=0), half)
 
 
 def quality_on(model: Fitted, x: FloatArray, y: FloatArray) -> Quality:
     """On an independent set of points x (n, d) with true values y (n, m)."""
-    return quality(y, Held(y - model.predict(x), model.variance(x)))
+    return quality(y, LeftOut(y - model.predict(x), model.variance(x)))

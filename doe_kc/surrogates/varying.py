@@ -8,7 +8,7 @@ from typing import final
 import numpy as np
 
 from doe_kc.errors import InputError
-from doe_kc.surrogates.interface import Fitted, Held, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
 from doe_kc.surrogates.training import constant_outputs
 from doe_kc.typing import FloatArray
 
@@ -46,10 +46,10 @@ class Varying(Fitted):
         """m."""
         return len(self.constant)
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Of the inner model; zero for the constants."""
         held = self.inner.cross_validate()
-        return Held(self._spread(held.residual), self._spread(held.variance))
+        return LeftOut(self._spread(held.residual), self._spread(held.variance))
 
     def _spread(self, values: FloatArray) -> FloatArray:
         """(p, m, ...) of (p, k, ...): zero for the constants."""

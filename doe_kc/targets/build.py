@@ -105,14 +105,16 @@ def _check_constraints(
 
 
 def _dropped(
-    found: Sequence[Target], characteristics: Sequence[CharacteristicOptions], curves: Sequence[CurveOptions]
+    targets: Sequence[Target],
+    characteristics: Sequence[CharacteristicOptions],
+    curves: Sequence[CurveOptions],
 ) -> Iterator[tuple[str, str]]:
     """Curves whose objective the study says is false, or whose characteristics are neither objective nor
     constraint by its own words."""
-    active = {(t.entry.load_case, t.entry.response) for t in found if t.active}
+    active = {(t.entry.load_case, t.entry.response) for t in targets if t.active}
     off = {
         (t.entry.load_case, t.entry.response)
-        for t in found
+        for t in targets
         if not t.active
         and (own := [o for o in characteristics if fnmatchcase(t.entry.id, o.match)])
         and (last(own, "objective"), last(own, "constraint")) == (False, False)

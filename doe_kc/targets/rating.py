@@ -55,12 +55,12 @@ class Rating:
         return not self.beyond.any() and not self.excess.any()
 
 
-def rate(targets: Targets, found: Score) -> Rating:
+def rate(targets: Targets, score: Score) -> Rating:
     """Rating of one design from its values and RMS deviations; nan values give nan."""
-    pairs = list(zip(targets.characteristics, found.values, strict=True))
+    pairs = list(zip(targets.characteristics, score.values, strict=True))
     violation = np.array([0.0 if t.constraint is None else violated(t.constraint, v) for t, v in pairs])
     beyond = np.array([max(0.0, abs(v - t.value) - t.limit) for t, v in pairs])
-    lines = list(zip(targets.curves, found.rms, strict=True))
+    lines = list(zip(targets.curves, score.rms, strict=True))
     excess = np.array([max(0.0, rms - t.limit) for t, rms in lines])
     return Rating(
         objectives=np.array(
@@ -83,7 +83,7 @@ def rate(targets: Targets, found: Score) -> Rating:
         violation=violation,
         beyond=beyond,
         excess=excess,
-        misfit=-targets.misfit.weight * found.misfit if targets.misfit is not None else 0.0,
+        misfit=-targets.misfit.weight * score.misfit if targets.misfit is not None else 0.0,
     )
 
 

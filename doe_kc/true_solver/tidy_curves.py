@@ -10,10 +10,10 @@ import pandas as pd
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics.reduction import default_window
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD, CaseCurves, CurveSet
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.typing import FloatArray
 
-KEYS = ("load_case", "branch", "input", "input_unit", "side")
+ROW_KEYS = ("load_case", "branch", "input", "input_unit", "side")
 FEWEST_POINTS = 3
 NEARLY = 1e-9
 
@@ -44,7 +44,7 @@ def curves_from_frame(
 
 def _responses(frame: pd.DataFrame) -> dict[str, str]:
     """Response -> column; Unreadable for a missing key or another unit."""
-    for key in KEYS:
+    for key in ROW_KEYS:
         if key not in frame:
             raise Unreadable(f"curves.csv has no column {key!r}")
     out = {name: f"{name}_{unit}" for name, unit in RESPONSE_UNITS.items() if f"{name}_{unit}" in frame}
@@ -85,7 +85,7 @@ def _case(
 def _unit(case: str, rows: pd.DataFrame, axle: Axle) -> str:
     known = {axle.load_cases[case].unit} if case in axle.load_cases else set()
     if case == "roll":
-        known |= {technique.unit for technique in TECHNIQUES.values()}
+        known |= {technique.unit for technique in ROLL_TECHNIQUES.values()}
     found = set(rows["input_unit"])
     if len(found) != 1 or not found <= known:
         given = ", ".join(sorted(map(str, found)))

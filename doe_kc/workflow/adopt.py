@@ -14,7 +14,7 @@ from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.reporting.discovery_words import effect_label
 from doe_kc.study import Study
 
-LISTED = 8
+PLACES_LISTED = 8
 """Places that nothing explains which are left out at most: the worst ones."""
 
 
@@ -118,7 +118,7 @@ def _without(discovery: Discovery, any_effect: bool) -> frozenset[tuple[str, str
     if discovery.verdict != "unexplained":
         return frozenset()
     left: Sequence[tuple[Contrast, float]] = (
-        discovery.unexplained if any_effect else discovery.tuned.worst(LISTED)
+        discovery.unexplained if any_effect else discovery.tuned.worst(PLACES_LISTED)
     )
     return frozenset((c.load_case, c.response) for c, _ in left if c.shape not in LOOP_SHAPES)
 

@@ -15,9 +15,9 @@ from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.linearization import Linearization, linearize
 from doe_kc.correlation.loop import Evaluate, Run, run_method
-from doe_kc.correlation.methods import Method, Settings, method_class
-from doe_kc.correlation.posterior import Posterior, posterior
-from doe_kc.correlation.prior import RIDGE, RIDGE_MEASURED
+from doe_kc.correlation.methods import Method, MethodSettings, method_class
+from doe_kc.correlation.posterior import ParameterPosterior, posterior
+from doe_kc.correlation.prior import PRIOR_RIDGE, RIDGE_MEASURED
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.result import Correlation
@@ -83,7 +83,7 @@ def correlate(
         given = None if axle is study.axle else given_outcome(study)
         problem, relaxed = sought_problem(study, plain, start, given)
         limit = budget or options.budget
-        settings = Settings(
+        settings = MethodSettings(
             seed=study.seed,
             budget=limit,
             batch=options.batch,
@@ -146,7 +146,7 @@ def sought_problem(
         misfit=None if expansion is None else misfit_term(likelihood, problem.space, start, expansion),
         curves=curves,
     )
-    ridge = RIDGE_MEASURED if study.correlation.objective == "measured" else RIDGE
+    ridge = RIDGE_MEASURED if study.correlation.objective == "measured" else PRIOR_RIDGE
     return replace(problem, sought=sought, likelihood=likelihood, ridge=ridge), relaxed
 
 
@@ -283,7 +283,9 @@ def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
 
 
 @one_thread()
-def posterior_at(problem: Problem, expansion: Linearization | None, best: Evaluated) -> Posterior | None:
+def posterior_at(
+    problem: Problem, expansion: Linearization | None, best: Evaluated
+) -> ParameterPosterior | None:
     """What the data say of each variable; None without exact sensitivities."""
     if expansion is None or best.outcome.failed or not problem.likelihood.size:
         return None

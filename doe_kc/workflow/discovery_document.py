@@ -18,7 +18,7 @@ from doe_kc.reporting.discovery_words import HEADLINES, contrast_words, effect_l
 HIDDEN = ("not testable", "no solution")
 
 
-def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, Any]:
+def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str, Any]:
     """What `discover --json` writes; numbers that are not finite are None.
 
     effects: those that the verdict names, or the most probable of a class; leads: in their place where the
@@ -36,35 +36,35 @@ def discovery_document(found: Discovery, axle_path: Path | None) -> dict[str, An
     whitened RMS of all records.
     further_tests: those of next_test that are computed, see `further_tests`.
     """
-    findings = [effect_entry(f) for f in found.findings]
-    open_ = found.verdict == "unexplained"
+    findings = [effect_entry(f) for f in discovery.findings]
+    open_ = discovery.verdict == "unexplained"
     document = {
-        "verdict": found.verdict,
+        "verdict": discovery.verdict,
         "effects": [] if open_ else findings,
         "leads": findings if open_ else [],
-        "traces": [effect_entry(f) for f in found.traces],
-        "classes": [list(c) for c in found.classes],
-        "adequacy": _adequacy(found.adequacy),
-        "excluded": [_excluded(s) for s in found.standings if s.status == "excluded"],
-        "unresolved": sorted({s.hypothesis.effect for s in found.standings if s.status == "unresolved"}),
-        "not_testable": not_testable(found.standings),
+        "traces": [effect_entry(f) for f in discovery.traces],
+        "classes": [list(c) for c in discovery.classes],
+        "adequacy": _adequacy(discovery.adequacy),
+        "excluded": [_excluded(s) for s in discovery.standings if s.status == "excluded"],
+        "unresolved": sorted({s.hypothesis.effect for s in discovery.standings if s.status == "unresolved"}),
+        "not_testable": not_testable(discovery.standings),
         "unexplained_at": [
             {"load_case": c.load_case, "response": c.response, "shape": c.shape, "z": z}
-            for c, z in found.unexplained
+            for c, z in discovery.unexplained
         ],
-        "gap": dict(vars(found.gap)),
+        "gap": dict(vars(discovery.gap)),
         "held_out": {
             h.load_case: {
                 "tuned": h.tuned.rms,
                 "with_effect": h.with_effect.rms,
                 "law_granted": h.law_granted.rms,
             }
-            for h in found.held_out
+            for h in discovery.held_out
         },
-        "points_to": _place(found),
-        "beyond_bounds": list(found.beyond),
-        "next_test": list(found.next_tests),
-        "further_tests": further_tests(found),
+        "points_to": _place(discovery),
+        "beyond_bounds": list(discovery.beyond),
+        "next_test": list(discovery.next_tests),
+        "further_tests": further_tests(discovery),
         "axle": None if axle_path is None else str(axle_path),
     }
     return {key: _finite(value) for key, value in document.items()}
@@ -103,11 +103,11 @@ def _adequacy(holds: Adequacy) -> dict[str, Any]:
     }
 
 
-def _place(found: Discovery) -> dict[str, Any] | None:
+def _place(discovery: Discovery) -> dict[str, Any] | None:
     """What the generic scan says where no effect of the library is named."""
-    if found.verdict != "unexplained" or found.scan is None or found.scan.interface is None:
+    if discovery.verdict != "unexplained" or discovery.scan is None or discovery.scan.interface is None:
         return None
-    best = found.scan.places[0]
+    best = discovery.scan.places[0]
     return {
         "interface": best.interface,
         "law": best.law,
@@ -118,7 +118,7 @@ def _place(found: Discovery) -> dict[str, Any] | None:
     }
 
 
-def further_tests(found: Discovery) -> list[dict[str, Any]]:
+def further_tests(discovery: Discovery) -> list[dict[str, Any]]:
     """Load cases that would tell two effects apart, and parts to measure that would show a hidden one.
 
     separation: standard deviations; of a component test those that the effect makes at its typical size.
@@ -133,7 +133,7 @@ def further_tests(found: Discovery) -> list[dict[str, Any]]:
             "offset_mm": getattr(test.case, "offset", None),
             "separation": test.separation,
         }
-        for pair, tests in found.separating.items()
+        for pair, tests in discovery.separating.items()
         for test in tests
     ]
     parts = [
@@ -144,7 +144,7 @@ def further_tests(found: Discovery) -> list[dict[str, Any]]:
             "parts": list(s.bench.parts),
             "separation": s.bench.separation,
         }
-        for s in found.standings
+        for s in discovery.standings
         if s.bench is not None
     ]
     return [*runs, *parts]
@@ -183,29 +183,29 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def discovery_lines(found: Discovery) -> list[str]:
+def discovery_lines(discovery: Discovery) -> list[str]:
     """The outcome for a terminal."""
-    lines = [f"{HEADLINES[found.verdict]}. {found.sentences[0]}"]
-    word = "lead" if found.verdict == "unexplained" else "effect"
-    lines += [f"{word}: {_line(found, f)}" for f in found.findings]
-    lines += [f"trace: {_line(found, f)}; too small to matter" for f in found.traces]
-    for group in found.classes:
+    lines = [f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}"]
+    word = "lead" if discovery.verdict == "unexplained" else "effect"
+    lines += [f"{word}: {_line(discovery, f)}" for f in discovery.findings]
+    lines += [f"trace: {_line(discovery, f)}; too small to matter" for f in discovery.traces]
+    for group in discovery.classes:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")
-    lines += [f"unexplained: {contrast_words(c)}, {z:+.1f} sd" for c, z in found.unexplained[:3]]
-    gap = found.gap
+    lines += [f"unexplained: {contrast_words(c)}, {z:+.1f} sd" for c, z in discovery.unexplained[:3]]
+    gap = discovery.gap
     steps = [f"{gap.nominal:.2f} nominal", f"{gap.tuned:.2f} re-tuned"]
-    if found.fitted.model.members:
+    if discovery.fitted.model.members:
         steps.append(f"{gap.with_effect:.2f} with effect")
     lines.append(f"gap: {' -> '.join(steps)} (noise floor {gap.noise_floor:.2f})")
-    lines.append(adequacy_words(found.adequacy))
-    if found.held_out:
-        better = sum(h.gain > 0.0 for h in found.held_out)
-        lines.append(f"held out: {better} of {len(found.held_out)} load cases predicted better")
-    if found.next_tests:
-        lines.append(f"next test: {found.next_tests[0]}")
+    lines.append(adequacy_words(discovery.adequacy))
+    if discovery.held_out:
+        better = sum(h.gain > 0.0 for h in discovery.held_out)
+        lines.append(f"held out: {better} of {len(discovery.held_out)} load cases predicted better")
+    if discovery.next_tests:
+        lines.append(f"next test: {discovery.next_tests[0]}")
     return lines
 
 
-def _line(found: Discovery, finding: Finding) -> str:
-    sizes = f": {size_words(found, finding)}" if finding.hypothesis.sizes else ""
+def _line(discovery: Discovery, finding: Finding) -> str:
+    sizes = f": {size_words(discovery, finding)}" if finding.hypothesis.sizes else ""
     return f"{hypothesis_label(finding.hypothesis)}{sizes}, {odds_words(finding)}"

@@ -24,7 +24,7 @@ from doe_kc.reporting.discovery_workbook import write_discovery_workbook
 from doe_kc.reporting.page import write_discovery_page
 from doe_kc.study import Study
 
-TABLES = {
+DISCOVERY_TABLES = {
     "disagreement.csv": disagreement_frame,
     "effects.csv": effect_frame,
     "library.csv": library_frame,
@@ -38,7 +38,7 @@ EFFECTS_ONLY = "axle_effects_only.toml"
 
 def write_discovery(
     study: Study,
-    found: Discovery,
+    discovery: Discovery,
     measurement: Measurement,
     folder: Path,
     *,
@@ -50,28 +50,30 @@ def write_discovery(
     loops driven before the record; nothing else changed.
     Returns the paths. workers: processes that draw. RunError when the folder cannot be written.
     """
-    axle = found.fitted.model.axle_at(found.fitted.z)
-    written = [write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(found))]
-    if found.fitted.model.members:
-        extended = found.fitted.model.with_effects(found.fitted.z)
+    axle = discovery.fitted.model.axle_at(discovery.fitted.z)
+    written = [write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(discovery))]
+    if discovery.fitted.model.members:
+        extended = discovery.fitted.model.with_effects(discovery.fitted.z)
         written.append(write_axle(extended, study.axle_path, folder / EFFECTS_ONLY, note="effects only"))
     notes = {
         "Axle": f"{axle.name}: {AXLE}, from {study.axle_path.name}",
-        "Run time": f"{found.seconds:.0f} s",
+        "Run time": f"{discovery.seconds:.0f} s",
     }
     words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
     known = {"Measurement": measurement.manifest.name, **notes}
     return [
         *written,
-        *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
-        write_discovery_workbook(folder / "discovery.xlsx", found, notes=known, **words),
-        write_discovery_page(folder / "report.html", found, measurement, notes=notes, **words),
-        *write_discovery_figures(found, folder, study=study.name, workers=workers, pictures=study.pictures),
+        *(write_csv(folder / name, make(discovery)) for name, make in DISCOVERY_TABLES.items()),
+        write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
+        write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words),
+        *write_discovery_figures(
+            discovery, folder, study=study.name, workers=workers, pictures=study.pictures
+        ),
     ]
 
 
-def axle_note(found: Discovery) -> str:
+def axle_note(discovery: Discovery) -> str:
     """First line of the axle file: the verdict, and what the file holds beyond the nominal axle."""
-    members = ", ".join(hypothesis_label(h).lower() for h in found.fitted.model.members)
-    lead = "leads, not confirmed: " if found.verdict == "unexplained" else ""
-    return f"{HEADLINES[found.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")
+    members = ", ".join(hypothesis_label(h).lower() for h in discovery.fitted.model.members)
+    lead = "leads, not confirmed: " if discovery.verdict == "unexplained" else ""
+    return f"{HEADLINES[discovery.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")

@@ -22,7 +22,7 @@ from doe_kc.reporting.correlation_workbook import write_correlation_workbook
 from doe_kc.reporting.page import write_correlation_page
 from doe_kc.study import Study
 
-TABLES = {
+CORRELATION_TABLES = {
     "parameters.csv": parameter_frame,
     "characteristics.csv": characteristic_frame,
     "curves.csv": curve_frame,
@@ -34,7 +34,7 @@ AXLE = "axle.toml"
 
 def write_correlation(
     study: Study,
-    found: Correlation,
+    correlation: Correlation,
     measurement: Measurement | None,
     folder: Path,
     *,
@@ -46,12 +46,12 @@ def write_correlation(
     measurement: for the measured curves; None with typed targets. assessment: by default the correlation's
     own. workers: processes that draw. RunError when the folder cannot be written.
     """
-    verdict = assessment or assess(found)
-    axle = write_axle(found.axle, study.axle_path, folder / AXLE, note=axle_note(found, verdict))
+    verdict = assessment or assess(correlation)
+    axle = write_axle(correlation.axle, study.axle_path, folder / AXLE, note=axle_note(correlation, verdict))
     notes = {
-        "Axle": f"{found.axle.name}: {AXLE}, from {study.axle_path.name}",
+        "Axle": f"{correlation.axle.name}: {AXLE}, from {study.axle_path.name}",
         "Measurement": measurement.manifest.name if measurement is not None else "none, targets are typed",
-        "Effects": ", ".join(found.axle.effects) or "none",
+        "Effects": ", ".join(correlation.axle.effects) or "none",
     }
     words: dict[str, Any] = {
         "study": study.name,
@@ -61,35 +61,35 @@ def write_correlation(
     }
     return [
         axle,
-        *(write_csv(folder / name, make(found)) for name, make in TABLES.items()),
-        write_correlation_workbook(folder / "correlation.xlsx", found, **words),
-        write_correlation_page(folder / "report.html", found, measurement, **words),
-        *_write_figures(study, found, measurement, folder, workers),
-        *(_write_front(found, folder, study) if found.method == "pareto" else ()),
+        *(write_csv(folder / name, make(correlation)) for name, make in CORRELATION_TABLES.items()),
+        write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
+        write_correlation_page(folder / "report.html", correlation, measurement, **words),
+        *_write_figures(study, correlation, measurement, folder, workers),
+        *(_write_front(correlation, folder, study) if correlation.method == "pareto" else ()),
     ]
 
 
 def _write_figures(
-    study: Study, found: Correlation, measurement: Measurement | None, folder: Path, workers: int | None
+    study: Study, correlation: Correlation, measurement: Measurement | None, folder: Path, workers: int | None
 ) -> list[Path]:
     if study.pictures == "none":
         return []
     from doe_kc.reporting.correlation_figures import write_correlation_figures
 
     return write_correlation_figures(
-        found, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
+        correlation, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
     )
 
 
-def axle_note(found: Correlation, assessment: Assessment) -> str:
+def axle_note(correlation: Correlation, assessment: Assessment) -> str:
     """First line of the axle file: status, effects, rating."""
-    effects = ", ".join(found.axle.effects) or "none"
-    return f"{assessment.line} Effects: {effects}. Rating {found.rating:.6g}, correlated by {found.method}."
+    effects = ", ".join(correlation.axle.effects) or "none"
+    return f"{assessment.line} Effects: {effects}. Rating {correlation.rating:.6g}, correlated by {correlation.method}."
 
 
-def _write_front(found: Correlation, folder: Path, study: Study) -> list[Path]:
+def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[Path]:
     """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
-    front = front_of(found.problem.search, found.run.evaluated)
+    front = front_of(correlation.problem.search, correlation.run.evaluated)
     table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
     if study.pictures == "none":
         return [table]
@@ -98,7 +98,7 @@ def _write_front(found: Correlation, folder: Path, study: Study) -> list[Path]:
     return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
 
 
-def characteristic_entries(found: Correlation) -> list[dict[str, Any]]:
+def characteristic_entries(correlation: Correlation) -> list[dict[str, Any]]:
     """Every characteristic with a target. low, high: the constraint interval; where the study sets none, that
     of equations 5.1 and 5.2. held, reachable: as in `CharacteristicRow`."""
     return [
@@ -116,45 +116,45 @@ def characteristic_entries(found: Correlation) -> list[dict[str, Any]]:
             "held": r.held,
             "reachable": r.reachable,
         }
-        for r in characteristic_rows(found)
+        for r in characteristic_rows(correlation)
     ]
 
 
 def correlation_document(
-    found: Correlation, axle_path: Path, assessment: Assessment | None = None
+    correlation: Correlation, axle_path: Path, assessment: Assessment | None = None
 ) -> dict[str, Any]:
     """What `correlate --json` writes. Numbers that are not finite become null in the file.
 
     parameters: sd is null at a bound, where `inward` tells how far inside the value may lie (68 %).
     """
-    verdict = assessment or assess(found)
+    verdict = assessment or assess(correlation)
     return {
         "status": verdict.status,
         "reasons": list(verdict.reasons),
-        "method": found.method,
-        "evaluations": len(found.run.evaluated),
-        "rating": found.rating,
-        "feasible": found.feasible,
-        "mean_improvement_percent": found.mean_improvement,
-        "characteristics": characteristic_entries(found),
+        "method": correlation.method,
+        "evaluations": len(correlation.run.evaluated),
+        "rating": correlation.rating,
+        "feasible": correlation.feasible,
+        "mean_improvement_percent": correlation.mean_improvement,
+        "characteristics": characteristic_entries(correlation),
         "parameters": {
             r.path: {"baseline": r.baseline, "final": r.final, "sd": r.sd, "inward": r.inward}
-            for r in parameter_rows(found)
+            for r in parameter_rows(correlation)
         },
         "axle": str(axle_path),
-        "seconds": found.seconds,
-        "stopped": found.run.stopped,
-        "steps": list(found.steps),
-        "notes": list(found.notes),
+        "seconds": correlation.seconds,
+        "stopped": correlation.run.stopped,
+        "steps": list(correlation.steps),
+        "notes": list(correlation.notes),
     }
 
 
-def correlation_lines(found: Correlation, assessment: Assessment | None = None) -> list[str]:
+def correlation_lines(correlation: Correlation, assessment: Assessment | None = None) -> list[str]:
     """The outcome for a terminal, its status first; * marks what lies outside interval and noise."""
-    words = summary(found, assessment)
+    words = summary(correlation, assessment)
     head = f"{'characteristic':34}{'target':>11}{'baseline':>11}{'final':>11}{'improved':>10}  unit"
     lines = [words.pop("Status"), head]
-    for r in characteristic_rows(found):
+    for r in characteristic_rows(correlation):
         e = r.entry
         percent = f"{e.percent:.1f} %" if math.isfinite(e.percent) else "-"
         mark = " " if inside(e) else "*"
@@ -162,4 +162,4 @@ def correlation_lines(found: Correlation, assessment: Assessment | None = None) 
             f"{r.id:34}{e.target.value:>11.4g}{e.baseline:>11.4g}{e.final:>11.4g}{percent:>10} {mark}{r.unit}"
         )
     lines += [f"{key}: {text}" for key, text in words.items()]
-    return lines + remark_sentences(found)
+    return lines + remark_sentences(correlation)

@@ -87,17 +87,17 @@ def influence_runs(study: Study) -> int:
 
 
 def write_influence(
-    study: Study, found: StudyInfluence, folder: Path, *, workers: int | None = None
+    study: Study, study_influence: StudyInfluence, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
     """influence.xlsx, heat map and top-ten bars, and the three matrices as CSV."""
-    matrix = found.matrix
+    matrix = study_influence.matrix
     book = write_influence_workbook(
         folder / "influence.xlsx",
         matrix,
         relations=relations(matrix),
         study=study.name,
         date=date.today().isoformat(),
-        selection=found.selection,
+        selection=study_influence.selection,
         notes={
             "Axle": f"{study.axle.name} ({study.axle_path.name})",
             "Selection": "sd of a difference: standard error of the target and 3 % of it, combined",

@@ -42,9 +42,9 @@ class Recalled:
     answer: AnswerRecord | None
 
 
-def write_run(found: Correlation, folder: Path) -> Path:
+def write_run(correlation: Correlation, folder: Path) -> Path:
     """run.json of a correlation alone: what `recall` needs beside the store."""
-    return write_json(folder / RUN_FILE, run_document(found))
+    return write_json(folder / RUN_FILE, run_document(correlation))
 
 
 def write_chain(answer: Answer, record: AnswerRecord, folder: Path) -> Path:

@@ -25,7 +25,7 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 
 
 @dataclass(frozen=True)
-class Sampled:
+class SampleResult:
     """outcomes: of the design's rows, without curves, which are in the store.
 
     runs: true-solver runs made; kept: rows whose result was there before, or stands in an earlier row.
@@ -72,7 +72,7 @@ def run_sample(
     scheduler: str | None = None,
     retry_failed: bool = False,
     progress: Callable[[int], None] = lambda _: None,
-) -> Sampled:
+) -> SampleResult:
     """Every design of the sample evaluated, by the study's solver into the study's store."""
     started = time.perf_counter()
     solver = solver_for(study.axle, study.solver, study.windows, study.folder)
@@ -80,10 +80,10 @@ def run_sample(
         solver, study.store, workers=workers, scheduler=scheduler, retry_failed=retry_failed
     ) as campaign:
         found = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
-    return Sampled(design, tuple(found), campaign.runs, time.perf_counter() - started)
+    return SampleResult(design, tuple(found), campaign.runs, time.perf_counter() - started)
 
 
-def write_sample(study: Study, sampled: Sampled, folder: Path, form: Format | None = None) -> list[Path]:
+def write_sample(study: Study, sampled: SampleResult, folder: Path, form: Format | None = None) -> list[Path]:
     """designs.csv of the sample; with a format also designs.parquet and the whole store, curves included."""
     frame = designs_frame(list(sampled.design.rows()), sampled.outcomes)
     frame.insert(0, "label", list(sampled.design.labels))
@@ -106,7 +106,7 @@ def reasons(outcomes: Sequence[Outcome]) -> list[tuple[int, str]]:
     return [(count, first[kind]) for kind, count in Counter(kinds).most_common()]
 
 
-def sample_document(study: Study, sampled: Sampled) -> dict[str, Any]:
+def sample_document(study: Study, sampled: SampleResult) -> dict[str, Any]:
     """Counts, reasons of failures, and low, mean, high of each characteristic.
 
     `{"method", "n", "seed", "runs", "kept", "failed", "reasons", "characteristics", "store", "seconds"}`.

@@ -12,8 +12,8 @@ from doe_kc.measurement import RideHeight
 from doe_kc.study import Study
 from doe_kc.workflow.measure import Reduced
 
-ROUNDS = 4
-CLOSE = 1e-4
+STATIC_CORRECTIONS = 4
+ANGLE_TOLERANCE = 1e-4
 """deg: a static angle that near to the measured one is set."""
 
 
@@ -80,11 +80,11 @@ def _aligned(
     """Design angles by Newton steps of slope 1, and the static angles of the first round."""
     out = {**values, **{path: study.axle.values[f"{path}@L"] for path in angles}}
     first: dict[str, float] = {}
-    for _ in range(ROUNDS):
+    for _ in range(STATIC_CORRECTIONS):
         seen = _static(evaluate, out, list(angles))
         first = first or seen
         miss = {path: angles[path] - seen[path] for path in angles}
-        if max(abs(m) for m in miss.values()) < CLOSE:
+        if max(abs(m) for m in miss.values()) < ANGLE_TOLERANCE:
             break
         out |= {path: out[path] + m for path, m in miss.items()}
     return out, first

@@ -12,7 +12,7 @@ from doe_kc.errors import InputError
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs, designs_in_space
 from doe_kc.surrogates.models import SURROGATES, make
-from doe_kc.surrogates.study import FEWEST, default_models, number_of_tasks
+from doe_kc.surrogates.study import VALIDATION_DESIGNS, default_models, number_of_tasks
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def _designs(study: Study) -> Designs:
 def _needed(names: Sequence[str], variables: int) -> int:
     """Designs for the least demanding of the models."""
     fewest = [SURROGATES[n]().fewest(variables) for n in names]
-    return max(FEWEST, min(fewest, default=0))
+    return max(VALIDATION_DESIGNS, min(fewest, default=0))
 
 
 def _too_few(study: Study, designs: Designs, needed: int) -> str:

@@ -12,7 +12,7 @@ import pytest
 
 from doe_kc.axle import Axle, parameter_value, read_axle, with_values
 from doe_kc.axle.model import strut_clamp
-from doe_kc.axle.write import HEADER, write_axle
+from doe_kc.axle.write import AXLE_HEADER, write_axle
 from doe_kc.characteristics import reduce_all
 from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.errors import InputError, RunError
@@ -102,7 +102,7 @@ def test_changes_few_lines_and_no_comment(name: str, tmp_path: Path) -> None:
     lines = list(difflib.ndiff(text.splitlines(), new.splitlines()))
     removed = [line for line in lines if line.startswith("- ")]
     assert len(removed) <= 3 * len(values)
-    assert new.startswith(HEADER)
+    assert new.startswith(AXLE_HEADER)
     comments = [line.partition("#")[2] for line in PLAIN.splitlines() if "#" in line]
     assert [c for c in comments if c not in new] == []
 
@@ -174,9 +174,9 @@ def test_missing_keys_come_before_the_first_table(tmp_path: Path) -> None:
 
 
 def test_line_ends_and_an_older_header_are_kept_in_order(tmp_path: Path) -> None:
-    text = (HEADER + " 0.0 from x\n" + PLAIN).replace("\n", "\r\n")
+    text = (AXLE_HEADER + " 0.0 from x\n" + PLAIN).replace("\n", "\r\n")
     _, new = written(changed(text, {"spring.rate": 30.0}, tmp_path), text, tmp_path)
-    assert new.count(HEADER) == 1
+    assert new.count(AXLE_HEADER) == 1
     assert new.count("\n") == new.count("\r\n") == text.count("\n")
 
 

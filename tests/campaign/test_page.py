@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.campaign.schema import TABLES
+from doe_kc.campaign.schema import STORE_SCHEMA
 from doe_kc.sampling import SAMPLERS
 from doe_kc.sampling.options import SamplingOptions
 
@@ -22,7 +22,7 @@ def test_every_sampler_is_on_the_page() -> None:
 
 
 def test_every_column_is_on_the_page() -> None:
-    columns = set(re.findall(r"^    (\w+) [A-Z]+", TABLES, re.MULTILINE))
+    columns = set(re.findall(r"^    (\w+) [A-Z]+", STORE_SCHEMA, re.MULTILINE))
     section = PAGE.split("## What is kept")[1].split("##")[0]
     rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
     assert columns == {name for row in rows for name in re.findall(r"`(\w+)`", row) if name != "evaluations"}

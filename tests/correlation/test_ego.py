@@ -10,14 +10,14 @@ import pytest
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
 from doe_kc.correlation.ego.proposal import Box, gauss_newton
-from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE, RESTARTS, Strategy
+from doe_kc.correlation.ego.strategy import EGO_PATIENCE, PROPOSAL_CYCLE, RESTARTS, Strategy
 from doe_kc.correlation.ego.trust import Trust
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.prior import Prior
-from doe_kc.correlation.problem import Candidate, Evaluated, Prediction
+from doe_kc.correlation.problem import Candidate, Evaluated, RatingForecast
 from doe_kc.surrogates.models.gp import GaussianProcess
 from doe_kc.targets import Score, improvements, mean_improvement
 from doe_kc.true_solver.outcome import Outcome
@@ -65,12 +65,12 @@ def test_strategy_keeps_what_gains_and_turns_from_what_does_not() -> None:
     bolder = first.after(gain=10.0, best=-100.0)
     assert bolder.kind == "Gauss-Newton" and bolder.aversion < first.aversion
     other = bolder.after(gain=0.0, best=-90.0)
-    assert other.kind == CYCLE[1] and other.aversion > bolder.aversion and other.idle == 1
+    assert other.kind == PROPOSAL_CYCLE[1] and other.aversion > bolder.aversion and other.idle == 1
 
 
 def test_strategy_restarts_elsewhere_and_ends() -> None:
     state, restarts = Strategy(), 0
-    for _ in range((RESTARTS + 1) * (PATIENCE + 1)):
+    for _ in range((RESTARTS + 1) * (EGO_PATIENCE + 1)):
         if state.stopped:
             break
         state = state.after(gain=0.0, best=-1.0)
@@ -79,7 +79,7 @@ def test_strategy_restarts_elsewhere_and_ends() -> None:
 
 
 def answer(error: float, sd: float) -> Evaluated:
-    predicted = Prediction(np.zeros(4), np.full(4, sd), 0.0, 0.0)
+    predicted = RatingForecast(np.zeros(4), np.full(4, sd), 0.0, 0.0)
     return Evaluated(
         1, Candidate(np.zeros(2), "x", predicted), Outcome(None, np.zeros(30), "", 0.0),
         Score(np.full(4, error), np.zeros(0)), None, None, 0.0, np.zeros(0),
@@ -122,7 +122,7 @@ def test_learns_slopes_where_the_solver_gives_them(
 
     monkeypatch.setattr(Synthetic, "linearize", watched)
     case = replace(synthetic(12), exact=exact)
-    method = METHODS["ego"](case, Settings(seed=1, budget=12, gradients=gradients))
+    method = METHODS["ego"](case, MethodSettings(seed=1, budget=12, gradients=gradients))
     run = run_method(case, method, synthetic_solver(case), budget=12)
     opening = sum(e.candidate.origin == "opening sample" for e in run.evaluated)
     assert opening == (1 if slopes else 8)
@@ -140,7 +140,7 @@ def test_learns_slopes_where_the_solver_gives_them(
 def test_with_exact_slopes_a_settled_search_ends() -> None:
     case = replace(synthetic(12), exact=True)
     run = run_method(
-        case, METHODS["ego"](case, Settings(seed=1, budget=80)), synthetic_solver(case), budget=80
+        case, METHODS["ego"](case, MethodSettings(seed=1, budget=80)), synthetic_solver(case), budget=80
     )
     assert run.stopped and len(run.evaluated) < 40
     assert {"random", "restart"}.isdisjoint(e.candidate.origin for e in run.evaluated)
@@ -149,14 +149,14 @@ def test_with_exact_slopes_a_settled_search_ends() -> None:
 @pytest.mark.parametrize("gradients", ["auto", False])
 def test_outputs_that_no_variable_moves_are_no_hindrance(gradients: Gradients) -> None:
     case = problem("car_b", VariableOptions(use=["arb.radius", "tyre.rate", "scb.Tz"]))
-    method = METHODS["ego"](case, Settings(seed=1, budget=8, first=4, gradients=gradients))
+    method = METHODS["ego"](case, MethodSettings(seed=1, budget=8, first=4, gradients=gradients))
     run = run_method(case, method, solver(case.axle), budget=8)
     assert len(run.evaluated) == 8 and run.best != 0
 
 
 def test_with_exact_slopes_a_car_is_correlated_in_a_dozen_runs() -> None:
     case = problem("car_b")
-    method = METHODS["ego"](case, Settings(seed=1, budget=12))
+    method = METHODS["ego"](case, MethodSettings(seed=1, budget=12))
     run = run_method(case, method, solver(case.axle), budget=12)
     best = run.evaluated[run.best]
     assert best.rating is not None and best.rating.feasible

@@ -7,7 +7,7 @@ import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import METHODS, Settings
+from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.walls import Walls
@@ -18,7 +18,7 @@ from tests.correlation.cases import outcome, problem, solver, truth
 @pytest.mark.parametrize("car", ["car_b", "car_e"])
 def test_fits_the_curves_to_noise_and_recovers_what_the_data_see(car: str) -> None:
     case = problem(car)
-    method = METHODS["gauss_newton"](case, Settings(seed=1, budget=20))
+    method = METHODS["gauss_newton"](case, MethodSettings(seed=1, budget=20))
     run = run_method(case, method, solver(case.axle), budget=20)
     best = run.evaluated[run.best]
     assert method.stopped.startswith("converged")
@@ -68,7 +68,7 @@ def test_meets_constraints_from_a_start_that_violates_most_of_them(seed: int) ->
 
 
 def _fitted(case: Problem) -> Evaluated:
-    method = METHODS["gauss_newton"](case, Settings(seed=1, budget=30))
+    method = METHODS["gauss_newton"](case, MethodSettings(seed=1, budget=30))
     run = run_method(case, method, solver(case.axle), budget=30)
     assert method.stopped.startswith("converged")
     return run.evaluated[run.best]

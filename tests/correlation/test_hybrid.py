@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 
-from doe_kc.correlation.hybrid.credit import LEAST, Credit, reward
+from doe_kc.correlation.hybrid.credit import LEAST_CREDIT, Credit, reward
 from doe_kc.correlation.hybrid.evolution import DifferentialEvolution, Mutation
 from doe_kc.correlation.hybrid.linear_model import linear_model
-from doe_kc.correlation.hybrid.record import Record, nearest
-from doe_kc.correlation.hybrid.search import Trial
+from doe_kc.correlation.hybrid.record import SearchHistory, nearest
+from doe_kc.correlation.hybrid.search import SearchTrial
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import hybrid
-from doe_kc.correlation.methods._base import Settings
+from doe_kc.correlation.methods._base import MethodSettings
 from doe_kc.correlation.methods.hybrid import Hybrid
 from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.true_solver.outcome import failure
@@ -35,9 +35,9 @@ def drawn(problem: Synthetic, count: int) -> FloatArray:
     return problem.space.snapped(np.random.default_rng(0).random((count, problem.space.dimension)))
 
 
-def trial(problem: Synthetic, gain: float) -> Trial:
+def trial(problem: Synthetic, gain: float) -> SearchTrial:
     design = judged(problem, problem.space.start[None])[0]
-    return Trial(design, design.merit - gain)
+    return SearchTrial(design, design.merit - gain)
 
 
 def test_the_linear_model_is_exact_for_a_linear_map() -> None:
@@ -66,18 +66,18 @@ def test_credit_goes_to_who_gains_and_never_vanishes() -> None:
         credit.reward(2, trial(problem, 0.0))
     assert credit.probability.sum() == pytest.approx(1.0)
     assert credit.probability[0] > 0.8
-    assert credit.probability[1:].min() >= LEAST
+    assert credit.probability[1:].min() >= LEAST_CREDIT
 
 
 def test_a_failure_earns_nothing() -> None:
     problem = synthetic(4)
     dead = judged(problem, problem.space.start[None], failed=1)[0]
-    assert reward(Trial(dead, -1.0)) == 0.0
+    assert reward(SearchTrial(dead, -1.0)) == 0.0
 
 
 def test_fresh_designs_are_new_and_on_levels() -> None:
     problem = synthetic(4)
-    record = Record(problem, judged(problem, drawn(problem, 6)), seed=0)
+    record = SearchHistory(problem, judged(problem, drawn(problem, 6)), seed=0)
     rng = np.random.default_rng(0)
     known = record.evaluated[2].point
     found = record.fresh(known, [record.evaluated[3].point], rng)
@@ -91,7 +91,7 @@ def test_fresh_designs_are_new_and_on_levels() -> None:
 def test_the_record_keeps_failures_apart() -> None:
     problem = synthetic(4)
     points = drawn(problem, 8)
-    record = Record(problem, judged(problem, points, failed=2), seed=0)
+    record = SearchHistory(problem, judged(problem, points, failed=2), seed=0)
     assert len(record.sound) == 6
     assert len(record.archive.points) == 6
     assert record.doubtful(points[7])
@@ -110,7 +110,7 @@ def test_nearest_designs_keep_their_order() -> None:
 @pytest.mark.parametrize("search", [DifferentialEvolution(), Mutation()])
 def test_blind_searches_stay_inside_the_bounds(search: DifferentialEvolution | Mutation) -> None:
     problem = synthetic(4)
-    record = Record(problem, judged(problem, drawn(problem, 12)), seed=0)
+    record = SearchHistory(problem, judged(problem, drawn(problem, 12)), seed=0)
     rng = np.random.default_rng(0)
     for _ in range(50):
         found = search.propose(record, rng)
@@ -120,7 +120,7 @@ def test_blind_searches_stay_inside_the_bounds(search: DifferentialEvolution | M
 
 def test_mutations_grow_after_success_and_shrink_after_failure() -> None:
     problem = synthetic(4)
-    record = Record(problem, judged(problem, problem.space.start[None]), seed=0)
+    record = SearchHistory(problem, judged(problem, problem.space.start[None]), seed=0)
 
     def size(gain: float) -> float:
         search = Mutation()
@@ -151,7 +151,7 @@ def test_beats_differential_evolution_with_ten_times_the_budget() -> None:
         rng=np.random.default_rng(1),
     )
     assert rival.nfev >= 450
-    method = Hybrid(problem, Settings(seed=1, budget=45))
+    method = Hybrid(problem, MethodSettings(seed=1, budget=45))
     run = run_method(problem, method, solver(problem), budget=45)
     assert -run.evaluated[run.best].merit < 0.01 * rival.fun
 
@@ -160,7 +160,7 @@ def test_beats_differential_evolution_with_ten_times_the_budget() -> None:
 def test_crosses_a_jump_between_start_and_answer(share: float) -> None:
     """All outputs are half as large again on the answer's side."""
     problem = synthetic(12, jump=0.5)
-    method = Hybrid(problem, Settings(seed=1, budget=70))
+    method = Hybrid(problem, MethodSettings(seed=1, budget=70))
     run = run_method(problem, method, solver(problem, fails=at_random(share)), budget=70)
     best = run.evaluated[run.best]
     assert best.rating is not None and best.rating.feasible
@@ -169,7 +169,7 @@ def test_crosses_a_jump_between_start_and_answer(share: float) -> None:
 
 def test_several_searches_contribute_and_say_who_they_are() -> None:
     problem = synthetic(12)
-    method = Hybrid(problem, Settings(seed=2, budget=70))
+    method = Hybrid(problem, MethodSettings(seed=2, budget=70))
     run = run_method(problem, method, solver(problem), budget=70)
     origins = {e.candidate.origin for e in run.evaluated}
     assert {"surrogate", "linear model", "differential evolution", "mutation", "restart"} <= origins
@@ -181,10 +181,10 @@ def test_stops_when_nothing_gains_any_more(monkeypatch: pytest.MonkeyPatch) -> N
     patience = 15
     monkeypatch.setattr(hybrid, "PATIENCE", patience)
     problem = synthetic(3)
-    method = Hybrid(problem, Settings(seed=1, budget=400))
+    method = Hybrid(problem, MethodSettings(seed=1, budget=400))
     run = run_method(problem, method, solver(problem), budget=400)
     assert run.stopped.startswith("no search gained") and f"last {patience} designs" in run.stopped
     assert len(run.evaluated) < 400
     merits = [e.merit for e in run.evaluated]
     before, idle = max(merits[:-patience]), max(merits[-patience:])
-    assert idle - before <= hybrid.WORTH * abs(before) < max(merits) - merits[0]
+    assert idle - before <= hybrid.HYBRID_PROGRESS * abs(before) < max(merits) - merits[0]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.loop import Evaluate, Run, run_method
-from doe_kc.correlation.methods import METHODS, Method, Settings
+from doe_kc.correlation.methods import METHODS, Method, MethodSettings
 from doe_kc.correlation.pareto import infill
 from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.true_solver.outcome import Outcome, failure
@@ -41,8 +41,8 @@ def case(name: str) -> Synthetic:
     return synthetic(VARIABLES.get(name, 12))
 
 
-def settings(name: str, seed: int = 1, batch: int = 1) -> Settings:
-    return Settings(seed=seed, budget=BUDGETS.get(name, 45), batch=batch, first=FIRST.get(name, 16))
+def settings(name: str, seed: int = 1, batch: int = 1) -> MethodSettings:
+    return MethodSettings(seed=seed, budget=BUDGETS.get(name, 45), batch=batch, first=FIRST.get(name, 16))
 
 
 def started(name: str, *, seed: int = 1, batch: int = 1) -> Method:

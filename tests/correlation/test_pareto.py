@@ -11,7 +11,7 @@ import pytest
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.hybrid.output_model import fit_outputs
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods._base import Settings
+from doe_kc.correlation.methods._base import MethodSettings
 from doe_kc.correlation.methods.pareto import Pareto
 from doe_kc.correlation.pareto.front import VIOLATION, front_of, knee, non_dominated
 from doe_kc.correlation.pareto.infill import spread_out
@@ -153,7 +153,7 @@ def test_finds_the_ends_of_a_conflict() -> None:
     """One output with two targets: the front runs from the one to the other, all of the same loss sum."""
     problem = synthetic(4)
     problem = replace(problem, targets=conflict(problem))
-    method = Pareto(problem, Settings(seed=1, budget=45, first=15))
+    method = Pareto(problem, MethodSettings(seed=1, budget=45, first=15))
     run_method(problem, method, solver(problem), budget=45)
     front = method.front
     assert front.names == ("brake", "vertical")
@@ -164,4 +164,4 @@ def test_finds_the_ends_of_a_conflict() -> None:
 def test_says_how_to_get_pymoo(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pymoo", None)
     with pytest.raises(InputError, match=r"pip install .doe-kc\[pareto\]"):
-        Pareto(synthetic(4), Settings(seed=1, budget=10))
+        Pareto(synthetic(4), MethodSettings(seed=1, budget=10))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.methods import smt_ego
-from doe_kc.correlation.methods._base import Settings
+from doe_kc.correlation.methods._base import MethodSettings
 from doe_kc.correlation.methods._smt import propose
 from doe_kc.correlation.methods.smt_ego import SmtEgo
 from doe_kc.correlation.problem import Candidate
@@ -44,7 +44,7 @@ def test_a_training_failure_ends_the_search_and_keeps_the_run(monkeypatch: pytes
 
     monkeypatch.setattr(smt_ego, "propose", broken)
     problem = synthetic(3)
-    method = SmtEgo(problem, Settings(seed=1, budget=10, first=3))
+    method = SmtEgo(problem, MethodSettings(seed=1, budget=10, first=3))
     points = np.array([problem.space.start, problem.truth, 0.5 * (problem.space.start + problem.truth)])
     designs = [problem.judged(i, Candidate(p, ""), answer(problem, p)) for i, p in enumerate(points)]
     method.tell(designs)

@@ -7,7 +7,7 @@ import pytest
 
 from doe_kc.axle import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.correlation.walls import MARGIN, STIFFNESS, Walls
+from doe_kc.correlation.walls import WALL_MARGIN, WALL_STIFFNESS, Walls
 from doe_kc.targets import build_targets
 from doe_kc.targets.options import CharacteristicOptions
 from tests.correlation.cases import AXLE
@@ -34,8 +34,8 @@ def test_a_wall_stands_just_inside_every_constraint_of_the_targets() -> None:
     targets = build_targets(read_axle(AXLE), None, options, [], source="test")
     walls = Walls.of(targets)
     assert walls.rows.tolist() == [list(CHARACTERISTICS).index("vertical.bump_steer")]
-    assert walls.sd == pytest.approx([STIFFNESS])
-    assert (walls.low[0], walls.high[0]) == pytest.approx((-6.0 + MARGIN, -4.0 - MARGIN))
+    assert walls.sd == pytest.approx([WALL_STIFFNESS])
+    assert (walls.low[0], walls.high[0]) == pytest.approx((-6.0 + WALL_MARGIN, -4.0 - WALL_MARGIN))
 
 
 def test_targets_without_a_constraint_have_no_wall() -> None:

@@ -11,20 +11,20 @@ from doe_kc.discovery.alternatives import Alternatives, alternatives
 from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.findings import findings
 from doe_kc.discovery.fit import last_member
-from doe_kc.discovery.search import Search
-from doe_kc.discovery.trials import Trial, plausible
+from doe_kc.discovery.search import EffectSearch
+from doe_kc.discovery.trials import HypothesisFit, plausible
 from tests.discovery.cases import discovery
 
 BOTH = {"hub_compliance", "steering_friction"}
 
 
 @pytest.fixture(scope="module")
-def found() -> Search:
+def found() -> EffectSearch:
     return discovery("pair").search
 
 
 @pytest.fixture(scope="module")
-def compared(found: Search) -> tuple[Alternatives, ...]:
+def compared(found: EffectSearch) -> tuple[Alternatives, ...]:
     return alternatives(found, 1.0, Bench())
 
 
@@ -46,7 +46,9 @@ def test_no_member_of_the_set_is_a_rival_of_another(compared: tuple[Alternatives
         assert all(plausible(t) for t in one.trials)
 
 
-def test_an_effect_is_taken_out_of_the_whole_set(compared: tuple[Alternatives, ...], found: Search) -> None:
+def test_an_effect_is_taken_out_of_the_whole_set(
+    compared: tuple[Alternatives, ...], found: EffectSearch
+) -> None:
     """Not out of the set that it came into."""
     for one in compared:
         others = {h.effect for h in found.final.model.members} - {one.hypothesis.effect}
@@ -54,7 +56,9 @@ def test_an_effect_is_taken_out_of_the_whole_set(compared: tuple[Alternatives, .
         assert one.loss == pytest.approx(one.trials[0].fit.evidence - one.without.evidence)
 
 
-def test_the_order_of_two_effects_does_not_matter(compared: tuple[Alternatives, ...], found: Search) -> None:
+def test_the_order_of_two_effects_does_not_matter(
+    compared: tuple[Alternatives, ...], found: EffectSearch
+) -> None:
     first, second = found.final.model.members
     swapped = replace(found, final=last_member(found.final, first), plain=last_member(found.plain, first))
     assert swapped.final.model.members == (second, first)
@@ -68,7 +72,7 @@ def test_the_order_of_two_effects_does_not_matter(compared: tuple[Alternatives, 
 
 
 def test_a_first_trial_at_its_bound_is_no_rival_of_the_effect_beside_it(
-    compared: tuple[Alternatives, ...], found: Search
+    compared: tuple[Alternatives, ...], found: EffectSearch
 ) -> None:
     """Beside no friction, a hub may win by an absurd size; beside friction it is in the set itself."""
     hub = next(s for step in found.steps for s in step.screened if s.hypothesis.effect == "hub_compliance")
@@ -76,7 +80,7 @@ def test_a_first_trial_at_its_bound_is_no_rival_of_the_effect_beside_it(
     model = found.tuned.model.extended(hub.hypothesis)
     fit = replace(found.tuned, model=model, z=np.append(found.tuned.z, [1.5, 6.0]))
     covariance = np.hstack([found.tuned.jacobian, 100.0 * np.ones((fit.residual.size, 2)) * [[1.0, 0.3]]])
-    absurd = Trial(hub.hypothesis, replace(fit, jacobian=covariance), 50_000.0)
+    absurd = HypothesisFit(hub.hypothesis, replace(fit, jacobian=covariance), 50_000.0)
     steps = tuple(replace(s, trials=(*s.trials, absurd)) for s in found.steps)
     again = alternatives(replace(found, steps=steps), 1.0, Bench())
     same = next(c for c in again if c.hypothesis == friction.hypothesis)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.component_test import ENOUGH, MOST, accuracy, component_tests
+from doe_kc.discovery.component_test import DETECTION_LEVEL, PARTS_MOST, accuracy, component_tests
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screen import Screened, screen
@@ -46,7 +46,7 @@ def test_the_column_hides_the_rack_s_mount_until_it_is_measured(tuned: Fit, rack
     (found,) = component_tests(tuned, [rack], 5.0)
     assert found is not None
     assert found.parts == ("scb.Tz",)
-    assert found.separation >= ENOUGH
+    assert found.separation >= DETECTION_LEVEL
 
 
 def test_it_brings_what_the_narrowed_prior_does(tuned: Fit, rack: Screened) -> None:
@@ -73,8 +73,8 @@ def test_what_no_part_shows_is_left(tuned: Fit, rack: Screened) -> None:
 def test_no_more_parts_than_a_bench_gets_through(tuned: Fit, rack: Screened) -> None:
     (found,) = component_tests(tuned, [replace(rack, change=0.3 * rack.change)], 0.1)
     assert found is not None
-    assert found.separation < ENOUGH
-    assert len(found.parts) == len(set(found.parts)) == MOST
+    assert found.separation < DETECTION_LEVEL
+    assert len(found.parts) == len(set(found.parts)) == PARTS_MOST
 
 
 def test_accuracies_are_a_bench_s(tuned: Fit) -> None:

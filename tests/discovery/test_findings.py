@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.findings import (
-    NOTHING,
+    NO_EFFECT,
     _alike,
     _mistaken,
     _stands_out,
@@ -95,7 +95,7 @@ def test_odds_are_against_the_best_alternative_the_removal_among_them() -> None:
     logs = log_probabilities(place(hub, bent), known)
     assert best_alternative(logs, "hub_compliance") == ("strut_bending", pytest.approx(7.0 / np.log(10.0)))
     logs = log_probabilities(place(hub), known)
-    assert best_alternative(logs, "hub_compliance") == (NOTHING, pytest.approx(12.0 / np.log(10.0)))
+    assert best_alternative(logs, "hub_compliance") == (NO_EFFECT, pytest.approx(12.0 / np.log(10.0)))
 
 
 def test_the_prior_odds_of_an_effect_are_shared_between_its_places() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
-from doe_kc.discovery.fit import CONVERGED, Fit, cost_of, fit, followed
+from doe_kc.discovery.fit import FIT_DECREASE, Fit, cost_of, fit, followed
 from doe_kc.discovery.model import EffectModel
 from tests.discovery.cases import library, model
 
@@ -71,5 +71,5 @@ def test_followed_goes_most_of_the_way_of_a_fit(with_hub: Fit) -> None:
     without = replace(with_hub.model, left_out="lateral")
     near, full = followed(with_hub, without), fit(without, with_hub.z)
     start = cost_of(without, with_hub.z, with_hub.residual)
-    assert full.cost <= near.cost + CONVERGED < start
+    assert full.cost <= near.cost + FIT_DECREASE < start
     assert near.cost - full.cost < 0.2 * (start - full.cost) + 0.5

@@ -10,7 +10,7 @@ from scipy.stats import multivariate_normal
 
 from doe_kc.discovery.adequacy import LIMIT
 from doe_kc.discovery.fit import fit, followed
-from doe_kc.discovery.held_out import Prediction, _prediction, _without, held_out
+from doe_kc.discovery.held_out import HeldOutScore, _prediction, _without, held_out
 from doe_kc.discovery.model import EffectModel
 from doe_kc.typing import FloatArray
 from tests.discovery.cases import LOAD_CASES, discovery
@@ -28,9 +28,9 @@ def test_a_model_without_the_effect_does_not() -> None:
 
 
 def test_the_excess_counts_records_and_the_noise_s_own_size() -> None:
-    assert Prediction(1.23, 0.0, 1300).excess == pytest.approx(8.2, abs=0.1)
-    assert Prediction(1.23, 0.0, 10**9).excess == pytest.approx(11.5, abs=0.1)
-    assert Prediction(1.1, 0.0, 50).excess == pytest.approx(0.98, abs=0.02)
+    assert HeldOutScore(1.23, 0.0, 1300).excess == pytest.approx(8.2, abs=0.1)
+    assert HeldOutScore(1.23, 0.0, 10**9).excess == pytest.approx(11.5, abs=0.1)
+    assert HeldOutScore(1.1, 0.0, 50).excess == pytest.approx(0.98, abs=0.02)
 
 
 @pytest.mark.parametrize("case", LOAD_CASES[-1:])

@@ -13,16 +13,16 @@ from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search import with_conditioning
-from doe_kc.discovery.trials import Trial, stiffer_first
+from doe_kc.discovery.trials import HypothesisFit, stiffer_first
 from doe_kc.effects.hypothesis import Size
 from doe_kc.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
 
-def trial(place: str, gain: float, amplitude: float) -> Trial:
+def trial(place: str, gain: float, amplitude: float) -> HypothesisFit:
     hypothesis = next(h for h in library("left_right_asymmetry") if h.location == place)
     found = discovery("named").search.final
-    return Trial(hypothesis, replace(found, z=np.append(found.z, amplitude)), gain)
+    return HypothesisFit(hypothesis, replace(found, z=np.append(found.z, amplitude)), gain)
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from doe_kc.discovery.adequacy import adequacy
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.held_out import HeldOut, Prediction
+from doe_kc.discovery.held_out import HeldOut, HeldOutScore
 from doe_kc.discovery.result import Finding, Rival
 from doe_kc.discovery.verdict import classes, verdict
 from tests.discovery.cases import library, model
@@ -22,8 +22,8 @@ SIZE = 1300
 
 def held(case: str, tuned: tuple[float, float], with_effect: tuple[float, float]) -> HeldOut:
     """(RMS, score) without and with the effect."""
-    after = Prediction(*with_effect, SIZE)
-    return HeldOut(case, Prediction(*tuned, SIZE), after, after)
+    after = HeldOutScore(*with_effect, SIZE)
+    return HeldOut(case, HeldOutScore(*tuned, SIZE), after, after)
 
 
 BETTER = (held("lateral", (5.0, -900.0), (1.0, -50.0)),)
@@ -82,7 +82,7 @@ def test_held_out_load_cases_are_predicted_in_absolute_terms() -> None:
     """Better than without the effect is not enough; what chance gives so many records is."""
     assert judged(held_out=(*BETTER, held("steer", (4.0, -900.0), (1.06, -90.0)))).kind == "named"
     assert judged(held_out=(*BETTER, held("steer", (4.0, -900.0), (1.23, -90.0)))).kind == "unexplained"
-    granted = replace(held("steer", (4.0, -900.0), (1.23, -90.0)), law_granted=Prediction(1.0, 0.0, SIZE))
+    granted = replace(held("steer", (4.0, -900.0), (1.23, -90.0)), law_granted=HeldOutScore(1.0, 0.0, SIZE))
     assert judged(held_out=(*BETTER, granted)).kind == "named"
 
 

@@ -11,7 +11,7 @@ from doe_kc.axle import Axle
 from doe_kc.curves import CurveSet
 from doe_kc.effects import apply_effect, observed
 from doe_kc.solver.curve_set import curve_set, rising
-from doe_kc.solver.load_cases.roll import TECHNIQUES, PadRoll, Roll
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES, PadRoll, Roll
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 
@@ -114,7 +114,7 @@ def test_roll_by_the_pads_is_counter_phase_travel_in_deg() -> None:
     assert isinstance(roll, PadRoll) and roll.unit == "deg"
     travel = nominal().half_track * np.tan(np.radians(3.0))
     in_deg = solved(axle, replace(roll, amplitude=3.0))
-    in_mm = solved(axle, replace(TECHNIQUES["counter_phase"], amplitude=travel))
+    in_mm = solved(axle, replace(ROLL_TECHNIQUES["counter_phase"], amplitude=travel))
     for response, curve in in_mm.mean.items():
         np.testing.assert_allclose(in_deg.mean[response][:, -1], curve[:, -1], rtol=1e-9, atol=1e-7)
     assert in_deg.input[-1] == pytest.approx(3.0)
@@ -129,7 +129,7 @@ def solved(axle: Axle, roll: object):
 
 
 def test_a_roll_case_of_another_kind_stays() -> None:
-    pads = replace(nominal(), load_cases={"roll": TECHNIQUES["counter_phase"]})
+    pads = replace(nominal(), load_cases={"roll": ROLL_TECHNIQUES["counter_phase"]})
     assert apply_effect(pads, "roll_technique", {}, source="test").load_cases == pads.load_cases
     none = replace(nominal(), load_cases={})
     for technique in ("counter_phase", "wheel_to_ground"):

@@ -19,7 +19,7 @@ from doe_kc.influence.selection import (
     select_variables,
     suggested_bounds,
 )
-from doe_kc.influence.selection_result import Selection, Variable
+from doe_kc.influence.selection_result import Selection, VariableAdvice
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from tests.influence.studies import parameter, real_study, study
@@ -28,7 +28,7 @@ from tests.reference import nominal
 BUMP, ROLL = "vertical.bump_steer", "roll.roll_steer"
 
 
-def by_path(selection: Selection) -> dict[str, Variable]:
+def by_path(selection: Selection) -> dict[str, VariableAdvice]:
     return {v.parameter.path: v for v in selection.variables}
 
 

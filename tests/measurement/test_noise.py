@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from doe_kc.measurement import Measurement, reduce_measurement
-from doe_kc.measurement.repeatability import POINTS, error_components, thinned
+from doe_kc.measurement.repeatability import LIKELIHOOD_POINTS, error_components, thinned
 from tests.measurement.synthetic import Errors, truth, write_rig
 
 
@@ -45,7 +45,7 @@ def test_components_are_recovered_from_simulated_repeats() -> None:
 def test_thinning_keeps_both_ends() -> None:
     x = np.linspace(-1.0, 1.0, 65)
     repeats = thinned(x, np.eye(65), x, np.zeros((3, 65)))
-    assert repeats.relative.size == POINTS
+    assert repeats.relative.size == LIKELIHOOD_POINTS
     assert repeats.relative[0] == -1.0 and repeats.relative[-1] == 1.0
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.errors import InputError
 from doe_kc.measurement import tables
-from doe_kc.measurement.tables import Cell, Table, column_numbers, number_at
+from doe_kc.measurement.tables import Cell, RecordTable, column_numbers, number_at
 
 TEXTS = ("1", "-2.5", "+.5", "3.", "1e-3", "-7.25E+02", "0012")
 BAD: tuple[Cell, ...] = (
@@ -18,12 +18,12 @@ BAD: tuple[Cell, ...] = (
 )
 
 
-def table(cells: Sequence[Cell], *, decimal_comma: bool = False) -> Table:
+def table(cells: Sequence[Cell], *, decimal_comma: bool = False) -> RecordTable:
     numbers = tuple(range(2, 2 + len(cells)))
-    return Table("r.csv", ("time", "toe"), tuple(("0", c) for c in cells), numbers, decimal_comma)
+    return RecordTable("r.csv", ("time", "toe"), tuple(("0", c) for c in cells), numbers, decimal_comma)
 
 
-def one_by_one(read: Table) -> list[float]:
+def one_by_one(read: RecordTable) -> list[float]:
     return [number_at(read, row, 1) for row in range(len(read.rows))]
 
 

@@ -10,9 +10,9 @@ import numpy as np
 from doe_kc.axle import read_axle
 from doe_kc.correlation.likelihood import Likelihood, build_likelihood
 from doe_kc.correlation.loop import Run, run_method
-from doe_kc.correlation.methods import METHODS, Settings
-from doe_kc.correlation.posterior import Posterior, posterior
-from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
+from doe_kc.correlation.methods import METHODS, MethodSettings
+from doe_kc.correlation.posterior import ParameterPosterior, posterior
+from doe_kc.correlation.problem import Candidate, Evaluated, Problem, RatingForecast
 from doe_kc.correlation.result import Correlation
 from doe_kc.targets import CharacteristicOptions, build_targets
 from doe_kc.true_solver.outcome import failure
@@ -33,7 +33,7 @@ EVIL = "</script><script>alert('x')</script> & =1+1"
 def real() -> Correlation:
     """Gauss-Newton on a virtual car, with posterior."""
     case = problem(CAR)
-    method = METHODS["gauss_newton"](case, Settings(seed=1, budget=3))
+    method = METHODS["gauss_newton"](case, MethodSettings(seed=1, budget=3))
     run = run_method(case, method, solver(case.axle), budget=3)
     expansion = case.linearize(run.evaluated[run.best].point)
     assert case.likelihood is not None
@@ -85,14 +85,14 @@ def _step(case: Problem, runs: list[Evaluated], i: int, rng: np.random.Generator
     if i > 3:
         point[9], point[12] = 0.0, 1.0
     merit = max(e.merit for e in runs)
-    guess = Prediction(np.zeros(0), np.zeros(0), merit * 0.7, abs(merit) * 0.1)
+    guess = RatingForecast(np.zeros(0), np.zeros(0), merit * 0.7, abs(merit) * 0.1)
     candidate = Candidate(point, "first sample" if i < 4 else "ego", guess if i >= 4 else None)
     if i in {2, 6}:
         return case.judged(i, candidate, failure(f"no equilibrium in brake at 1200 N {EVIL}", 0.1))
     return case.judged(i, candidate, outcome(case.axle, case.space.values(point)))
 
 
-def _made_up(case: Problem) -> Posterior:
+def _made_up(case: Problem) -> ParameterPosterior:
     rows = np.diag(np.linspace(0.1, 200.0, case.space.dimension))
     return posterior(rows, case.space.prior_sd)
 

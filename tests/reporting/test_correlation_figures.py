@@ -11,7 +11,7 @@ from doe_kc.errors import RunError
 from doe_kc.reporting.correlation_bars import parameter_figure
 from doe_kc.reporting.correlation_convergence import convergence_figure
 from doe_kc.reporting.correlation_curves import case_views, curve_figure
-from doe_kc.reporting.correlation_dna import REACH, dna_figure
+from doe_kc.reporting.correlation_dna import DNA_REACH, dna_figure
 from doe_kc.reporting.correlation_figures import write_correlation_figures
 from doe_kc.reporting.panel import Panel
 from doe_kc.rounding import short
@@ -39,7 +39,7 @@ def test_dna_keeps_every_mark_on_the_axis(name: str) -> None:
     (panel,) = page.panels
     assert page.outside == []
     places = np.concatenate([np.atleast_1d(line.get_xdata()) for line in panel.lines]).astype(float)
-    assert (np.abs(places - 1.0) <= REACH + 1e-12).all()
+    assert (np.abs(places - 1.0) <= DNA_REACH + 1e-12).all()
     words = texts(panel)
     for entry in found.improvements:
         assert entry.target.entry.label in words and short(entry.final) in words

@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.axle import Axle
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.march import Path, Settings, Start, march
+from doe_kc.solver.march import March, NewtonSettings, Start, march
 from doe_kc.solver.result import StaticState
 from doe_kc.solver.static import control_matrix, static_state
 
@@ -23,7 +23,7 @@ class Rig:
         self.axle = axle
         self.kernel: Kernel = kernel(axle.topology)
         self.c = self.kernel.constant_values(dict(axle.values))
-        found = static_state(self.kernel, None, self.c, axle, Settings())
+        found = static_state(self.kernel, None, self.c, axle, NewtonSettings())
         assert isinstance(found, StaticState)
         self.static = found
 
@@ -32,7 +32,7 @@ class Rig:
         held = {"pad_L": pads.pad[0], "pad_R": pads.pad[1], "preload": pads.preload}
         return control_matrix(self.kernel, {**held, **values}, n)  # type: ignore[dict-item]
 
-    def path(self, waypoints: Sequence[Mapping[str, float]], steps: int, *, friction: bool = False) -> Path:
+    def path(self, waypoints: Sequence[Mapping[str, float]], steps: int, *, friction: bool = False) -> March:
         """Straight lines between waypoints, which hold changes from rest (pads) or values; from rest."""
         names = sorted({n for w in waypoints for n in w})
         pads = {"pad_L": self.static.datum.pad[0], "pad_R": self.static.datum.pad[1]}
@@ -50,7 +50,7 @@ class Rig:
         assert found.failed is None
         return found
 
-    def output(self, path: Path, name: str) -> np.ndarray:
+    def output(self, path: March, name: str) -> np.ndarray:
         """Output along the path, the static state first."""
         column = self.kernel.equations.output_names.index(name)
         return np.concatenate([[self.static.y[column]], path.y[:, column]])

@@ -21,7 +21,7 @@ from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.elements._base import STAGES
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
 from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, Datum
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from tests.reference import DATA
 
 HERE = Path(__file__).parent
@@ -80,7 +80,7 @@ def test_every_load_case_is_listed_in_the_order_and_lives_in_its_own_module() ->
 
 
 @pytest.mark.parametrize(
-    "case", [*LOAD_CASES.values(), TECHNIQUES["counter_phase"]], ids=lambda c: type(c).__name__
+    "case", [*LOAD_CASES.values(), ROLL_TECHNIQUES["counter_phase"]], ids=lambda c: type(c).__name__
 )
 def test_a_load_case_says_what_it_sweeps(case) -> None:
     assert type(case).__doc__

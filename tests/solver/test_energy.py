@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import simpson
 
 from doe_kc.effects import apply_effect
-from doe_kc.solver.march import Path
+from doe_kc.solver.march import March
 from tests.reference import nominal
 from tests.solver.independent import evaluate, tyre_energy
 from tests.solver.tangent import Rig
@@ -24,7 +24,7 @@ def segments(values: np.ndarray, steps: int) -> list[np.ndarray]:
     return [values[i : i + steps + 1] for i in range(0, len(values) - 1, steps)]
 
 
-def work(rig: Rig, path: Path, steps: int) -> np.ndarray:
+def work(rig: Rig, path: March, steps: int) -> np.ndarray:
     """Work in N mm on each straight piece: pads, drive forces and pinion, each with its conjugate."""
     total = np.zeros(len(path.x) // steps)
     for force, travel, sign in (
@@ -46,7 +46,7 @@ def work(rig: Rig, path: Path, steps: int) -> np.ndarray:
     return total
 
 
-def stored(rig: Rig, path: Path) -> np.ndarray:
+def stored(rig: Rig, path: March) -> np.ndarray:
     """Energy in N mm at the start and at every equilibrium."""
     names = rig.kernel.equations.output_names
     rows = [(rig.static.x, rig.controls(1, {})[0], rig.static.y), *zip(path.x, rig.u, path.y, strict=True)]

@@ -14,7 +14,7 @@ from doe_kc.effects import apply_effect
 from doe_kc.errors import DoeKcError, RunError
 from doe_kc.solver.diagnosis import unresisted
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.march import Halt, Settings
+from doe_kc.solver.march import Halt, NewtonSettings
 from doe_kc.solver.result import Failure, NotConverged
 from doe_kc.solver.suite import solve
 from tests.reference import EXAMPLE, nominal
@@ -74,7 +74,7 @@ def test_throw_raises_not_converged_with_the_failure() -> None:
 
 
 def test_a_static_failure_says_so() -> None:
-    found = solve(nominal(), compiled=False, throw=False, settings=Settings(max_iterations=0))
+    found = solve(nominal(), compiled=False, throw=False, settings=NewtonSettings(max_iterations=0))
     assert found.failure is not None
     assert found.static is None
     assert found.cases == {}
@@ -109,7 +109,7 @@ def test_what_nothing_resists_is_named() -> None:
 def test_where_newton_fails_the_load_is_ramped_up() -> None:
     soft = with_values(nominal(), {f"{b}.F{a}": 0.01 for b in ("llf", "llr") for a in "xyz"})
     direct = solve(soft, [], compiled=False)
-    ramped = solve(soft, [], compiled=False, settings=Settings(max_iterations=6))
+    ramped = solve(soft, [], compiled=False, settings=NewtonSettings(max_iterations=6))
     assert direct.static is not None
     assert ramped.static is not None
     np.testing.assert_allclose(ramped.static.y, direct.static.y, rtol=1e-9, atol=1e-6)

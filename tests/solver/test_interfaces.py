@@ -12,7 +12,7 @@ import pytest
 from doe_kc.axle import Axle, with_values
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, CurveSet
 from doe_kc.effects import apply_effect
-from doe_kc.effects.subframe_flexibility import STIFFNESS
+from doe_kc.effects.subframe_flexibility import JOINT_STIFFNESS
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.curve_gradient import CurveGradients
 from doe_kc.solver.curve_set import curve_set
@@ -20,14 +20,14 @@ from doe_kc.solver.elements.wheel import SPIN_STIFFNESS
 from doe_kc.solver.interface_columns import law_columns
 from doe_kc.solver.interface_laws import LAWS, stop_operator
 from doe_kc.solver.interfaces import Influences, interface_influences
-from doe_kc.solver.march import Settings
+from doe_kc.solver.march import NewtonSettings
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.suite import solve
 from doe_kc.solver.topology import Topology
 from tests.reference import nominal
 
 SMALL = 1e-3
-TIGHT = Settings(tol=1e-8)
+TIGHT = NewtonSettings(tol=1e-8)
 SCALE = {"deg": 0.01, "mm": 0.1, "N": 10.0}
 Weights = Mapping[str, float]
 
@@ -122,7 +122,7 @@ def misses(
 
 SPIN = np.degrees(1000.0 / SPIN_STIFFNESS)
 """deg/Nm of the hub's brake lock, which is not quite rigid."""
-HALVES = {k.removeprefix("k"): SMALL / v for k, v in STIFFNESS.items()}
+HALVES = {k.removeprefix("k"): SMALL / v for k, v in JOINT_STIFFNESS.items()}
 SERIES = {
     "hub_compliance": (
         {"camber_Nm_deg": 6000.0 / SMALL, "toe_Nm_deg": 9000.0 / SMALL},

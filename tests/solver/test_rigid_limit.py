@@ -17,14 +17,14 @@ from doe_kc.axle import Axle, with_values
 from doe_kc.axle.model import BUSHINGS
 from doe_kc.solver.load_cases.steer import Steer
 from doe_kc.solver.load_cases.vertical import Vertical
-from doe_kc.solver.march import Settings
+from doe_kc.solver.march import NewtonSettings
 from doe_kc.solver.suite import solve
 from tests.reference import nominal, variant
 
 DEG, MM = 1e-2, 0.05
 SOFT = 1e-4
 """Factor on rotational stiffnesses: joints turn freely."""
-TOLERANT = Settings(tol=1e-4)
+TOLERANT = NewtonSettings(tol=1e-4)
 """At 1e7 N/mm the rounding of a coordinate of 1000 mm is already 1e-6 N."""
 
 

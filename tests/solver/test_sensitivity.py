@@ -16,13 +16,13 @@ from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.march import Settings
+from doe_kc.solver.march import NewtonSettings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 
-TIGHT = Settings(tol=1e-8)
+TIGHT = NewtonSettings(tol=1e-8)
 """Central differences of equilibria at the usual 1e-7 N would be noise at 1e-5 relative."""
 SHORT = {"vertical": 8, "roll": 6, "lateral": 5, "lateral_offset": 5, "brake": 5, "drive": 5, "steer": 8}
 ROUND_OFF = {"N": 5e-7, "mm": 1e-9, "deg": 1e-9}

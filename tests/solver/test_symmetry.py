@@ -14,8 +14,8 @@ from doe_kc.axle.read import axle_from_document
 from doe_kc.effects import apply_effect
 from doe_kc.solver.elements.responses import OUTPUT_UNITS
 from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.load_cases.roll import TECHNIQUES
-from doe_kc.solver.march import Settings
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.solver.march import NewtonSettings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from tests.reference import EXAMPLE, nominal
@@ -79,7 +79,7 @@ def test_a_table_that_is_not_odd_is_mirrored(bushing: str, kind: str) -> None:
 
 def test_counter_phase_roll_is_antisymmetric_and_rolls_the_same_way() -> None:
     axle = replace(
-        nominal(), load_cases={"roll": nominal().load_cases["roll"], "pads": TECHNIQUES["counter_phase"]}
+        nominal(), load_cases={"roll": nominal().load_cases["roll"], "pads": ROLL_TECHNIQUES["counter_phase"]}
     )
     found = solve(axle, compiled=False)
     left, right = curves(found, "pads", "L"), curves(found, "pads", "R")
@@ -202,7 +202,7 @@ TOLERANCE = {"tie_rod_free_play": 2e-2, "hub_compliance": 2e-3}
 def test_an_effect_in_its_limit_is_the_nominal_axle(ident: str, solution: Solution) -> None:
     axle = apply_effect(nominal(), ident, LIMITS[ident], source="test")
     # in the stiffest limits the rounding of a coordinate weighs 1e-3 N
-    found = solve(axle, compiled=False, settings=Settings(tol=1e-2 if ident in STIFF else 1e-7))
+    found = solve(axle, compiled=False, settings=NewtonSettings(tol=1e-2 if ident in STIFF else 1e-7))
     names = [f"{n}@{s}" for n in ("toe", "camber", "spin", "wc_x", "wc_y", "wc_z") for s in "LR"]
     columns = [solution.column(n) for n in names]
     for case, expected in solution.cases.items():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.errors import InputError
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.surrogates.models import SURROGATES, make
 from doe_kc.surrogates.training import Scaling
 from tests.surrogates.problems import differences, problem
@@ -117,7 +117,7 @@ def test_units_do_not_matter(name: str) -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_left_out_residuals_have_the_shape_of_the_data(name: str) -> None:
     held = fitted(name).cross_validate()
-    assert isinstance(held, Held)
+    assert isinstance(held, LeftOut)
     assert held.residual.shape == held.variance.shape == P.y.shape
     assert (held.variance > 0.0).all()
     assert (np.square(held.residual).sum(axis=0) < np.square(P.y - P.y.mean(axis=0)).sum(axis=0)).all()

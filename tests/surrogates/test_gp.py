@@ -12,9 +12,9 @@ from sklearn.gaussian_process.kernels import RBF, ConstantKernel, DotProduct
 
 from doe_kc.errors import InputError
 from doe_kc.surrogates.cholesky import inverse_roots, inverses
-from doe_kc.surrogates.kernel import Kernel, training_covariance
+from doe_kc.surrogates.kernel import CovarianceKernel, training_covariance
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn
-from doe_kc.surrogates.models.gp import FittedGaussianProcess, GaussianProcess, Trend
+from doe_kc.surrogates.models.gp import FirstOrderTrend, FittedGaussianProcess, GaussianProcess
 from doe_kc.surrogates.posterior import condition
 from doe_kc.threads import one_thread
 from doe_kc.typing import FloatArray
@@ -88,7 +88,7 @@ def test_the_slope_of_the_likelihood_is_exact() -> None:
             assert found[:, k] == pytest.approx(by_difference(kernel, sample, k), rel=1e-5, abs=1e-7)
 
 
-def by_difference(kernel: Kernel, sample: Sample, k: int) -> FloatArray:
+def by_difference(kernel: CovarianceKernel, sample: Sample, k: int) -> FloatArray:
     def evidence(step: float) -> FloatArray:
         curvature = kernel.curvature.copy()
         curvature[:, k] *= np.exp(step)
@@ -112,11 +112,11 @@ def test_few_designs_find_the_few_variables_that_matter() -> None:
     assert np.linalg.norm(difference) < 0.2 * np.linalg.norm(weight)
 
 
-def expansion(at: FloatArray) -> Trend:
+def expansion(at: FloatArray) -> FirstOrderTrend:
     from tests.surrogates.problems import outputs
 
     slope = differences(outputs, at[None], 1e-5)[0]
-    return Trend(at, outputs(at[None])[0], slope)
+    return FirstOrderTrend(at, outputs(at[None])[0], slope)
 
 
 def test_a_known_expansion_is_kept_where_it_holds() -> None:
@@ -148,7 +148,7 @@ def test_a_known_expansion_helps() -> None:
 
 def test_an_output_that_is_its_expansion_is_predicted_by_it() -> None:
     plane = P.x @ np.arange(1.0, 6.0)[:, None]
-    trend = Trend(np.full(5, 0.5), np.array([7.5]), np.arange(1.0, 6.0)[None])
+    trend = FirstOrderTrend(np.full(5, 0.5), np.array([7.5]), np.arange(1.0, 6.0)[None])
     fitted = GaussianProcess(trend=trend).fit(P.x, plane)
     np.testing.assert_allclose(fitted.predict(P.test)[:, 0], P.test @ np.arange(1.0, 6.0), rtol=1e-9)
 

@@ -9,7 +9,7 @@ from doe_kc.axle.parameters import Parameter
 from doe_kc.errors import InputError
 from doe_kc.surrogates.calibration import Calibrated, calibration_factors, coverage_after, scaled
 from doe_kc.surrogates.folds import fold_rows, refit_folds
-from doe_kc.surrogates.interface import Held
+from doe_kc.surrogates.interface import LeftOut
 from doe_kc.surrogates.models import make
 from doe_kc.surrogates.selection import Chosen, choose, join
 from doe_kc.surrogates.shares import total_shares
@@ -48,7 +48,7 @@ def test_joined_models_predict_each_its_own() -> None:
 def test_calibration_repairs_variances_that_are_too_small() -> None:
     rng = np.random.default_rng(0)
     sd = np.array([1.0, 4.0])
-    held = Held(sd * rng.normal(size=(400, 2)), np.full((400, 2), 1.0))
+    held = LeftOut(sd * rng.normal(size=(400, 2)), np.full((400, 2), 1.0))
     factors = calibration_factors(held)
     assert factors == pytest.approx([1.0, 16.0], rel=0.25)
     before, after = quality(np.zeros((400, 2)), held), scaled(held, factors)
@@ -60,7 +60,7 @@ def test_calibration_repairs_variances_that_are_too_small() -> None:
 
 
 def test_an_exactly_known_output_keeps_its_variance() -> None:
-    assert calibration_factors(Held(np.zeros((9, 1)), np.zeros((9, 1)))) == pytest.approx([1.0])
+    assert calibration_factors(LeftOut(np.zeros((9, 1)), np.zeros((9, 1)))) == pytest.approx([1.0])
 
 
 def test_a_calibrated_model_differs_in_variance_alone() -> None:
@@ -76,7 +76,7 @@ def test_a_calibrated_model_differs_in_variance_alone() -> None:
 def test_quality_of_perfect_useless_and_constant() -> None:
     y = np.column_stack([np.arange(10.0), np.arange(10.0), np.full(10, 2.0)])
     residual = np.column_stack([np.zeros(10), y[:, 1] - 4.5, np.zeros(10)])
-    q = quality(y, Held(residual, np.ones((10, 3))))
+    q = quality(y, LeftOut(residual, np.ones((10, 3))))
     assert q.q2[:2] == pytest.approx([1.0, 0.0])
     assert np.isnan(q.q2[2])
     assert q.rmse[1] == pytest.approx(y[:, 1].std())

@@ -14,7 +14,7 @@ from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.effects import apply_effect
 from doe_kc.errors import InputError
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver import own
 from doe_kc.true_solver.make import solver_for
@@ -100,7 +100,7 @@ def test_the_fingerprint_knows_everything_but_windows() -> None:
         with_values(nominal(), {"strut.flexibility": 0.1}),
         apply_effect(nominal(), "hub_compliance", {}, source="test"),
         replace(nominal(), follow={}),
-        replace(nominal(), load_cases={**nominal().load_cases, "roll": TECHNIQUES["counter_phase"]}),
+        replace(nominal(), load_cases={**nominal().load_cases, "roll": ROLL_TECHNIQUES["counter_phase"]}),
         axle(),
     ]
     prints = {AxleSolver(a).fingerprint() for a in others}

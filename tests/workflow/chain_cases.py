@@ -11,7 +11,7 @@ import numpy as np
 
 from doe_kc.characteristics import reduce_all
 from doe_kc.discovery.options import DiscoveryOptions
-from doe_kc.measurement.reduction import Estimate
+from doe_kc.measurement.reduction import GradientEstimate
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.answer import Answer
 from doe_kc.workflow.chain import Steps, follow_chain
@@ -50,9 +50,9 @@ def reduced(car: str) -> Reduced:
     like = records(car)
     values = reduce_all(like.curves)
     estimates = {
-        name: Estimate(values[name], e.sd)
+        name: GradientEstimate(values[name], e.sd)
         for name, e in like.characteristics.items()
         if np.isfinite(values[name])
     }
-    nothing = {name: Estimate(np.nan, np.nan) for name in like.characteristics}
+    nothing = {name: GradientEstimate(np.nan, np.nan) for name in like.characteristics}
     return Reduced(replace(like, characteristics={**nothing, **estimates}), None)

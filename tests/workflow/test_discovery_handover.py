@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from doe_kc.axle import read_axle
-from doe_kc.discovery.result import Estimate, Finding
+from doe_kc.discovery.result import Finding, ParameterEstimate
 from doe_kc.discovery.sentences import odds_words
 from doe_kc.discovery.standing import Standing
 from doe_kc.effects import EFFECTS
@@ -22,7 +22,7 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines, effect_entry, not_testable
-from doe_kc.workflow.discovery_handover import TABLES, axle_note, write_discovery
+from doe_kc.workflow.discovery_handover import DISCOVERY_TABLES, axle_note, write_discovery
 from tests.discovery.cases import AXLE, LOAD_CASES, discovery, records
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
@@ -46,7 +46,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
 
 def test_everything_is_written(written: list[Path]) -> None:
     names = [p.name for p in written]
-    first = ["axle.toml", "axle_effects_only.toml", *TABLES, "discovery.xlsx", "report.html"]
+    first = ["axle.toml", "axle_effects_only.toml", *DISCOVERY_TABLES, "discovery.xlsx", "report.html"]
     assert names[: len(first)] == first
     assert {Path(n).stem for n in names[len(first) :]} == {
         "disagreement", "gap", "evidence", "worst_curves", "isolability", "parameters", "held_out",
@@ -168,7 +168,7 @@ def test_a_list_option_becomes_one_parameter() -> None:
 
 def test_an_index_alone_keeps_its_place() -> None:
     finding: Finding = discovery("lead").findings[0]
-    one = replace(finding, estimates=(Estimate("LLR", 1, 600.0, 20.0, "N"),))
+    one = replace(finding, estimates=(ParameterEstimate("LLR", 1, 600.0, 20.0, "N"),))
     assert effect_entry(one)["parameters"]["LLR"] == {"value": [0.0, 600.0], "sd": [0.0, 20.0], "unit": "N"}
 
 

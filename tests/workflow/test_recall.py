@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.campaign.key import design_key
-from doe_kc.campaign.record import Record, packed_outcome
+from doe_kc.campaign.record import StoredEvaluation, packed_outcome
 from doe_kc.campaign.store import open_store
 from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
 from doe_kc.correlation.assessment import Objection
@@ -43,7 +43,7 @@ def kept(found: Correlation, out: Path, *weights: CharacteristicOptions) -> Stud
     with open_store(plain.store, solver_for(plain.axle, plain.solver)) as store:
         for e in found.run.evaluated:
             values = found.problem.space.values(e.point)
-            row = Record(
+            row = StoredEvaluation(
                 key=design_key(values),
                 parameters=values,
                 packed=packed_outcome(e.outcome),

@@ -22,7 +22,7 @@ from doe_kc.workflow.handover import AXLE, correlation_document, correlation_lin
 from doe_kc.workflow.measure import Reduced, study_records
 from doe_kc.workflow.recall import write_run
 
-ALONE = (
+CORRELATED_AXLE = (
     "{axle}: the study's axle tuned as it is; what it may lack is not looked for. doe-kc run does that first "
     "and hands over one axle with both."
 )
@@ -31,7 +31,7 @@ ALONE = (
 @app.command("correlate")
 @takes_study
 def correlate(
-    given: Given,
+    study_options: Given,
     method: Annotated[str | None, typer.Option(help="ego, gauss_newton, pareto, hybrid or smt_ego.")] = None,
     budget: Annotated[
         int | None, typer.Option(min=1, help="True-solver evaluations, the baseline among them.")
@@ -42,22 +42,22 @@ def correlate(
 
     The exit code is 1 where the axle is not usable, which the first line explains; all files are written.
     """
-    found = given.read()
+    found = study_options.read()
     reduced = study_records(found)
     correlation = correlated(
-        found, reduced, method=method, budget=budget, workers=given.workers, scheduler=scheduler
+        found, reduced, method=method, budget=budget, workers=study_options.workers, scheduler=scheduler
     )
     folder, assessment = found.out / "correlate", assess(correlation)
     write_run(correlation, folder)
     records = reduced.measurement if reduced is not None else None
     written = write_correlation(
-        found, correlation, records, folder, assessment=assessment, workers=given.workers
+        found, correlation, records, folder, assessment=assessment, workers=study_options.workers
     )
-    if given.json is not None:
-        write_json(given.json, correlation_document(correlation, folder / AXLE, assessment))
+    if study_options.json is not None:
+        write_json(study_options.json, correlation_document(correlation, folder / AXLE, assessment))
     for line in correlation_lines(correlation, assessment):
         typer.echo(line)
-    typer.echo(ALONE.format(axle=folder / AXLE))
+    typer.echo(CORRELATED_AXLE.format(axle=folder / AXLE))
     typer.echo(f"{len(written)} files in {folder}; store {found.store}", err=True)
     leave_unless_usable(assessment)
 

@@ -19,7 +19,7 @@ from doe_kc.workflow.discovery_document import discovery_document, discovery_lin
 from doe_kc.workflow.discovery_handover import AXLE, write_discovery
 from doe_kc.workflow.measure import study_measurement
 
-ALONE = (
+DISCOVERED_AXLE = (
     "{axle}: refitted to the records with what was found, not yet correlated to the targets; doe-kc run does "
     "both and hands over one axle."
 )
@@ -28,22 +28,22 @@ ALONE = (
 @app.command("discover")
 @takes_study
 def discover(
-    given: Given,
+    study_options: Given,
     exclude: Annotated[
         list[str] | None, typer.Option(help="Id of an effect not to look for; can be given several times.")
     ] = None,
 ) -> None:
     """Find where model and records disagree, name the missing effect, add it, show the gap shrink."""
-    found = given.read()
+    found = study_options.read()
     records = study_measurement(found)
-    discovery = discovered(found, records, exclude=exclude or (), workers=given.workers)
+    discovery = discovered(found, records, exclude=exclude or (), workers=study_options.workers)
     folder = found.out / "discover"
-    written = write_discovery(found, discovery, records, folder, workers=given.workers)
-    if given.json is not None:
-        write_json(given.json, discovery_document(discovery, folder / AXLE))
+    written = write_discovery(found, discovery, records, folder, workers=study_options.workers)
+    if study_options.json is not None:
+        write_json(study_options.json, discovery_document(discovery, folder / AXLE))
     for line in discovery_lines(discovery):
         typer.echo(line)
-    typer.echo(ALONE.format(axle=folder / AXLE))
+    typer.echo(DISCOVERED_AXLE.format(axle=folder / AXLE))
     typer.echo(f"{len(written)} files in {folder}", err=True)
 
 

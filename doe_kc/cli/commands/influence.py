@@ -21,19 +21,19 @@ from doe_kc.workflow.influence import (
 
 @app.command("influence")
 @takes_study
-def influence(given: Given) -> None:
+def influence(study_options: Given) -> None:
     """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""
-    found = given.read()
+    found = study_options.read()
     measured = None
     if found.measurement is not None:
         measured = reduce_measurement(
             found.measurement, windows=found.windows, half_track=found.axle.half_track
         )
     with progress_bar("one at a time", influence_runs(found)) as advance:
-        result = study_influence(found, measured, workers=given.workers, progress=advance)
-    if given.json is not None:
-        write_json(given.json, influence_document(result.matrix))
-    written = write_influence(found, result, found.out / "influence", workers=given.workers)
+        result = study_influence(found, measured, workers=study_options.workers, progress=advance)
+    if study_options.json is not None:
+        write_json(study_options.json, influence_document(result.matrix))
+    written = write_influence(found, result, found.out / "influence", workers=study_options.workers)
     for line in influence_lines(result.matrix):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {found.out / 'influence'}", err=True)

@@ -16,17 +16,19 @@ from doe_kc.workflow.measure import reduce_records, reduced_document, write_redu
 
 @app.command("reduce")
 @takes_study
-def reduce(given: Given) -> None:
+def reduce(study_options: Given) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
-    found = given.read()
+    found = study_options.read()
     solution = solve(found.axle)
     reduced = reduce_records(found, solution)
-    if given.json is not None:
-        write_json(given.json, reduced_document(reduced))
+    if study_options.json is not None:
+        write_json(study_options.json, reduced_document(reduced))
     comparison = compare_model(found, curve_set(solution), reduced.measurement)
-    written = write_reduced(reduced, found.out / "reduce", workers=given.workers, pictures=found.pictures)
+    written = write_reduced(
+        reduced, found.out / "reduce", workers=study_options.workers, pictures=found.pictures
+    )
     written += write_comparison(
-        comparison, found.out / "compare", workers=given.workers, pictures=found.pictures
+        comparison, found.out / "compare", workers=study_options.workers, pictures=found.pictures
     )
     for line in comparison_lines(comparison):
         typer.echo(line)

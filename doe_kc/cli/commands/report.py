@@ -22,19 +22,19 @@ NO_RUN = (
 
 @app.command("report")
 @takes_study
-def report(given: Given) -> None:
+def report(study_options: Given) -> None:
     """Rebuild the last correlation's results, and the answer of its run, with the study's present weights.
 
     No design is solved again. After doe-kc correlate there is no run: the answer at the top of out is left.
     """
-    found = given.read()
+    found = study_options.read()
     reduced = study_records(found)
     folder = found.out / "correlate"
     recalled = recall(found, reduced, folder)
     correlation, assessment, answer = recalled.correlation, recalled.assessment, recalled.answer
     records = reduced.measurement if reduced is not None else None
     written = write_correlation(
-        found, correlation, records, folder, assessment=assessment, workers=given.workers
+        found, correlation, records, folder, assessment=assessment, workers=study_options.workers
     )
     lines = correlation_lines(correlation, assessment)
     if answer is not None and records is not None:
@@ -42,14 +42,14 @@ def report(given: Given) -> None:
         if curves is not None:
             comparison = compare_model(found, curves, records)
             written += write_comparison(
-                comparison, found.out / "compare", workers=given.workers, pictures=found.pictures
+                comparison, found.out / "compare", workers=study_options.workers, pictures=found.pictures
             )
         written += write_answer(found, correlation, assessment, answer, records)
         lines = [*answer_lines(assessment, answer), *lines[1:], f"The answer: {found.out / AXLE}"]
     else:
         lines.append(NO_RUN.format(out=found.out))
-    if given.json is not None:
-        write_json(given.json, correlation_document(correlation, folder / "axle.toml", assessment))
+    if study_options.json is not None:
+        write_json(study_options.json, correlation_document(correlation, folder / "axle.toml", assessment))
     for line in lines:
         typer.echo(line)
     typer.echo(f"{len(written)} files under {found.out}", err=True)

@@ -37,13 +37,13 @@ from doe_kc.workflow.recall import write_chain
 
 @app.command("run")
 @takes_study
-def run(given: Given, scheduler: SchedulerOption = None) -> None:
+def run(study_options: Given, scheduler: SchedulerOption = None) -> None:
     """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle under out.
 
     The exit code is 1 where that axle is not usable, which the first line explains; all files are written.
     """
     started = time.perf_counter()
-    study, workers = given.read(), given.workers
+    study, workers = study_options.read(), study_options.workers
     study.measured()
     solution = solve(study.axle)
     seconds = time.perf_counter() - started
@@ -79,9 +79,9 @@ def run(given: Given, scheduler: SchedulerOption = None) -> None:
     write_chain(answer, record, folder)
     written += write_answer(study, correlation, assessment, record, measurement)
 
-    if given.json is not None:
+    if study_options.json is not None:
         write_json(
-            given.json,
+            study_options.json,
             {
                 **summary_document(correlation, assessment, record, str(study.out / AXLE)),
                 "simulate": characteristics_document(solution, seconds),

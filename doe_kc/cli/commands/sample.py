@@ -18,7 +18,7 @@ from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, st
 @app.command("sample")
 @takes_study
 def sample(
-    given: Given,
+    study_options: Given,
     method: Annotated[
         str | None, typer.Option(help="lhs, sobol, one_at_a_time, full_factorial or table.")
     ] = None,
@@ -31,20 +31,20 @@ def sample(
 ) -> None:
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
     form = require_format(export) if export is not None else None
-    found = given.read()
+    found = study_options.read()
     design = study_design(found, method=method, n=n)
     with progress_bar(design.method, len(design.values)) as advance:
         sampled = run_sample(
             found,
             design,
-            workers=given.workers,
+            workers=study_options.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
             progress=advance,
         )
     document = sample_document(found, sampled)
-    if given.json is not None:
-        write_json(given.json, document)
+    if study_options.json is not None:
+        write_json(study_options.json, document)
     written = write_sample(found, sampled, found.out / "sample", form)
     for line in sample_lines(document):
         typer.echo(line)

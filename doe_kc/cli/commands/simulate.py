@@ -19,7 +19,7 @@ from doe_kc.cli.options import JsonOption
 from doe_kc.errors import InputError, nearest
 from doe_kc.output import write_json
 from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
-from doe_kc.solver.load_cases.roll import TECHNIQUES
+from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.suite import solve
 
 log = logging.getLogger("doe_kc")
@@ -63,9 +63,9 @@ def with_roll(axle: Axle, technique: str | None) -> Axle:
     """The axle with the other roll technique; InputError for an unknown one."""
     if technique is None:
         return axle
-    if technique not in TECHNIQUES:
-        raise InputError(f"--roll {technique}: expected {' or '.join(TECHNIQUES)}.")
-    return replace(axle, load_cases={**axle.load_cases, "roll": TECHNIQUES[technique]})
+    if technique not in ROLL_TECHNIQUES:
+        raise InputError(f"--roll {technique}: expected {' or '.join(ROLL_TECHNIQUES)}.")
+    return replace(axle, load_cases={**axle.load_cases, "roll": ROLL_TECHNIQUES[technique]})
 
 
 def checked_cases(axle: Axle, cases: list[str] | None) -> list[str] | None:

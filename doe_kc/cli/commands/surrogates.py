@@ -21,21 +21,21 @@ from doe_kc.workflow.surrogates import run_surrogates
 @app.command("surrogates")
 @takes_study
 def surrogates(
-    given: Given,
+    study_options: Given,
     models: Annotated[
         str | None,
         typer.Option(help="Models to choose from, with commas: linear,quadratic,rbf,gp,kpls,kriging,gp_ard."),
     ] = None,
 ) -> None:
     """Fit fast models of every characteristic to the stored designs, cross-validate and choose."""
-    found = given.read()
+    found = study_options.read()
     plan = plan_surrogates(found, [m.strip() for m in (models or "").split(",") if m.strip()])
     targets = _targets(found)
     with progress_bar("fit", plan.steps) as advance:
-        report = run_surrogates(found, plan, targets=targets, workers=given.workers, progress=advance)
-    if given.json is not None:
-        write_json(given.json, surrogates_document(report))
-    written = write_surrogates(found, report, found.out / "surrogates", workers=given.workers)
+        report = run_surrogates(found, plan, targets=targets, workers=study_options.workers, progress=advance)
+    if study_options.json is not None:
+        write_json(study_options.json, surrogates_document(report))
+    written = write_surrogates(found, report, found.out / "surrogates", workers=study_options.workers)
     for line in surrogate_lines(report):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {found.out / 'surrogates'}", err=True)

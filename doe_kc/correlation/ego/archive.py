@@ -16,7 +16,7 @@ from doe_kc.typing import FloatArray
 
 UNRESOLVED = 2e-3
 """RMS over Norm that the left-out principal components of a curve may have: a tenth of a rig's noise."""
-STRETCH = 0.1
+SLOPE_STRETCH = 0.1
 """Change of a variable, share of its bounds, over which exact slopes of the curves are to be resolved."""
 Slopes = tuple[FloatArray, FloatArray]
 
@@ -68,7 +68,7 @@ def _seen(solved: Sequence[Evaluated], scaled: FloatArray, slopes: Slopes | None
     if slopes is None:
         return scaled
     best = int(np.argmax([e.merit for e in solved]))
-    return np.vstack([scaled, scaled[best] + STRETCH * slopes[1].T])
+    return np.vstack([scaled, scaled[best] + SLOPE_STRETCH * slopes[1].T])
 
 
 def distinct(evaluated: Sequence[Evaluated]) -> list[Evaluated]:

@@ -20,10 +20,10 @@ from doe_kc.correlation.ego.proposal import Box
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.typing import FloatArray
 
-SAMPLES = 64
+IMPROVEMENT_SAMPLES = 64
 SHARPNESS = 1e-2
 """Temperature t as a share of the best rating's size: below it an improvement is rounded."""
-ITERATIONS = 25
+ACQUISITION_ITERATIONS = 25
 
 
 class ExpectedImprovement:
@@ -47,7 +47,7 @@ class ExpectedImprovement:
         self._model, self._composite, self._best = model, composite, best
         self._failed = failed
         sampler = qmc.Sobol(model.outputs, rng=np.random.default_rng(seed))
-        self._z = norm.ppf(np.clip(sampler.random(SAMPLES), 1e-6, 1.0 - 1e-6))
+        self._z = norm.ppf(np.clip(sampler.random(IMPROVEMENT_SAMPLES), 1e-6, 1.0 - 1e-6))
         self._temperature = SHARPNESS * max(abs(best), 1e-3)
 
     def log(self, point: FloatArray) -> tuple[float, FloatArray]:
@@ -58,7 +58,7 @@ class ExpectedImprovement:
         rating, push = self._composite.rating_and_gradient(h)
         gain = (rating - self._best) / self._temperature
         log_soft = _log_softplus(gain)
-        value = float(logsumexp(log_soft) - np.log(SAMPLES))
+        value = float(logsumexp(log_soft) - np.log(IMPROVEMENT_SAMPLES))
         share = np.exp(log_soft - logsumexp(log_soft)) * _log_softplus_slope(gain) / self._temperature
         slope = push * share[:, None]
         sd_gradient = self._doubt * known.variance_gradient[0] / (2.0 * sd[:, None])
@@ -76,7 +76,7 @@ class ExpectedImprovement:
                 jac=True,
                 method="L-BFGS-B",
                 bounds=bounds,
-                options={"maxiter": ITERATIONS},
+                options={"maxiter": ACQUISITION_ITERATIONS},
             )
             for start in starts
         ]

@@ -13,8 +13,8 @@ from doe_kc.correlation.prior import Prior
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.typing import FloatArray
 
-STEPS = 30
-SETTLED = 1e-4
+PROPOSAL_STEPS = 30
+STEP_GAIN = 1e-4
 """Relative gain of a step below which the search has settled."""
 ROUGH = 10
 """Iterations of each step's bounds: the next step goes on where they end."""
@@ -52,7 +52,7 @@ def gauss_newton(
         return float(expected[0] - prior.cost(x))
 
     value = merit(point)
-    for _ in range(STEPS):
+    for _ in range(PROPOSAL_STEPS):
         known = model.predict_all(point[None])
         near = composite.majorizer(known.mean[0], doubt * known.variance[0])
         jacobian = known.gradient[0]
@@ -61,7 +61,7 @@ def gauss_newton(
         gradient += weight * (point - prior.centre)
         step = bounded_step(hessian, gradient, box.lower - point, box.upper - point, iterations=ROUGH)
         point, gained = _line_search(merit, point, step, value)
-        if gained <= SETTLED * max(1.0, abs(value)):
+        if gained <= STEP_GAIN * max(1.0, abs(value)):
             break
         value += gained
     return point

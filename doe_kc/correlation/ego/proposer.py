@@ -13,9 +13,9 @@ from doe_kc.correlation.ego.levels import on_levels
 from doe_kc.correlation.ego.proposal import Box, gauss_newton
 from doe_kc.correlation.ego.strategy import AVERSION, Kind, Strategy
 from doe_kc.correlation.prior import Prior
-from doe_kc.correlation.problem import Candidate, Prediction
+from doe_kc.correlation.problem import Candidate, RatingForecast
 from doe_kc.surrogates.interface import Fitted
-from doe_kc.surrogates.models.gp import GaussianProcess, Trend
+from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
 from doe_kc.surrogates.training import constant_outputs
 from doe_kc.surrogates.varying import fit_varying
 from doe_kc.typing import FloatArray
@@ -25,7 +25,7 @@ HALF_WIDTH = 0.3
 """Of the box about the best design in which proposals lie."""
 AWAY = 2
 """Random starts of the search for the expected improvement, beside the Gauss-Newton proposal."""
-DRAWS = 64
+IMPROVEMENT_DRAWS = 64
 SCATTERED = 256
 """Random points among which a restart finds its place."""
 
@@ -77,14 +77,14 @@ class Proposer:
         )
         return replace(self, archive=archive, model=fitted(archive))
 
-    def predict(self, point: FloatArray) -> Prediction:
+    def predict(self, point: FloatArray) -> RatingForecast:
         """Characteristics and expected rating at a point, with their standard deviations."""
         mean, variance = self.model.predict(point[None]), self.trust * self.model.variance(point[None])[0]
         sd = np.sqrt(variance)
-        draws = np.random.default_rng(0).standard_normal((DRAWS, sd.size))
+        draws = np.random.default_rng(0).standard_normal((IMPROVEMENT_DRAWS, sd.size))
         spread = self.archive.composite.rating(mean + sd * draws).std()
         expected = self.archive.composite.expected(mean, variance)[0]
-        return Prediction(mean[0, : self.k], sd[: self.k], float(expected), float(spread))
+        return RatingForecast(mean[0, : self.k], sd[: self.k], float(expected), float(spread))
 
     def _point(self, kind: Kind, strategy: Strategy, rng: np.random.Generator) -> FloatArray:
         best = self.archive.best.point
@@ -137,5 +137,5 @@ def fitted(archive: Archive, seed: int = 0) -> Fitted:
     if archive.expansion is not None:
         at = int(np.flatnonzero((archive.points == archive.best.point).all(axis=1))[0])
         varies = ~constant_outputs(archive.outputs)
-        trend = Trend(archive.best.point, archive.outputs[at][varies], archive.expansion[varies])
+        trend = FirstOrderTrend(archive.best.point, archive.outputs[at][varies], archive.expansion[varies])
     return fit_varying(GaussianProcess(trend=trend), archive.points, archive.outputs, seed=seed)

@@ -8,10 +8,10 @@ from typing import Literal
 import numpy as np
 
 Kind = Literal["Gauss-Newton", "expected improvement", "trust region", "restart"]
-CYCLE: tuple[Kind, ...] = ("Gauss-Newton", "expected improvement", "trust region")
+PROPOSAL_CYCLE: tuple[Kind, ...] = ("Gauss-Newton", "expected improvement", "trust region")
 GAIN = 0.002
 """Gain, share of the rating, below which a proposal was not worth its run."""
-PATIENCE = 15
+EGO_PATIENCE = 15
 """Where surrogates learn from values alone; three in a row of every kind of proposal, five times."""
 PATIENCE_WITH_SLOPES = 5
 """Where slopes at the best design are exact: what they miss is found by the next proposals or not at all."""
@@ -22,7 +22,7 @@ DARE, FEAR = 0.3, 3.0
 AVERSION = (1e-3, 1.0)
 GROW, SHRINK = 1.6, 0.7
 """Factors of the trust region's half-width after a worthwhile bold step and after another."""
-REACH = (0.02, 0.3)
+TRUST_RADII = (0.02, 0.3)
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,12 @@ class Strategy:
     patience: proposals in a row without a worthwhile gain that end the search, or start it anew elsewhere.
     """
 
-    kind: Kind = CYCLE[0]
+    kind: Kind = PROPOSAL_CYCLE[0]
     aversion: float = 0.1
     reach: float = 0.1
     idle: int = 0
     restarts: int = RESTARTS
-    patience: int = PATIENCE
+    patience: int = EGO_PATIENCE
 
     def after(self, gain: float, best: float) -> Strategy:
         """After a round that raised the best rating from `best` by `gain`."""
@@ -48,7 +48,7 @@ class Strategy:
         if self.kind == "Gauss-Newton":
             aversion = float(np.clip(aversion * (DARE if won else FEAR), *AVERSION))
         if self.kind == "trust region":
-            reach = float(np.clip(reach * (GROW if won else SHRINK), *REACH))
+            reach = float(np.clip(reach * (GROW if won else SHRINK), *TRUST_RADII))
         new = replace(self, aversion=aversion, reach=reach, idle=0 if won else self.idle + 1)
         if new.idle >= self.patience and self.restarts:
             return Strategy(kind="restart", restarts=self.restarts - 1, patience=self.patience)
@@ -56,8 +56,8 @@ class Strategy:
 
     def _next(self) -> Kind:
         if self.kind == "restart":
-            return CYCLE[0]
-        return CYCLE[(CYCLE.index(self.kind) + 1) % len(CYCLE)]
+            return PROPOSAL_CYCLE[0]
+        return PROPOSAL_CYCLE[(PROPOSAL_CYCLE.index(self.kind) + 1) % len(PROPOSAL_CYCLE)]
 
     @property
     def stopped(self) -> str:
@@ -68,5 +68,7 @@ class Strategy:
 
     def others(self) -> tuple[Kind, ...]:
         """Kinds to turn to, in order, when this one proposes a design that is known already."""
-        start = CYCLE.index(self.kind) if self.kind in CYCLE else -1
-        return tuple(CYCLE[(start + 1 + i) % len(CYCLE)] for i in range(len(CYCLE)))
+        start = PROPOSAL_CYCLE.index(self.kind) if self.kind in PROPOSAL_CYCLE else -1
+        return tuple(
+            PROPOSAL_CYCLE[(start + 1 + i) % len(PROPOSAL_CYCLE)] for i in range(len(PROPOSAL_CYCLE))
+        )

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.search import Trial
+from doe_kc.correlation.hybrid.search import SearchTrial
 from doe_kc.typing import FloatArray
 
-LEAST = 0.05
+LEAST_CREDIT = 0.05
 """Probability that every search keeps."""
 RATE = 0.4
 """Weight of the last reward in the running mean."""
@@ -32,14 +32,14 @@ class Credit:
         """(n,) of being asked next."""
         quality = self._quality + HOPE
         count = quality.size
-        return np.asarray(LEAST + (1.0 - count * LEAST) * quality / quality.sum())
+        return np.asarray(LEAST_CREDIT + (1.0 - count * LEAST_CREDIT) * quality / quality.sum())
 
-    def reward(self, search: int, trial: Trial) -> None:
+    def reward(self, search: int, trial: SearchTrial) -> None:
         """Move a search's quality towards the reward of a trial."""
         self._quality[search] += RATE * (reward(trial) - self._quality[search])
 
 
-def reward(trial: Trial) -> float:
+def reward(trial: SearchTrial) -> float:
     """0 without a gain, 1 from 3 % of the best rating on."""
     size = FULL * max(abs(trial.before), 1e-12)
     return float(np.clip(trial.gain / size, 0.0, 1.0)) if np.isfinite(trial.gain) else 0.0

@@ -6,15 +6,15 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.hybrid.search import Search, Trial
+from doe_kc.correlation.hybrid.record import SearchHistory
+from doe_kc.correlation.hybrid.search import CandidateSearch, SearchTrial
 from doe_kc.correlation.problem import Candidate
 from doe_kc.typing import FloatArray
 
 POPULATION = 30
-TOP = 0.2
+TOP_SHARE = 0.2
 """Share of the population that differential evolution moves towards."""
-DRAWS = 5
+PROPOSAL_DRAWS = 5
 """Proposals among which the first is taken whose nearest evaluation did not fail."""
 FIRST_SIGMA, SMALLEST_SIGMA, LARGEST_SIGMA = 0.05, 0.005, 0.3
 GROW, SHRINK = 1.5, 1.5**-0.25
@@ -22,7 +22,7 @@ GROW, SHRINK = 1.5, 1.5**-0.25
 
 
 @final
-class DifferentialEvolution(Search):
+class DifferentialEvolution(CandidateSearch):
     """current-to-pbest/1/bin on the best designs of the record.
 
     Reference: J. Zhang, A. C. Sanderson, JADE, IEEE Trans. Evol. Comput. 13(5), 2009.
@@ -30,13 +30,13 @@ class DifferentialEvolution(Search):
 
     id: ClassVar[str] = "differential evolution"
 
-    def propose(self, record: Record, rng: np.random.Generator) -> Candidate | None:
+    def propose(self, record: SearchHistory, rng: np.random.Generator) -> Candidate | None:
         """A trial vector; None with fewer than five sound designs."""
         if len(record.sound) < 5:
             return None
         population = np.array([e.point for e in record.ranked[:POPULATION]])
         point = self._trial(population, rng)
-        for _ in range(DRAWS - 1):
+        for _ in range(PROPOSAL_DRAWS - 1):
             if not record.doubtful(point):
                 break
             point = self._trial(population, rng)
@@ -44,7 +44,7 @@ class DifferentialEvolution(Search):
 
     def _trial(self, population: FloatArray, rng: np.random.Generator) -> FloatArray:
         own, one, other = rng.choice(len(population), 3, replace=False)
-        top = rng.integers(max(2, int(np.ceil(TOP * len(population)))))
+        top = rng.integers(max(2, int(np.ceil(TOP_SHARE * len(population)))))
         scale = float(np.clip(0.5 + 0.1 * rng.standard_cauchy(), 0.1, 1.0))
         parent = population[own]
         mutant = parent + scale * (population[top] - parent + population[one] - population[other])
@@ -56,7 +56,7 @@ class DifferentialEvolution(Search):
 
 
 @final
-class Mutation(Search):
+class Mutation(CandidateSearch):
     """The best design with some variables moved, by the one-fifth success rule.
 
     Reference: I. Rechenberg, Evolutionsstrategie, 1973.
@@ -67,7 +67,7 @@ class Mutation(Search):
     def __init__(self) -> None:
         self._sigma = FIRST_SIGMA
 
-    def propose(self, record: Record, rng: np.random.Generator) -> Candidate | None:
+    def propose(self, record: SearchHistory, rng: np.random.Generator) -> Candidate | None:
         """One to all variables of the best design moved, their number evenly drawn in its logarithm."""
         best = record.best.point
         count = int(np.ceil(best.size ** rng.random()))
@@ -76,7 +76,7 @@ class Mutation(Search):
         point[chosen] += self._sigma * rng.standard_normal(count)
         return Candidate(np.clip(point, 0.0, 1.0), self.id)
 
-    def learn(self, trial: Trial) -> None:
+    def learn(self, trial: SearchTrial) -> None:
         """Larger moves after a success."""
         factor = GROW if trial.gain > 0.0 else SHRINK
         self._sigma = float(np.clip(self._sigma * factor, SMALLEST_SIGMA, LARGEST_SIGMA))

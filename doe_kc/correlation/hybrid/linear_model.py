@@ -12,10 +12,10 @@ from typing import final
 
 import numpy as np
 
-from doe_kc.surrogates.interface import Fitted, Held
+from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.typing import FloatArray
 
-RIDGE = 1e-6
+STEP_RIDGE = 1e-6
 """Share of the mean square of the steps: below what one level changes."""
 
 
@@ -40,9 +40,9 @@ class LinearModel(Fitted):
         """m."""
         return len(self.value)
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Residuals of the fit itself: the model is no more than a guide for one step."""
-        return Held(self.residual, np.tile(self.spread, (len(self.residual), 1)))
+        return LeftOut(self.residual, np.tile(self.spread, (len(self.residual), 1)))
 
     def _mean(self, x: FloatArray) -> FloatArray:
         return np.asarray(self.value + (x - self.centre) @ self.slope.T)
@@ -76,6 +76,6 @@ def linear_model(centre: FloatArray, x: FloatArray, y: FloatArray) -> LinearMode
 def weighted_slope(step: FloatArray, change: FloatArray, weight: FloatArray) -> FloatArray:
     """(m, d) J of least sum of w |step J' - change|^2 + ridge |J|^2; step (n, d), change (n, m)."""
     normal = step.T @ (weight[:, None] * step)
-    ridge = RIDGE * max(float(np.trace(normal)) / len(normal), 1e-12)
+    ridge = STEP_RIDGE * max(float(np.trace(normal)) / len(normal), 1e-12)
     right = step.T @ (weight[:, None] * change)
     return np.asarray(np.linalg.solve(normal + ridge * np.eye(len(normal)), right).T)

@@ -10,8 +10,8 @@ import numpy as np
 from doe_kc.correlation.ego.proposal import Box
 from doe_kc.correlation.hybrid.linear_model import linear_model
 from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
-from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.hybrid.search import Search, Trial
+from doe_kc.correlation.hybrid.record import SearchHistory
+from doe_kc.correlation.hybrid.search import CandidateSearch, SearchTrial
 from doe_kc.correlation.problem import Candidate
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.training import constant_outputs
@@ -21,29 +21,29 @@ FIRST_RADIUS, LARGEST, SMALLEST = 0.2, 0.5, 0.01
 SHRINK, GROW = 0.5, 1.6
 POOR, GOOD = 0.1, 0.7
 """Actual over predicted gain below which the region shrinks, above which it grows."""
-FEWEST = 5
+MODEL_DESIGNS = 5
 """Sound designs below which nothing is modelled."""
-DRAWS = 20
+MODEL_DRAWS = 20
 
 
-def can_model(record: Record) -> bool:
+def can_model(record: SearchHistory) -> bool:
     """Whether there are enough designs, and outputs that change between them."""
-    return len(record.sound) >= FEWEST and not constant_outputs(record.archive.outputs).all()
+    return len(record.sound) >= MODEL_DESIGNS and not constant_outputs(record.archive.outputs).all()
 
 
-def proposed(record: Record, model: Fitted, box: Box, first: FloatArray, origin: str) -> Candidate:
+def proposed(record: SearchHistory, model: Fitted, box: Box, first: FloatArray, origin: str) -> Candidate:
     """The best rating that a model predicts in the box."""
     point = best_predicted(record.problem, model, record.archive.composite, box, first)
     return Candidate(point, origin, prediction(record.problem, record.archive, model, point))
 
 
-class TrustRegion(Search):
+class TrustRegion(CandidateSearch):
     """The best rating that a model predicts within a box about the best design."""
 
     def __init__(self) -> None:
         self._radius, self._asked = FIRST_RADIUS, 0
 
-    def propose(self, record: Record, rng: np.random.Generator) -> Candidate | None:
+    def propose(self, record: SearchHistory, rng: np.random.Generator) -> Candidate | None:
         """A second one of the same round stays in half the box."""
         if not can_model(record):
             return None
@@ -52,7 +52,7 @@ class TrustRegion(Search):
         self._asked += 1
         return proposed(record, self._model(record), box, centre, self.id)
 
-    def learn(self, trial: Trial) -> None:
+    def learn(self, trial: SearchTrial) -> None:
         """Shrink after a failure or a broken promise, grow after a kept one, start anew from nothing."""
         self._asked = 0
         predicted = trial.answer.candidate.predicted
@@ -66,7 +66,7 @@ class TrustRegion(Search):
             self._radius = FIRST_RADIUS
 
     @abstractmethod
-    def _model(self, record: Record) -> Fitted: ...
+    def _model(self, record: SearchHistory) -> Fitted: ...
 
 
 @final
@@ -75,7 +75,7 @@ class LinearSearch(TrustRegion):
 
     id: ClassVar[str] = "linear model"
 
-    def _model(self, record: Record) -> Fitted:
+    def _model(self, record: SearchHistory) -> Fitted:
         return linear_model(record.best.point, record.archive.points, record.archive.outputs)
 
 
@@ -85,20 +85,20 @@ class SurrogateSearch(TrustRegion):
 
     id: ClassVar[str] = "surrogate"
 
-    def _model(self, record: Record) -> Fitted:
+    def _model(self, record: SearchHistory) -> Fitted:
         return record.model
 
 
 @final
-class Restart(Search):
+class Restart(CandidateSearch):
     """A random design far from all known ones, improved on the surrogates in its surroundings."""
 
     id: ClassVar[str] = "restart"
 
-    def propose(self, record: Record, rng: np.random.Generator) -> Candidate | None:
+    def propose(self, record: SearchHistory, rng: np.random.Generator) -> Candidate | None:
         """The farthest of twenty draws; as drawn while nothing can be modelled."""
         space = record.problem.space
-        drawn = space.drawn(rng.random((DRAWS, space.dimension)))
+        drawn = space.drawn(rng.random((MODEL_DRAWS, space.dimension)))
         known = np.array([e.point for e in record.evaluated])
         apart = np.linalg.norm(drawn[:, None] - known[None], axis=2).min(axis=1)
         far = drawn[int(np.argmax(apart))]

@@ -8,7 +8,7 @@ from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.ego.archive import Archive
 from doe_kc.correlation.ego.levels import on_levels
 from doe_kc.correlation.ego.proposal import Box, gauss_newton
-from doe_kc.correlation.problem import Prediction, Problem
+from doe_kc.correlation.problem import Problem, RatingForecast
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.learning import Learning
 from doe_kc.surrogates.models.gp import GaussianProcess
@@ -16,7 +16,7 @@ from doe_kc.surrogates.varying import fit_varying
 from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
-SAMPLES = 64
+RATING_SAMPLES = 64
 """Draws for the standard deviation of a predicted rating."""
 NUGGET = 1e-5
 """Share of each output's variance: what jumps and the left-out curve components disturb."""
@@ -45,14 +45,14 @@ def best_predicted(
     return space.snapped(levelled)
 
 
-def prediction(problem: Problem, archive: Archive, model: Fitted, point: FloatArray) -> Prediction:
+def prediction(problem: Problem, archive: Archive, model: Fitted, point: FloatArray) -> RatingForecast:
     """What a model of the archive's outputs expects at a point (d,)."""
     mean, variance = model.predict(point[None]), model.variance(point[None])[0]
     sd, k = np.sqrt(variance), len(problem.targets.characteristics)
-    draws = np.random.default_rng(0).standard_normal((SAMPLES, sd.size))
+    draws = np.random.default_rng(0).standard_normal((RATING_SAMPLES, sd.size))
     ratings = archive.composite.rating(mean + sd * draws)
     expected = float(archive.composite.expected(mean, variance)[0])
-    return Prediction(mean[0, :k], sd[:k], expected, float(ratings.std()))
+    return RatingForecast(mean[0, :k], sd[:k], expected, float(ratings.std()))
 
 
 def level_steps(space: Space) -> FloatArray:

@@ -18,7 +18,7 @@ ROWS = 160
 TRIES = 200
 
 
-class Record:
+class SearchHistory:
     """Frozen view of the evaluations. sound: with a finite rating; failed: the others."""
 
     def __init__(self, problem: Problem, evaluated: Iterable[Evaluated], *, seed: int) -> None:

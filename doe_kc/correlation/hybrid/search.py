@@ -8,12 +8,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.record import Record
+from doe_kc.correlation.hybrid.record import SearchHistory
 from doe_kc.correlation.problem import Candidate, Evaluated
 
 
 @dataclass(frozen=True)
-class Trial:
+class SearchTrial:
     """A proposal with its answer. before: the best rating when it was proposed."""
 
     answer: Evaluated
@@ -25,14 +25,14 @@ class Trial:
         return self.answer.merit - self.before
 
 
-class Search(ABC):
+class CandidateSearch(ABC):
     """One way of looking for better designs. id: origin of its candidates."""
 
     id: ClassVar[str]
 
     @abstractmethod
-    def propose(self, record: Record, rng: np.random.Generator) -> Candidate | None:
+    def propose(self, record: SearchHistory, rng: np.random.Generator) -> Candidate | None:
         """A design, not yet on levels; None while the record holds too little for this search."""
 
-    def learn(self, trial: Trial) -> None:  # noqa: B027 - most searches keep no state
+    def learn(self, trial: SearchTrial) -> None:  # noqa: B027 - most searches keep no state
         """Adapt to the answer of an own proposal."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class Settings:
+class MethodSettings:
     """What every method is given beside the problem; `CorrelationOptions` in numbers."""
 
     seed: int
@@ -34,7 +34,7 @@ class Method(ABC):
     needs_exact: ClassVar[bool] = False
 
     @abstractmethod
-    def __init__(self, problem: Problem, settings: Settings) -> None: ...
+    def __init__(self, problem: Problem, settings: MethodSettings) -> None: ...
 
     @property
     @abstractmethod

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.methods._base import Method, Settings
+from doe_kc.correlation.hybrid.record import SearchHistory
+from doe_kc.correlation.methods._base import Method, MethodSettings
 from doe_kc.correlation.opening import Opening
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 
@@ -17,13 +17,13 @@ BROAD = Opening(fewest=20, variables_each=3, half_width=0.25)
 than the start."""
 
 
-class Sampled(Method):
+class SurrogateMethod(Method):
     """State: all answers, the baseline first, and whether the opening sample was asked for.
 
     Randomness depends on seed and number of answers alone, so a resumed run goes on alike.
     """
 
-    def __init__(self, problem: Problem, settings: Settings, opening: Opening = BROAD) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings, opening: Opening = BROAD) -> None:
         self._problem, self._settings, self._opening = problem, settings, opening
         self._evaluated: list[Evaluated] = []
         self._opened = False
@@ -54,9 +54,9 @@ class Sampled(Method):
         return self._opening.size(self._problem.space, self._settings.first) - (len(self._evaluated) - 1)
 
     @property
-    def _record(self) -> Record:
+    def _record(self) -> SearchHistory:
         """The answers as searches and models see them."""
-        return Record(self._problem, self._evaluated, seed=self._settings.seed)
+        return SearchHistory(self._problem, self._evaluated, seed=self._settings.seed)
 
     @abstractmethod
     def _round(self, rng: np.random.Generator) -> Sequence[Candidate]:

@@ -19,10 +19,10 @@ import numpy as np
 from doe_kc.correlation.ego.archive import Archive, Slopes, build_archive
 from doe_kc.correlation.ego.first_order import first_order
 from doe_kc.correlation.ego.proposer import Proposer, fitted
-from doe_kc.correlation.ego.strategy import CYCLE, PATIENCE_WITH_SLOPES, Strategy
+from doe_kc.correlation.ego.strategy import PATIENCE_WITH_SLOPES, PROPOSAL_CYCLE, Strategy
 from doe_kc.correlation.ego.trust import Trust
-from doe_kc.correlation.methods._base import Settings, register
-from doe_kc.correlation.methods._sampled import Sampled
+from doe_kc.correlation.methods._base import MethodSettings, register
+from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.opening import Opening
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
@@ -32,14 +32,14 @@ OPENING = Opening(fewest=8, variables_each=9, half_width=0.1, evened=True)
 search goes."""
 WITH_SLOPES = Opening(fewest=2, variables_each=None, half_width=0.1, evened=True)
 """Slopes are known: a first-order step, and one design that shows how far they bend."""
-SETTLED = "every proposal is a design that is known already"
-FEWEST = 3
+SETTLED_REASON = "every proposal is a design that is known already"
+EGO_DESIGNS = 3
 """Solved designs that the surrogates need."""
 
 
 @final
 @register
-class Ego(Sampled):
+class Ego(SurrogateMethod):
     """State: beside the answers the strategy, how far predictions are trusted, and slopes at the best design.
 
     Exact slopes are taken wherever the problem has them, unless the settings forbid it; a search that has
@@ -49,7 +49,7 @@ class Ego(Sampled):
     id: ClassVar[str] = "ego"
     label: ClassVar[str] = "Composite efficient global optimization"
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings) -> None:
         self._exact = problem.exact and settings.gradients is not False
         super().__init__(problem, settings, WITH_SLOPES if self._exact else OPENING)
         self._strategy = Strategy(restarts=0, patience=PATIENCE_WITH_SLOPES) if self._exact else Strategy()
@@ -63,7 +63,7 @@ class Ego(Sampled):
     @property
     def stopped(self) -> str:
         """No worthwhile gain any more, or nothing left to propose."""
-        return self._strategy.stopped or (SETTLED if self._settled else "")
+        return self._strategy.stopped or (SETTLED_REASON if self._settled else "")
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; proposals among them teach strategy and trust."""
@@ -87,7 +87,7 @@ class Ego(Sampled):
     def _missing(self) -> int:
         """A few designs more at a time while too many fail."""
         solved = sum(e.score is not None for e in self._evaluated)
-        return max(FEWEST - solved, super()._missing())
+        return max(EGO_DESIGNS - solved, super()._missing())
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
         """`batch` candidates, fewer or none where slopes are exact and lead to known designs only."""
@@ -103,7 +103,11 @@ class Ego(Sampled):
             taken.add(candidate.point.tobytes())
             if place + 1 < self._settings.batch:
                 proposer = proposer.believing(candidate.point)
-                kind = CYCLE[(CYCLE.index(kind) + 1) % len(CYCLE)] if kind in CYCLE else CYCLE[0]
+                kind = (
+                    PROPOSAL_CYCLE[(PROPOSAL_CYCLE.index(kind) + 1) % len(PROPOSAL_CYCLE)]
+                    if kind in PROPOSAL_CYCLE
+                    else PROPOSAL_CYCLE[0]
+                )
         return out
 
     def _proposer(self) -> Proposer:

@@ -17,21 +17,21 @@ from scipy.optimize import lsq_linear
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
-from doe_kc.correlation.methods._base import Method, Settings, best_design, register
-from doe_kc.correlation.problem import Candidate, Evaluated, Prediction, Problem
+from doe_kc.correlation.methods._base import Method, MethodSettings, best_design, register
+from doe_kc.correlation.problem import Candidate, Evaluated, Problem, RatingForecast
 from doe_kc.correlation.walls import Walls
 from doe_kc.solver.result import NotConverged
 from doe_kc.typing import FloatArray
 
-CONVERGED = 0.01
+LEAST_DECREASE = 0.01
 """Predicted decrease of the sum of squares below which the fit stands: a tenth of a standard deviation."""
-SMALLEST = 1e-4
+LEAST_RADIUS = 1e-4
 """Radius, share of the bounds, below which the search gives up."""
 POOR, GOOD = 0.25, 0.75
 """Actual over predicted decrease below which the region shrinks, above which it grows."""
-TURNS = 50
+INNER_STEPS = 50
 """Newton steps within one step's linearized problem."""
-SHARES = tuple(0.5**k for k in range(12))
+STEP_SHARES = tuple(0.5**k for k in range(12))
 """Of a Newton step, tried in turn."""
 
 
@@ -47,7 +47,7 @@ class GaussNewton(Method):
     label: ClassVar[str] = "Gauss-Newton with exact sensitivities"
     needs_exact: ClassVar[bool] = True
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings) -> None:
         del settings
         self._problem, self._data = problem, problem.likelihood
         self._walls = Walls.of(problem.search)
@@ -88,9 +88,9 @@ class GaussNewton(Method):
             self._radius = min(1.0, 2.0 * self._radius)
         if cost < self._cost:
             self._accept(answer)
-        if self._predicted < CONVERGED:
+        if self._predicted < LEAST_DECREASE:
             self._stopped = "converged: the data ask for no further change"
-        elif self._radius < SMALLEST:
+        elif self._radius < LEAST_RADIUS:
             self._stopped = "the trust region shrank to nothing without a better design"
 
     def best(self, history: Sequence[Evaluated]) -> int:
@@ -114,13 +114,15 @@ class GaussNewton(Method):
 
         step = np.zeros_like(self._gradient)
         before = value = cost(step)
-        for _ in range(TURNS):
+        for _ in range(INNER_STEPS):
             sides = self._walls.sides(values + slopes @ step)
             on = sides != 0
             leaning = slopes[on] / self._walls.sd[on, None]
             following = self._leant(leaning, self._walls.distance(values, sides)[on], lower, upper)
-            trials = (step + share * (following - step) for share in SHARES)
-            better = next(((t, c) for t in trials if (c := cost(t)) < value - CONVERGED / TURNS), None)
+            trials = (step + share * (following - step) for share in STEP_SHARES)
+            better = next(
+                ((t, c) for t in trials if (c := cost(t)) < value - LEAST_DECREASE / INNER_STEPS), None
+            )
             if better is None:
                 break
             step, value = better
@@ -162,7 +164,7 @@ class GaussNewton(Method):
         beyond = self._walls.excess(answer.outcome.characteristics[self._walls.rows])
         return float(residual @ residual + self._weight @ moved**2 + beyond @ beyond)
 
-    def _prediction(self, incumbent: Evaluated, step: FloatArray) -> Prediction:
+    def _prediction(self, incumbent: Evaluated, step: FloatArray) -> RatingForecast:
         rows = self._problem.targets.rows
         values = incumbent.outcome.characteristics[rows] + self._expansion.characteristics[rows] @ step
-        return Prediction(values, np.full(len(rows), np.nan), np.nan, np.nan)
+        return RatingForecast(values, np.full(len(rows), np.nan), np.nan, np.nan)

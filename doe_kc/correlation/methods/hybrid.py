@@ -15,29 +15,29 @@ import numpy as np
 from doe_kc.correlation.hybrid.credit import Credit
 from doe_kc.correlation.hybrid.evolution import DifferentialEvolution, Mutation
 from doe_kc.correlation.hybrid.model_searches import LinearSearch, Restart, SurrogateSearch
-from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.hybrid.search import Search, Trial
-from doe_kc.correlation.methods._base import Settings, register
-from doe_kc.correlation.methods._sampled import Sampled
+from doe_kc.correlation.hybrid.record import SearchHistory
+from doe_kc.correlation.hybrid.search import CandidateSearch, SearchTrial
+from doe_kc.correlation.methods._base import MethodSettings, register
+from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 
-WORTH = 0.001
+HYBRID_PROGRESS = 0.001
 """Gain, share of the rating's size, that counts as progress."""
-PATIENCE = 60
+HYBRID_PATIENCE = 60
 """Designs without progress, or as many as there are variables, that end the search."""
 
 
 @final
 @register
-class Hybrid(Sampled):
+class Hybrid(SurrogateMethod):
     """State: beside the answers the searches with their credit, and who proposed the last candidates."""
 
     id: ClassVar[str] = "hybrid"
     label: ClassVar[str] = "Simultaneous global and local searches"
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings) -> None:
         super().__init__(problem, settings)
-        self._searches: tuple[Search, ...] = (
+        self._searches: tuple[CandidateSearch, ...] = (
             SurrogateSearch(),
             LinearSearch(),
             DifferentialEvolution(),
@@ -51,20 +51,20 @@ class Hybrid(Sampled):
     @property
     def stopped(self) -> str:
         """No search has gained for long."""
-        if self._idle < max(PATIENCE, self._problem.space.dimension):
+        if self._idle < max(HYBRID_PATIENCE, self._problem.space.dimension):
             return ""
-        return f"no search gained {100 * WORTH:g} % of the rating in the last {self._idle} designs"
+        return f"no search gained {100 * HYBRID_PROGRESS:g} % of the rating in the last {self._idle} designs"
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; searches and their credit learn from their own."""
         before = max((e.merit for e in self._evaluated if np.isfinite(e.merit)), default=-np.inf)
         super().tell(evaluated)
         for place, answer in zip(self._asked, evaluated, strict=False):
-            trial = Trial(answer, before)
+            trial = SearchTrial(answer, before)
             self._credit.reward(place, trial)
             self._searches[place].learn(trial)
         gain = max((e.merit for e in evaluated if np.isfinite(e.merit)), default=-np.inf) - before
-        progress = not self._asked or gain > WORTH * abs(before)
+        progress = not self._asked or gain > HYBRID_PROGRESS * abs(before)
         self._idle = 0 if progress else self._idle + len(evaluated)
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
@@ -77,7 +77,7 @@ class Hybrid(Sampled):
         return out
 
     def _proposed(
-        self, place: int, record: Record, out: Sequence[Candidate], rng: np.random.Generator
+        self, place: int, record: SearchHistory, out: Sequence[Candidate], rng: np.random.Generator
     ) -> Candidate:
         """The search's candidate, or a mutation when it has none, moved off designs that are known."""
         found = self._searches[place].propose(record, rng)

@@ -17,9 +17,9 @@ import numpy as np
 from doe_kc.correlation.ego.proposal import Box
 from doe_kc.correlation.hybrid.model_searches import can_model
 from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
-from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.methods._base import Settings, register
-from doe_kc.correlation.methods._sampled import Sampled
+from doe_kc.correlation.hybrid.record import SearchHistory
+from doe_kc.correlation.methods._base import MethodSettings, register
+from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.pareto.front import Front, front_of, knee
 from doe_kc.correlation.pareto.infill import predicted_front, spread_out
 from doe_kc.correlation.pareto.modelled import ModelledObjectives
@@ -32,15 +32,15 @@ ROUND = 5
 """Designs of a round at least: one search for the front is dearer than a fit."""
 FIRST_RADIUS, LARGEST, SMALLEST = 0.3, 0.5, 0.02
 SHRINK, GROW = 0.7, 1.6
-WORTH = 0.01
+PARETO_PROGRESS = 0.01
 """Gain, share of the best rating's or of an objective's range on the front, that counts as progress."""
-PATIENCE = 6
+PARETO_PATIENCE = 6
 """Rounds without progress that end the search."""
 
 
 @final
 @register
-class Pareto(Sampled):
+class Pareto(SurrogateMethod):
     """State: beside the answers the trust region about the best rating, the front's best values so far.
 
     `best` is the best rating: with the weights as given, that is the point of the front that they prefer.
@@ -49,7 +49,7 @@ class Pareto(Sampled):
     id: ClassVar[str] = "pareto"
     label: ClassVar[str] = "Front of trade-offs by NSGA-III on surrogates"
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings) -> None:
         """InputError with fewer than two objectives, or without pymoo."""
         check_installed()
         super().__init__(problem, settings)
@@ -80,10 +80,10 @@ class Pareto(Sampled):
         if self._radius < SMALLEST:
             self._radius = FIRST_RADIUS
         self._idle = 0 if _progress(before, after) else self._idle + 1
-        if self._idle >= PATIENCE:
+        if self._idle >= PARETO_PATIENCE:
             self._stopped = (
-                f"neither the best rating nor an objective's best value gained {100 * WORTH:g} % in "
-                f"{PATIENCE} rounds"
+                f"neither the best rating nor an objective's best value gained {100 * PARETO_PROGRESS:g} % in "
+                f"{PARETO_PATIENCE} rounds"
             )
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
@@ -91,7 +91,7 @@ class Pareto(Sampled):
         self._infill = can_model(record)
         return self._spread(record, rng) if self._infill else self._random(record, rng)
 
-    def _spread(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+    def _spread(self, record: SearchHistory, rng: np.random.Generator) -> list[Candidate]:
         """Designs spread over the predicted front, best rating and knee first."""
         modelled = ModelledObjectives(self._problem.search, self._objectives, record.archive, record.model)
         points = predicted_front(record, modelled, self._region(record), len(self._objectives.names), rng)
@@ -107,7 +107,7 @@ class Pareto(Sampled):
             out.append(Candidate(new, origin, prediction(self._problem, record.archive, record.model, new)))
         return out
 
-    def _region(self, record: Record) -> Box:
+    def _region(self, record: SearchHistory) -> Box:
         """The box that holds the front of feasible designs, wider by the radius: its ends may lie apart."""
         front = self.front
         known = {e.index: e.point for e in record.evaluated}
@@ -117,11 +117,11 @@ class Pareto(Sampled):
         lower, upper = points.min(axis=0) - self._radius, points.max(axis=0) + self._radius
         return Box(np.maximum(lower, 0.0), np.minimum(upper, 1.0))
 
-    def _best_rating(self, record: Record) -> FloatArray:
+    def _best_rating(self, record: SearchHistory) -> FloatArray:
         composite, box = record.archive.composite, Box.around(record.best.point, self._radius)
         return best_predicted(self._problem, record.model, composite, box, record.best.point)
 
-    def _random(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+    def _random(self, record: SearchHistory, rng: np.random.Generator) -> list[Candidate]:
         """Random designs near the best one while too few have an answer."""
         box = Box.around(record.best.point, self._radius)
         drawn = rng.uniform(box.lower, box.upper, (max(ROUND, self._settings.batch), box.lower.size))
@@ -132,7 +132,9 @@ def _progress(before: Front, after: Front) -> bool:
     """Whether the front has become feasible, or its best rating or an objective's best value better."""
     if before.feasible != after.feasible:
         return True
-    worth = WORTH * abs(before.ratings[0])
+    worth = PARETO_PROGRESS * abs(before.ratings[0])
     ideal, better = before.values.min(axis=0), after.values.min(axis=0)
     span = np.maximum(np.ptp(before.values, axis=0), 1e-12)
-    return bool(after.ratings[0] - before.ratings[0] > worth or np.any(ideal - better > WORTH * span))
+    return bool(
+        after.ratings[0] - before.ratings[0] > worth or np.any(ideal - better > PARETO_PROGRESS * span)
+    )

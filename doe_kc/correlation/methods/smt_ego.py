@@ -13,26 +13,26 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.record import Record
-from doe_kc.correlation.methods._base import Settings, register
-from doe_kc.correlation.methods._sampled import Sampled
+from doe_kc.correlation.hybrid.record import SearchHistory
+from doe_kc.correlation.methods._base import MethodSettings, register
+from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.methods._smt import Proposal, propose
-from doe_kc.correlation.problem import Candidate, Prediction, Problem
+from doe_kc.correlation.problem import Candidate, Problem, RatingForecast
 from doe_kc.errors import RunError
 
-FEWEST = 3
+SMT_DESIGNS = 3
 """Designs with an answer that the surrogate needs."""
 
 
 @final
 @register
-class SmtEgo(Sampled):
+class SmtEgo(SurrogateMethod):
     """State: beside the answers why SMT gave up."""
 
     id: ClassVar[str] = "smt_ego"
     label: ClassVar[str] = "Scalar EGO of SMT (KPLS), for comparison"
 
-    def __init__(self, problem: Problem, settings: Settings) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings) -> None:
         super().__init__(problem, settings)
         self._stopped = ""
 
@@ -44,11 +44,11 @@ class SmtEgo(Sampled):
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
         """The designs of SMT's next iteration; failed ones are left out of its surrogate."""
         record = self._record
-        if len(record.sound) < FEWEST or np.ptp([e.merit for e in record.sound]) == 0.0:
+        if len(record.sound) < SMT_DESIGNS or np.ptp([e.merit for e in record.sound]) == 0.0:
             return self._random(record, rng)
         return self._iteration(record, rng)
 
-    def _iteration(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+    def _iteration(self, record: SearchHistory, rng: np.random.Generator) -> list[Candidate]:
         unique = {e.point.tobytes(): e for e in reversed(record.sound)}
         points = np.array([e.point for e in unique.values()])
         losses = np.array([-e.merit for e in unique.values()])
@@ -65,10 +65,10 @@ class SmtEgo(Sampled):
             out.append(Candidate(new, "expected improvement", self._prediction(proposal)))
         return out
 
-    def _prediction(self, proposal: Proposal) -> Prediction:
+    def _prediction(self, proposal: Proposal) -> RatingForecast:
         unknown = np.full(len(self._problem.targets.characteristics), np.nan)
-        return Prediction(unknown, unknown, -proposal.loss, proposal.loss_sd)
+        return RatingForecast(unknown, unknown, -proposal.loss, proposal.loss_sd)
 
-    def _random(self, record: Record, rng: np.random.Generator) -> list[Candidate]:
+    def _random(self, record: SearchHistory, rng: np.random.Generator) -> list[Candidate]:
         drawn = self._problem.space.drawn(rng.random((self._settings.batch, self._problem.space.dimension)))
         return [Candidate(record.fresh(p, [], rng), "random") for p in drawn]

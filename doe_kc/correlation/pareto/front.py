@@ -15,7 +15,7 @@ from doe_kc.targets import Targets
 from doe_kc.typing import FloatArray
 
 VIOLATION = "constraint violation"
-STRETCH = 3.0
+LOSS_LIMIT = 3.0
 """Loss, over the least one, beyond which a design is no trade-off that anyone would make."""
 
 
@@ -69,16 +69,16 @@ def front_of(targets: Targets, history: Sequence[Evaluated], *, found: Objective
     )
 
 
-def _values(targets: Targets, found: Objectives, design: Evaluated, with_violation: bool) -> FloatArray:
+def _values(targets: Targets, objectives: Objectives, design: Evaluated, with_violation: bool) -> FloatArray:
     if design.searched is None:
         raise ValueError("a failed design has no objectives")
-    own = found.values(design.searched)
+    own = objectives.values(design.searched)
     return np.append(own, relative_violation(targets, design.searched)) if with_violation else own
 
 
 def bearable(least: float) -> float:
     """Largest loss worth a look; least: the smallest one, below zero when goals are to maximize."""
-    return least + (STRETCH - 1.0) * abs(least)
+    return least + (LOSS_LIMIT - 1.0) * abs(least)
 
 
 def non_dominated(values: FloatArray) -> NDArray[np.int_]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from doe_kc.correlation.ego.proposal import Box
 from doe_kc.correlation.hybrid.output_model import best_predicted
-from doe_kc.correlation.hybrid.record import Record
+from doe_kc.correlation.hybrid.record import SearchHistory
 from doe_kc.correlation.pareto.front import bearable, non_dominated
 from doe_kc.correlation.pareto.modelled import ModelledObjectives
 from doe_kc.correlation.pareto.nsga3 import Judge, nsga3, reference_directions
@@ -16,12 +16,12 @@ from doe_kc.typing import FloatArray
 GENERATIONS = 40
 STRESS = 4.0
 """Weight of the objective that a starting corner favours, the others 1."""
-SPREAD = 0.05
+CORNER_SPREAD = 0.05
 """Standard deviation of the rest of the first population about the corners, share of the bounds."""
 
 
 def predicted_front(
-    record: Record, modelled: ModelledObjectives, box: Box, count: int, rng: np.random.Generator
+    record: SearchHistory, modelled: ModelledObjectives, box: Box, count: int, rng: np.random.Generator
 ) -> FloatArray:
     """(p, d) non-dominated designs on levels that the surrogates expect, of `count` objectives."""
     judge = _judge(record, modelled)
@@ -37,7 +37,7 @@ def predicted_front(
     return np.asarray(points[allowed[non_dominated(values[allowed])]])
 
 
-def _judge(record: Record, modelled: ModelledObjectives) -> Judge:
+def _judge(record: SearchHistory, modelled: ModelledObjectives) -> Judge:
     """Objectives on levels; a loss beyond what is bearable counts as a violation."""
     space = record.problem.space
     limit = bearable(modelled.values(record.best.point[None])[0].sum())
@@ -50,7 +50,7 @@ def _judge(record: Record, modelled: ModelledObjectives) -> Judge:
 
 
 def _first_population(
-    record: Record,
+    record: SearchHistory,
     modelled: ModelledObjectives,
     box: Box,
     directions: FloatArray,
@@ -63,11 +63,11 @@ def _first_population(
     inside = [e.point for e in record.ranked if np.all((e.point >= box.lower) & (e.point <= box.upper))]
     seeds = [*corners(record, modelled, box, directions.shape[1]), *inside][: len(directions)]
     chosen = rng.integers(len(seeds), size=len(directions) - len(seeds))
-    near = np.array(seeds)[chosen] + SPREAD * rng.standard_normal((len(chosen), box.lower.size))
+    near = np.array(seeds)[chosen] + CORNER_SPREAD * rng.standard_normal((len(chosen), box.lower.size))
     return box.clip(np.vstack([np.array(seeds), near]))
 
 
-def corners(record: Record, modelled: ModelledObjectives, box: Box, count: int) -> list[FloatArray]:
+def corners(record: SearchHistory, modelled: ModelledObjectives, box: Box, count: int) -> list[FloatArray]:
     """Best predicted rating with equal weights, and with each objective stressed in turn."""
     weights = [np.ones(count), *(1.0 + (STRESS - 1.0) * np.eye(count))]
     composites = [modelled.weighted(w) for w in weights]

@@ -17,11 +17,11 @@ from doe_kc.typing import FloatArray
 class ModelledObjectives:
     """Of the outputs of an archive: k characteristics, q curve scores."""
 
-    def __init__(self, targets: Targets, found: Objectives, archive: Archive, model: Fitted) -> None:
-        self._targets, self._found, self._model = targets, found, model
+    def __init__(self, targets: Targets, objectives: Objectives, archive: Archive, model: Fitted) -> None:
+        self._targets, self._found, self._model = targets, objectives, model
         scaled = np.array([e.scaled for e in archive.solved])
         self._mean, self._basis = principal_axes(scaled, targets)
-        self._parts = [self._part(g) for g in range(len(found.names))]
+        self._parts = [self._part(g) for g in range(len(objectives.names))]
         self._constraints = Composite(only_constraints(targets), np.zeros(0), np.zeros((0, 0)))
 
     def values(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:

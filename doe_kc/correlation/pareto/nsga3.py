@@ -16,7 +16,7 @@ from doe_kc.typing import FloatArray
 
 Judge = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """Objectives (p, g), to be minimized, and violation (p,), 0 when feasible, of points (p, d)."""
-MOST = 130
+OUTER_DIRECTIONS = 130
 """Reference directions of the outer layer, and so about the size of the population."""
 INNER_FROM = 6
 """Objectives from which a second, inner layer is needed (Deb & Jain, section IV)."""
@@ -27,7 +27,7 @@ def reference_directions(count: int) -> FloatArray:
     from pymoo.util.ref_dirs import get_reference_directions
 
     parts = 2
-    while comb(count + parts, parts + 1) <= MOST:
+    while comb(count + parts, parts + 1) <= OUTER_DIRECTIONS:
         parts += 1
     outer = get_reference_directions("das-dennis", count, n_partitions=parts)
     if count < INNER_FROM:

@@ -68,18 +68,18 @@ def relative_violation(targets: Targets, rating: Rating) -> float:
     return float((rating.violation / norm).sum())
 
 
-def weighted(targets: Targets, found: Objectives, weight: FloatArray) -> Targets:
+def weighted(targets: Targets, objectives: Objectives, weight: FloatArray) -> Targets:
     """The targets with the weights of each objective's terms multiplied by weight (g,); same constraints."""
     factor = np.append(weight, 1.0)  # -1, no objective, finds the last
     return replace(
         targets,
         characteristics=tuple(
             replace(t, objective=t.objective and _times(t.objective, factor[g]))
-            for t, g in zip(targets.characteristics, found.characteristics, strict=True)
+            for t, g in zip(targets.characteristics, objectives.characteristics, strict=True)
         ),
         curves=tuple(
             replace(c, objective=_times(c.objective, factor[g]))
-            for c, g in zip(targets.curves, found.curves, strict=True)
+            for c, g in zip(targets.curves, objectives.curves, strict=True)
         ),
     )
 

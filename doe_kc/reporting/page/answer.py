@@ -10,7 +10,7 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.reporting.page.characteristics import characteristics_section
 from doe_kc.reporting.page.section import Section, render, write_page
 
-PLACES: Mapping[str, str] = {
+RESULT_FILES: Mapping[str, str] = {
     "discover/report.html": "what the model lacks, how that was found, what to test next",
     "discover/discovery.xlsx": "the same as a workbook",
     "correlate/report.html": "the correlation: curves, convergence, parameters with their uncertainty",
@@ -47,7 +47,7 @@ def write_answer_page(
         baseline_rating=correlation.baseline_rating,
         notes=notes,
     )
-    places = {name: words for name, words in PLACES.items() if (folder / name).is_file()}
+    places = {name: words for name, words in RESULT_FILES.items() if (folder / name).is_file()}
     sections = [
         Section("Answer", html),
         characteristics_section(correlation),

@@ -8,15 +8,15 @@ from doe_kc.reporting.correlation_convergence import threshold
 from doe_kc.reporting.correlation_evaluations import history
 from doe_kc.reporting.page.section import Section, embedded, render
 
-LEAD = (
+CONVERGENCE_LEAD = (
     "Minus what the search maximizes on a symmetric logarithmic axis: 0 = every target met exactly. Open "
     "marks violate a constraint; crosses on top had no equilibrium."
 )
 
 
-def convergence_section(found: Correlation) -> Section:
+def convergence_section(correlation: Correlation) -> Section:
     """Chart of every evaluation and what was expected of it."""
-    past = history(found)
+    past = history(correlation)
     data = {
         "number": past.number,
         "origin": list(past.origin),
@@ -26,12 +26,13 @@ def convergence_section(found: Correlation) -> Section:
         "failed": past.failed,
         "predicted": past.predicted,
         "sd": past.sd,
-        "reason": [e.outcome.reason for e in found.run.evaluated],
+        "reason": [e.outcome.reason for e in correlation.run.evaluated],
         "origins": [
-            {"name": name, "colour": style.CYCLE[k % len(style.CYCLE)]} for k, name in enumerate(past.origins)
+            {"name": name, "colour": style.COLOUR_CYCLE[k % len(style.COLOUR_CYCLE)]}
+            for k, name in enumerate(past.origins)
         ],
         "linear": threshold(past),
         "first": past.first_feasible,
-        "chosen": found.run.best + 1,
+        "chosen": correlation.run.best + 1,
     }
-    return Section("Convergence", render("convergence.html", data=embedded(data)), LEAD)
+    return Section("Convergence", render("convergence.html", data=embedded(data)), CONVERGENCE_LEAD)

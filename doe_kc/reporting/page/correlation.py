@@ -18,21 +18,24 @@ from doe_kc.reporting.page.section import Section, render, write_page
 
 
 def correlation_sections(
-    found: Correlation,
+    correlation: Correlation,
     measurement: Measurement | None,
     *,
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
 ) -> list[Section]:
     """Summary, Characteristics, Curves, Convergence, Parameters. notes: further lines of the summary."""
-    sections = [_summary(found, notes or {}, assessment or assess(found)), characteristics_section(found)]
-    sections += curves_section(found, measurement)
-    return [*sections, convergence_section(found), parameters_section(found)]
+    sections = [
+        _summary(correlation, notes or {}, assessment or assess(correlation)),
+        characteristics_section(correlation),
+    ]
+    sections += curves_section(correlation, measurement)
+    return [*sections, convergence_section(correlation), parameters_section(correlation)]
 
 
 def write_correlation_page(
     path: Path,
-    found: Correlation,
+    correlation: Correlation,
     measurement: Measurement | None,
     *,
     study: str,
@@ -41,21 +44,21 @@ def write_correlation_page(
     assessment: Assessment | None = None,
 ) -> Path:
     """Write the page; RunError when it cannot be written."""
-    sections = correlation_sections(found, measurement, notes=notes, assessment=assessment)
+    sections = correlation_sections(correlation, measurement, notes=notes, assessment=assessment)
     return write_page(path, f"Correlation: {study}", sections, subtitle=date)
 
 
-def _summary(found: Correlation, notes: Mapping[str, str], assessment: Assessment) -> Section:
+def _summary(correlation: Correlation, notes: Mapping[str, str], assessment: Assessment) -> Section:
     html = render(
         "summary.html",
-        lines=summary(found, assessment),
+        lines=summary(correlation, assessment),
         status=assessment.status,
         status_label=STATUS_LABELS[assessment.status],
-        feasible=found.feasible,
-        mean=found.mean_improvement,
-        rating=found.rating,
-        evaluations=len(found.run.evaluated),
-        remarks=remark_sentences(found),
+        feasible=correlation.feasible,
+        mean=correlation.mean_improvement,
+        rating=correlation.rating,
+        evaluations=len(correlation.run.evaluated),
+        remarks=remark_sentences(correlation),
         notes=notes,
     )
     return Section("Summary", html)

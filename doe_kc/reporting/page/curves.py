@@ -29,21 +29,23 @@ class ShownModel:
     shown: bool = True
 
 
-MODELS = (
+CORRELATION_MODELS = (
     ShownModel("baseline", "baseline", "#e69f00", "7 4"),
     ShownModel("final", "final", "#0072b2"),
 )
-LEAD = "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
+CURVES_LEAD = (
+    "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
+)
 
 
-def curves_section(found: Correlation, measurement: Measurement | None) -> list[Section]:
+def curves_section(correlation: Correlation, measurement: Measurement | None) -> list[Section]:
     """One chart for all load cases and responses; no section when there is no curve at all."""
-    views = case_views(found, measurement)
+    views = case_views(correlation, measurement)
     if not views:
         return []
     cases = {view.load_case: _case(view) for view in views}
     responses = {r: _response(r) for r in RIG_RESPONSES}
-    return [Section("Curves", curves_html("curves", cases, responses, MODELS), LEAD)]
+    return [Section("Curves", curves_html("curves", cases, responses, CORRELATION_MODELS), CURVES_LEAD)]
 
 
 def curves_html(

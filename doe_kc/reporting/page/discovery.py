@@ -22,20 +22,25 @@ from doe_kc.reporting.page.section import Section, write_page
 
 
 def discovery_sections(
-    found: Discovery, measurement: Measurement | None, *, notes: Mapping[str, str] | None = None
+    discovery: Discovery, measurement: Measurement | None, *, notes: Mapping[str, str] | None = None
 ) -> list[Section]:
     """In the order of a test engineer's questions. notes: further lines of the first section."""
     made = {"Measurement": measurement.manifest.name} if measurement is not None else {}
-    sections = [verdict_section(found, {**made, **(notes or {})}), maps_section(found)]
-    sections += [candidates_section(found), *scan_section(found), *curves_section(found), gap_section(found)]
-    if found.held_out:
-        sections.append(held_out_section(found))
-    return [*sections, parameters_section(found), library_section(found), tests_section(found)]
+    sections = [verdict_section(discovery, {**made, **(notes or {})}), maps_section(discovery)]
+    sections += [
+        candidates_section(discovery),
+        *scan_section(discovery),
+        *curves_section(discovery),
+        gap_section(discovery),
+    ]
+    if discovery.held_out:
+        sections.append(held_out_section(discovery))
+    return [*sections, parameters_section(discovery), library_section(discovery), tests_section(discovery)]
 
 
 def write_discovery_page(
     path: Path,
-    found: Discovery,
+    discovery: Discovery,
     measurement: Measurement | None,
     *,
     study: str,
@@ -43,5 +48,5 @@ def write_discovery_page(
     notes: Mapping[str, str] | None = None,
 ) -> Path:
     """Write the page; RunError when it cannot be written."""
-    sections = discovery_sections(found, measurement, notes=notes)
+    sections = discovery_sections(discovery, measurement, notes=notes)
     return write_page(path, f"Missing effects: {study}", sections, subtitle=date)

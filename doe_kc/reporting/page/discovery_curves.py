@@ -10,14 +10,14 @@ import numpy as np
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.discovery.result import Discovery
 from doe_kc.reporting.discovery_curves import worst_views
-from doe_kc.reporting.discovery_gaps import COLOURS, gap_rows
+from doe_kc.reporting.discovery_gaps import MODEL_COLOURS, gap_rows
 from doe_kc.reporting.discovery_views import ModelView, model_names, model_views
 from doe_kc.reporting.names import case_label, response_axis, response_name
 from doe_kc.reporting.page.curves import ShownModel, curves_html
 from doe_kc.reporting.page.section import Section, render
 from doe_kc.typing import FloatArray
 
-LEAD = (
+DISCOVERY_CURVES_LEAD = (
     "Angles and wheel centre are changes from static; the half-width of a loop is (falling − rising) / 2. "
     "The band is ±2 sd of the noise. Drag in the chart to zoom, double-click to see all."
 )
@@ -26,31 +26,31 @@ GAP = (
     "effect, refitted alike: a gap that it closes as well is no evidence for a name."
 )
 PREFIX = "effect-curves"
-MODELS = (
-    ShownModel("nominal", "nominal", COLOURS["nominal"], "2 3", shown=False),
-    ShownModel("best_decoy", "with the best decoy", COLOURS["best_decoy"], "3 3", shown=False),
-    ShownModel("tuned", "re-tuned without an effect", COLOURS["tuned"], "7 4"),
-    ShownModel("with_effect", "re-tuned with the effect", COLOURS["with_effect"]),
+DISCOVERY_MODELS = (
+    ShownModel("nominal", "nominal", MODEL_COLOURS["nominal"], "2 3", shown=False),
+    ShownModel("best_decoy", "with the best decoy", MODEL_COLOURS["best_decoy"], "3 3", shown=False),
+    ShownModel("tuned", "re-tuned without an effect", MODEL_COLOURS["tuned"], "7 4"),
+    ShownModel("with_effect", "re-tuned with the effect", MODEL_COLOURS["with_effect"]),
 )
-SHARE = 3.0
+FULL_COLOUR_GAP = 3.0
 """Gap, in units of noise, at which a cell's colour is full."""
 
 
-def curves_section(found: Discovery) -> list[Section]:
+def curves_section(discovery: Discovery) -> list[Section]:
     """One chart for all load cases and responses, the worst one first."""
-    views = model_views(found)
+    views = model_views(discovery)
     if not views:
         return []
-    present = model_names(found)
-    models = [m for m in MODELS if m.id in present]
-    first = worst_views(found)[0].view
+    present = model_names(discovery)
+    models = [m for m in DISCOVERY_MODELS if m.id in present]
+    first = worst_views(discovery)[0].view
     cases = dict.fromkeys([first.load_case, *(v.load_case for v in views.values())])
     keys = dict.fromkeys([_key(first), *(k for r in RIG_RESPONSES for k in (r, f"{r}:loop"))])
     there = {_key(v) for v in views.values()}
     data = {c: _case(c, [v for v in views.values() if v.load_case == c], models) for c in cases}
     responses = {k: _response(k) for k in keys if k in there}
     html = curves_html(PREFIX, data, responses, models)
-    return [Section("Curves with and without the effect", html, LEAD)]
+    return [Section("Curves with and without the effect", html, DISCOVERY_CURVES_LEAD)]
 
 
 def _key(view: ModelView) -> str:
@@ -99,7 +99,7 @@ def _half(view: ModelView, loops: dict[str, ModelView]) -> FloatArray:
     return np.array([np.interp(view.input, loop.input, m) for m in loop.measured])
 
 
-def gap_section(found: Discovery) -> Section:
+def gap_section(discovery: Discovery) -> Section:
     """A row a load case and response."""
     rows = [
         {
@@ -107,7 +107,7 @@ def gap_section(found: Discovery) -> Section:
             "response": response_name(r.response) if r.response else "all",
             "cells": [_gap(v) for v in (r.gap.nominal, r.gap.tuned, r.gap.best_decoy, r.gap.with_effect)],
         }
-        for r in gap_rows(found)
+        for r in gap_rows(discovery)
     ]
     return Section("Gap", render("discovery_gap.html", rows=rows), GAP)
 
@@ -116,5 +116,5 @@ def _gap(value: float) -> dict[str, Any]:
     """Text and colour, from white at noise to full at three times that."""
     if not math.isfinite(value):
         return {"value": value, "text": "–", "share": 0.0}
-    share = min(max(math.log(max(value, 1.0)) / math.log(SHARE), 0.0), 1.0)
+    share = min(max(math.log(max(value, 1.0)) / math.log(FULL_COLOUR_GAP), 0.0), 1.0)
     return {"value": value, "text": f"{value:.2f}", "share": round(0.75 * share, 3)}

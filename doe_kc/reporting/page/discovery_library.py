@@ -16,7 +16,7 @@ from doe_kc.reporting.discovery_words import (
 )
 from doe_kc.reporting.page.section import Section, render
 
-LEAD = (
+LIBRARY_LEAD = (
     "Would have shown: it would have been found from the detectable size on, in four of five cars, if the "
     "model is right but for this; for a stiffness, a softer part would have been found. Not resolved: the "
     "same, but the model does not explain the records, so that nothing follows. Not testable: re-tuning "
@@ -26,9 +26,9 @@ LEAD = (
 )
 
 
-def library_section(found: Discovery) -> Section:
+def library_section(discovery: Discovery) -> Section:
     """One row a hypothesis, sortable and filterable."""
-    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in found.standings}
+    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.standings}
     rows = [
         {
             "label": hypothesis_label(s.hypothesis),
@@ -45,6 +45,6 @@ def library_section(found: Discovery) -> Section:
             "mistaken": mistaken_words(s.hypothesis.effect) or "–",
             "physics": EFFECTS[s.hypothesis.effect].physics,
         }
-        for s in ordered_standings(found)
+        for s in ordered_standings(discovery)
     ]
-    return Section("Library of effects", render("discovery_library.html", rows=rows), LEAD)
+    return Section("Library of effects", render("discovery_library.html", rows=rows), LIBRARY_LEAD)

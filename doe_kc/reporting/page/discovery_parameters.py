@@ -6,13 +6,13 @@ import math
 from typing import Any
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.reporting.discovery_gaps import COLOURS
+from doe_kc.reporting.discovery_gaps import MODEL_COLOURS
 from doe_kc.reporting.discovery_parameters import arrow_colour
 from doe_kc.reporting.discovery_tables import TunedParameter, tuned_parameters
 from doe_kc.reporting.page.section import Section, render
 from doe_kc.rounding import with_sd
 
-LEAD = (
+BIAS_LEAD = (
     "Where an effect is missing, re-tuning bends parameters that have nothing to do with it. Circles: "
     "distance from nominal after re-tuning without an effect, in standard deviations of the prior; "
     "arrows lead to the place with the effect."
@@ -21,14 +21,18 @@ REACH, WIDTH = 2.5, 200.0
 """Distance at the ends of the drawing, and its width in units."""
 
 
-def parameters_section(found: Discovery) -> Section:
+def parameters_section(discovery: Discovery) -> Section:
     """One row a tunable parameter, sortable and filterable."""
-    rows = sorted((_row(p) for p in tuned_parameters(found)), key=lambda r: -abs(r["p"].tuned_distance))
-    has_effect = bool(found.fitted.model.members)
+    rows = sorted((_row(p) for p in tuned_parameters(discovery)), key=lambda r: -abs(r["p"].tuned_distance))
+    has_effect = bool(discovery.fitted.model.members)
     html = render(
-        "discovery_parameters.html", rows=rows, width=WIDTH, has_effect=has_effect, colour=COLOURS["tuned"]
+        "discovery_parameters.html",
+        rows=rows,
+        width=WIDTH,
+        has_effect=has_effect,
+        colour=MODEL_COLOURS["tuned"],
     )
-    return Section("Parameters with and without the effect", html, LEAD)
+    return Section("Parameters with and without the effect", html, BIAS_LEAD)
 
 
 def _row(p: TunedParameter) -> dict[str, Any]:

@@ -20,32 +20,32 @@ from doe_kc.reporting.discovery_words import (
 from doe_kc.reporting.page.section import Section, render
 
 
-def verdict_section(found: Discovery, notes: Mapping[str, str]) -> Section:
+def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:
     """Tiles, sentences, a row for each effect, what stays open."""
-    better = sum(h.gain > 0.0 for h in found.held_out)
+    better = sum(h.gain > 0.0 for h in discovery.held_out)
     html = render(
         "discovery_verdict.html",
-        headline=HEADLINES[found.verdict],
-        clear=found.verdict in ("named", "none"),
-        top=found.findings[0] if found.findings else None,
-        top_odds=odds_number(found.findings[0].log10_odds) if found.findings else "",
-        top_label=effect_label(found.findings[0].hypothesis.effect) if found.findings else "",
-        gap=found.gap,
-        has_effect=bool(found.fitted.model.members),
+        headline=HEADLINES[discovery.verdict],
+        clear=discovery.verdict in ("named", "none"),
+        top=discovery.findings[0] if discovery.findings else None,
+        top_odds=odds_number(discovery.findings[0].log10_odds) if discovery.findings else "",
+        top_label=effect_label(discovery.findings[0].hypothesis.effect) if discovery.findings else "",
+        gap=discovery.gap,
+        has_effect=bool(discovery.fitted.model.members),
         better=better,
-        cases=len(found.held_out),
-        sentences=own_sentences(found),
-        effects=[_effect(found, f) for f in (*found.findings, *found.traces)],
-        alike=[" or ".join(effect_label(e) for e in group) for group in found.classes],
-        unexplained=[(contrast_words(c), z) for c, z in found.unexplained],
+        cases=len(discovery.held_out),
+        sentences=own_sentences(discovery),
+        effects=[_effect(discovery, f) for f in (*discovery.findings, *discovery.traces)],
+        alike=[" or ".join(effect_label(e) for e in group) for group in discovery.classes],
+        unexplained=[(contrast_words(c), z) for c, z in discovery.unexplained],
         notes=notes,
     )
     return Section("Verdict", html)
 
 
-def _effect(found: Discovery, finding: Finding) -> dict[str, Any]:
+def _effect(discovery: Discovery, finding: Finding) -> dict[str, Any]:
     ident = finding.hypothesis.effect
-    kind = kind_of(found, finding)
+    kind = kind_of(discovery, finding)
     return {
         "label": hypothesis_label(finding.hypothesis),
         "kind": "seen, too small to matter" if kind == "trace" else kind,
@@ -53,7 +53,7 @@ def _effect(found: Discovery, finding: Finding) -> dict[str, Any]:
         "odds": odds_number(finding.log10_odds),
         "log10_odds": finding.log10_odds,
         "against": against_words(finding),
-        "sizes": [s.sentence for s in found_sizes(found, finding)],
+        "sizes": [s.sentence for s in found_sizes(discovery, finding)],
         "rivals": rival_words(finding) or "–",
         "physics": EFFECTS[ident].physics,
         "shown_by": EFFECTS[ident].shown_by,

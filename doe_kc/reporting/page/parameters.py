@@ -9,16 +9,18 @@ from doe_kc.reporting.correlation_parameters import ParameterRow, parameter_rows
 from doe_kc.reporting.page.section import Section, render
 from doe_kc.rounding import with_sd
 
-LEAD = (
+PARAMETERS_LEAD = (
     "Bars run from the baseline (tick) to the final value (dot) between lower and upper bound; whiskers are "
     "one standard deviation from the exact sensitivities. Hatched: not visible in these measurements."
 )
 
 
-def parameters_section(found: Correlation) -> Section:
+def parameters_section(correlation: Correlation) -> Section:
     """One row a parameter, sortable and filterable."""
-    rows = [{"row": r, "text": with_sd(r.final, r.sd), "tags": _tags(r)} for r in parameter_rows(found)]
-    return Section("Parameters", render("parameters.html", rows=rows, isfinite=math.isfinite), LEAD)
+    rows = [{"row": r, "text": with_sd(r.final, r.sd), "tags": _tags(r)} for r in parameter_rows(correlation)]
+    return Section(
+        "Parameters", render("parameters.html", rows=rows, isfinite=math.isfinite), PARAMETERS_LEAD
+    )
 
 
 def _tags(row: ParameterRow) -> str:

@@ -17,7 +17,7 @@ from markupsafe import Markup
 from doe_kc import __version__
 from doe_kc.output import write_whole
 
-DIGITS = 7
+CHART_DIGITS = 7
 """Significant digits of the numbers that the page's charts hold."""
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
 
@@ -96,5 +96,5 @@ def _plain(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_plain(v) for v in value]
     if isinstance(value, float):
-        return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
+        return float(f"{value:.{CHART_DIGITS}g}") if math.isfinite(value) else None
     return value

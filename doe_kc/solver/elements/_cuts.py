@@ -12,7 +12,7 @@ from doe_kc.solver.elements._base import hardpoint, reflection
 from doe_kc.solver.probe import Probe
 
 SHIFTS = ("x", "y", "z")
-TURNS = ("rx", "ry", "rz")
+ROTATION_AXES = ("rx", "ry", "rz")
 DEG = 180 / ca.pi
 NM = 1000.0
 """N mm in a Nm."""
@@ -35,7 +35,7 @@ def cut(
     parent: Body,
     at: Sequence[tuple[str, str]],
     axes: Callable[[Builder, str], ca.SX] = side_axes,
-    dofs: Sequence[str] = (*SHIFTS, *TURNS),
+    dofs: Sequence[str] = (*SHIFTS, *ROTATION_AXES),
 ) -> Body:
     """`parent`, or with probes a body fixed to it that probes dislocate.
 
@@ -62,7 +62,7 @@ def cut(
     design = sum((hardpoint(b, *each) for each in at), ca.SX.zeros(3)) / len(at)
     origin = parent.point(design + probes(SHIFTS, "mm", 0, 1.0))
     # moments in Nm; half a small rotation vector is its Gibbs vector
-    turn = probes(TURNS, "deg", 1, turn_sign(side) / NM) * NM / (2 * DEG)
+    turn = probes(ROTATION_AXES, "deg", 1, turn_sign(side) / NM) * NM / (2 * DEG)
     gibbs, turned = rotation.compose(parent.gibbs, turn), parent.axes @ rotation.matrix(turn)
     return b.join(name, Body(name, design, origin, gibbs, turned), parent, [])
 

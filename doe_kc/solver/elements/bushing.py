@@ -16,7 +16,7 @@ import casadi as ca
 from doe_kc.solver import curve, rotation
 from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._base import NM_PER_DEG
-from doe_kc.solver.elements._cuts import SHIFTS, TURNS, push_pair, stretch, turn_pair, turn_sign
+from doe_kc.solver.elements._cuts import ROTATION_AXES, SHIFTS, push_pair, stretch, turn_pair, turn_sign
 
 FORCE_AXES = ("Fx", "Fy", "Fz")
 TORQUE_AXES = ("Tx", "Ty", "Tz")
@@ -44,7 +44,7 @@ def connect(
     kappa, slope = rotation.angle_ratio(ca.dot(gibbs, gibbs))
     phi = axes.T @ (kappa * gibbs)
     turned = [
-        _torque(b, name, side, a, phi[i]) + turn_pair(b, name, TURNS[i], side, phi[i])
+        _torque(b, name, side, a, phi[i]) + turn_pair(b, name, ROTATION_AXES[i], side, phi[i])
         for i, a in enumerate(TORQUE_AXES)
     ]
     force, torque = axes @ ca.vertcat(*local), axes @ ca.vertcat(*turned)

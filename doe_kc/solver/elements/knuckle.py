@@ -18,7 +18,7 @@ from doe_kc.solver.elements._base import (
     hardpoint,
     reflection,
 )
-from doe_kc.solver.elements._cuts import TURNS, cut, side_axes, turn_pair
+from doe_kc.solver.elements._cuts import ROTATION_AXES, cut, side_axes, turn_pair
 from doe_kc.solver.freedoms import rotations
 
 
@@ -67,7 +67,7 @@ def _turning_ball(b: Builder, carrier: Body, knuckle: Body, side: str) -> None:
     kappa, slope = rotation.angle_ratio(ca.dot(gibbs, gibbs))
     axes = side_axes(b, side)
     phi = axes.T @ (kappa * gibbs)
-    pairs = [turn_pair(b, "ball joint", dof, side, phi[i]) for i, dof in enumerate(TURNS)]
+    pairs = [turn_pair(b, "ball joint", dof, side, phi[i]) for i, dof in enumerate(ROTATION_AXES)]
     moment = carrier.axes @ rotation.spring_moment(gibbs, axes @ ca.vertcat(*pairs), kappa, slope)
     b.turn(carrier, moment)
     b.turn(knuckle, -moment)

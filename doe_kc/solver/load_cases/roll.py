@@ -62,9 +62,9 @@ class PadRoll(Roll):
         return {"pad_L": static.pad[0] - travel, "pad_R": static.pad[1] + travel}
 
 
-TECHNIQUES: dict[str, LoadCase] = {
+ROLL_TECHNIQUES: dict[str, LoadCase] = {
     "body": Roll(amplitude=4.0, steps=24),
     "counter_phase": CounterPhaseRoll(amplitude=60.0, steps=24),
 }
 
-load_case(TECHNIQUES["body"])
+load_case(ROLL_TECHNIQUES["body"])

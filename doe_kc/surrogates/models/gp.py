@@ -9,20 +9,20 @@ import numpy as np
 
 from doe_kc.errors import InputError
 from doe_kc.surrogates import posterior as gp
-from doe_kc.surrogates.interface import Fitted, Held, Prediction, Surrogate
-from doe_kc.surrogates.kernel import Kernel
+from doe_kc.surrogates.interface import Fitted, LeftOut, Prediction, Surrogate
+from doe_kc.surrogates.kernel import CovarianceKernel
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn, pinned_kernel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.training import Scaling
 from doe_kc.typing import FloatArray
 
 DEFAULT = Learning()
-NOTHING = 1e-6
+ROUND_OFF_SHARE = 1e-6
 """Share of an output's spread below which what an expansion leaves is round-off."""
 
 
 @dataclass(frozen=True)
-class Trend:
+class FirstOrderTrend:
     """Known first-order expansion: value (m,) and slope (m, d) at point (d,), slope per unit of x."""
 
     point: FloatArray
@@ -45,7 +45,7 @@ class GaussianProcess(Surrogate):
     learning continues from; with `learning.steps` = 0 they are kept.
     """
 
-    trend: Trend | None = None
+    trend: FirstOrderTrend | None = None
     start: FittedGaussianProcess | None = None
     learning: Learning = DEFAULT
 
@@ -69,16 +69,16 @@ class GaussianProcess(Surrogate):
         sample = Sample(x - centre, scaling.standardise(y))
         return self._learn(even_kernel(sample, self.learning), sample, centre, scaling)
 
-    def _fit_remainder(self, x: FloatArray, y: FloatArray, trend: Trend) -> FittedGaussianProcess:
+    def _fit_remainder(self, x: FloatArray, y: FloatArray, trend: FirstOrderTrend) -> FittedGaussianProcess:
         rest, spread = y - trend.at(x), y.std(axis=0)
-        size = np.maximum(np.sqrt((rest**2).mean(axis=0)), NOTHING * spread)
+        size = np.maximum(np.sqrt((rest**2).mean(axis=0)), ROUND_OFF_SHARE * spread)
         scaling = Scaling(np.zeros(y.shape[1]), size)
         sample = Sample(x - trend.point, scaling.standardise(rest))
         first = pinned_kernel(trend.slope / spread[:, None], sample, self.learning)
         return self._learn(first, sample, trend.point, scaling)
 
     def _learn(
-        self, first: Kernel, sample: Sample, centre: FloatArray, scaling: Scaling
+        self, first: CovarianceKernel, sample: Sample, centre: FloatArray, scaling: Scaling
     ) -> FittedGaussianProcess:
         if self.start is not None:
             _check_start(self.start, first)
@@ -89,7 +89,7 @@ class GaussianProcess(Surrogate):
         )
 
 
-def _check_start(start: FittedGaussianProcess, first: Kernel) -> None:
+def _check_start(start: FittedGaussianProcess, first: CovarianceKernel) -> None:
     if start.kernel.relevance.shape != first.relevance.shape or start.kernel.pinned != first.pinned:
         raise InputError(
             "surrogate gp: the earlier fit has other variables or outputs, or a trend where this has none; "
@@ -104,8 +104,8 @@ class FittedGaussianProcess(Fitted):
 
     centre: FloatArray
     scaling: Scaling
-    posterior: gp.Posterior
-    trend: Trend | None
+    posterior: gp.ProcessPosterior
+    trend: FirstOrderTrend | None
 
     @property
     def variables(self) -> int:
@@ -123,14 +123,14 @@ class FittedGaussianProcess(Fitted):
         return 4_000_000 // self.posterior.alpha.size
 
     @property
-    def kernel(self) -> Kernel:
+    def kernel(self) -> CovarianceKernel:
         """Hyper-parameters, for a later fit."""
         return self.posterior.kernel
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Leave-one-out with the hyper-parameters held, closed form."""
         residual, variance = gp.left_out(self.posterior)
-        return Held(residual * self.scaling.scale, variance * self.scaling.scale**2)
+        return LeftOut(residual * self.scaling.scale, variance * self.scaling.scale**2)
 
     def _everything(self, x: FloatArray) -> Prediction:
         """From one set of covariances."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from doe_kc.surrogates import posterior as gp
 from doe_kc.surrogates.interface import Fitted, Surrogate
-from doe_kc.surrogates.kernel import Kernel
+from doe_kc.surrogates.kernel import CovarianceKernel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.models.gp import FittedGaussianProcess
 from doe_kc.surrogates.scikit_library import ArdParameters, train_ard
@@ -49,11 +49,11 @@ class RelevanceProcess(Surrogate):
         return FittedGaussianProcess(centre, scaling, gp.condition(kernel, z, values), None)
 
 
-def _kernel(found: list[ArdParameters], variables: int, nugget: float) -> Kernel:
-    return Kernel(
-        relevance=np.array([np.full(variables, f.slope) for f in found]),
-        curvature=np.array([f.lengths**-2 for f in found]),
-        bend=np.array([f.bend for f in found]),
-        constant=np.array([f.offset for f in found]),
-        nugget=np.full(len(found), nugget),
+def _kernel(parameters: list[ArdParameters], variables: int, nugget: float) -> CovarianceKernel:
+    return CovarianceKernel(
+        relevance=np.array([np.full(variables, f.slope) for f in parameters]),
+        curvature=np.array([f.lengths**-2 for f in parameters]),
+        bend=np.array([f.bend for f in parameters]),
+        constant=np.array([f.offset for f in parameters]),
+        nugget=np.full(len(parameters), nugget),
     )

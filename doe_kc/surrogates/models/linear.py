@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.surrogates.interface import Fitted, Surrogate
 from doe_kc.surrogates.models._base import register
-from doe_kc.surrogates.ridge import PENALTIES, fit_ridge
+from doe_kc.surrogates.ridge import RIDGE_PENALTIES, fit_ridge
 from doe_kc.typing import FloatArray
 
 
@@ -29,4 +29,4 @@ class Linear(Surrogate):
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         del seed
-        return fit_ridge(x, y, PENALTIES if self.penalty is None else np.array([self.penalty]))
+        return fit_ridge(x, y, RIDGE_PENALTIES if self.penalty is None else np.array([self.penalty]))

@@ -8,16 +8,16 @@ from typing import ClassVar, final
 import numpy as np
 
 from doe_kc.surrogates.folds import fold_rows
-from doe_kc.surrogates.interface import Fitted, Held, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
 from doe_kc.surrogates.legendre import Terms, all_terms, feature_slopes, features, jacobian
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ridge import FittedLinear, fit_ridge
-from doe_kc.surrogates.scikit_library import Path, lasso_path
+from doe_kc.surrogates.scikit_library import PenaltyPath, lasso_path
 from doe_kc.typing import FloatArray
 
-PENALTIES = np.logspace(0.0, -3.0, 25)
+QUADRATIC_PENALTIES = np.logspace(0.0, -3.0, 25)
 """Candidates, as share of the smallest penalty that leaves no term."""
-FOLDS = 5
+PENALTY_FOLDS = 5
 
 
 @final
@@ -43,7 +43,7 @@ class Quadratic(Surrogate):
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> FittedQuadratic:
         terms = all_terms(x.shape[1])
         basis = features(terms, x)
-        folds = fold_rows(len(x), FOLDS, seed)
+        folds = fold_rows(len(x), PENALTY_FOLDS, seed)
         parts = [_fit_one(terms, basis, column, folds) for column in y.T]
         return FittedQuadratic(x.shape[1], tuple(parts))
 
@@ -65,7 +65,7 @@ class Polynomial:
 def _fit_one(terms: Terms, basis: FloatArray, y: FloatArray, folds: list[np.ndarray]) -> Polynomial:
     centred = basis - basis.mean(axis=0)
     highest = float(np.abs(centred.T @ (y - y.mean())).max()) / len(y)
-    penalties = highest * PENALTIES
+    penalties = highest * QUADRATIC_PENALTIES
     kept = [np.setdiff1d(np.arange(len(y)), left) for left in folds]
     paths = [_path(basis[rows], y[rows], penalties[-1]) for rows in kept]
     best = penalties[int(np.argmin(_errors(paths, basis, y, folds, kept, penalties)))]
@@ -77,12 +77,12 @@ def _fit_one(terms: Terms, basis: FloatArray, y: FloatArray, folds: list[np.ndar
     return Polynomial(terms.chosen(active), ridge, left_out)
 
 
-def _path(basis: FloatArray, y: FloatArray, least: float) -> Path:
+def _path(basis: FloatArray, y: FloatArray, least: float) -> PenaltyPath:
     return lasso_path(basis, y, least=least, steps=max(3, len(y) // 2))
 
 
 def _errors(
-    paths: list[Path], basis: FloatArray, y: FloatArray, folds: list[np.ndarray], kept: list[np.ndarray],
+    paths: list[PenaltyPath], basis: FloatArray, y: FloatArray, folds: list[np.ndarray], kept: list[np.ndarray],
     penalties: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """(k,) squared errors of the lasso itself over all folds at each penalty."""
@@ -94,7 +94,9 @@ def _errors(
     return total
 
 
-def _refit(path: Path, basis: FloatArray, y: FloatArray, penalty: float) -> tuple[np.ndarray, FittedLinear]:
+def _refit(
+    path: PenaltyPath, basis: FloatArray, y: FloatArray, penalty: float
+) -> tuple[np.ndarray, FittedLinear]:
     """Places of the terms that the path keeps at the penalty, at least one, and their ridge regression."""
     coefficients = path.at(penalty)
     if not coefficients.any():
@@ -122,10 +124,10 @@ class FittedQuadratic(Fitted):
         """m."""
         return len(self.parts)
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Five folds, the terms chosen anew in each at the same penalty."""
         residual = np.column_stack([p.left_out for p in self.parts])
-        return Held(residual, np.tile((residual**2).mean(axis=0), (len(residual), 1)))
+        return LeftOut(residual, np.tile((residual**2).mean(axis=0), (len(residual), 1)))
 
     def _mean(self, x: FloatArray) -> FloatArray:
         return np.column_stack([p.ridge.predict(features(p.terms, x))[:, 0] for p in self.parts])

@@ -7,7 +7,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.surrogates.interface import Fitted, Held, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ordinary_kriging import correlation
 from doe_kc.surrogates.smt_library import RadialFit, train_rbf
@@ -82,10 +82,10 @@ class FittedRadialBasis(Fitted):
         """m."""
         return len(self.scaling.scale)
 
-    def cross_validate(self) -> Held:
+    def cross_validate(self) -> LeftOut:
         """Leave-one-out with the width held, closed form."""
         residual = self.left_out * self.scaling.scale
-        return Held(residual, np.tile((residual**2).mean(axis=0), (len(residual), 1)))
+        return LeftOut(residual, np.tile((residual**2).mean(axis=0), (len(residual), 1)))
 
     def _radial(self, x: FloatArray) -> FloatArray:
         return np.asarray(correlation(np.full((1, self.variables), self.width**-2), x, self.x)[0])

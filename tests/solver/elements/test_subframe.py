@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.effects.subframe_flexibility import STIFFNESS
+from doe_kc.effects.subframe_flexibility import JOINT_STIFFNESS
 from doe_kc.solver.elements.subframe import Subframe
 from tests.solver.elements.mini import about_origin, builder, gibbs, hardpoint, number, wrench
 
 NM_PER_DEG = 1000 * 180 / np.pi
 CENTRE = np.array([180.0, 0.0, 247.5])
-FLEXIBLE = {f"subframe.{k}": v for k, v in STIFFNESS.items()}
+FLEXIBLE = {f"subframe.{k}": v for k, v in JOINT_STIFFNESS.items()}
 
 
 def assembled(**topology: object):
