@@ -14,6 +14,7 @@ from scipy.stats import qmc
 
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.surrogates.calibration import calibration_factors
@@ -24,7 +25,6 @@ from doe_kc.surrogates.models import make
 from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
 from doe_kc.surrogates.validation import NOMINAL_WIDTH, quality_on
 from doe_kc.true_solver.own import AxleSolver
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space, VariableOptions, build_space
 
 SIZES = (20, 40, 80, 120, 300)

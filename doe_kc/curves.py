@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 SIDES = ("L", "R")
 

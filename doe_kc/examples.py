@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from doe_kc.errors import InputError, RunError
+from doe_kc.ground.errors import InputError, RunError
 
 NAME = "front_axle"
 

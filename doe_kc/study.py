@@ -11,14 +11,14 @@ import numpy as np
 from pydantic import Field
 
 from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
-from doe_kc.axle.schema import Positive, Strict
+from doe_kc.axle_file.schema import Positive, Strict
 from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.discovery.options import DiscoveryOptions
-from doe_kc.errors import InputError, nearest
-from doe_kc.files import read_toml, validate
-from doe_kc.pictures import PNG, PictureFormat
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.files import read_toml, validate
+from doe_kc.ground.picture_format import PNG, PictureFormat
+from doe_kc.load_cases import LOAD_CASES
 from doe_kc.sampling.options import SamplingOptions
-from doe_kc.solver.load_cases import LOAD_CASES
 from doe_kc.surrogates.options import SurrogateOptions
 from doe_kc.targets.names import check_names
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions

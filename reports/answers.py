@@ -18,7 +18,7 @@ from report_text import number, table
 
 from doe_kc.correlation.assessment import STATUS_LABELS, harmed, inside
 from doe_kc.correlation.posterior import BOUND_SHARE
-from doe_kc.rounding import with_sd
+from doe_kc.ground.numbers import with_sd
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
 from doe_kc.workflow.answer import Answer

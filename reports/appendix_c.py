@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 
 from doe_kc.axle import read_axle
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
-from doe_kc.reporting.style import save
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
+from doe_kc.report.style import save
 
 HERE = Path(__file__).parent
 AXLE = HERE.parent / "examples" / "front_axle" / "axle.toml"

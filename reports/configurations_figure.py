@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 from report_figures import legend, title
 
-from doe_kc.reporting.style import COLOUR_CYCLE, PALETTE
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
+from doe_kc.report.style import COLOUR_CYCLE, PALETTE
 
 Runs = Mapping[str, Sequence[Trace]]
 PLAIN = FuncFormatter(lambda v, _: f"{v:,.0f}" if v >= 100.0 else f"{v:.3g}")

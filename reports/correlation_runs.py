@@ -22,16 +22,16 @@ import numpy as np
 from doe_kc import __version__
 from doe_kc.axle import read_axle
 from doe_kc.axle.model import Axle
-from doe_kc.comparison.interval import FLOOR
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.loop import Run, run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Problem
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, reduce_measurement
 from doe_kc.targets import Targets, build_targets, improvements, mean_improvement
+from doe_kc.targets.comparison.interval import FLOOR
 from doe_kc.true_solver.own import AxleSolver
-from doe_kc.typing import FloatArray
 from doe_kc.variables import VariableOptions, build_space
 
 ROOT = Path(__file__).parents[1]

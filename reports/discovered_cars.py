@@ -14,12 +14,12 @@ from report_text import number, table
 from doe_kc.axle import read_axle
 from doe_kc.campaign.executors import processes
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.workers import Bench
+from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import reduce_measurement
-from doe_kc.rounding import with_sd
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space, effect_library
 

@@ -9,7 +9,7 @@ import numpy as np
 from correlation_runs import Trace
 from recovery import Fit
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

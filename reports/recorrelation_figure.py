@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 from recorrelation_case import Case
 from report_figures import legend, title
 
-from doe_kc.reporting.style import PALETTE
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
+from doe_kc.report.style import PALETTE
 
 FREE = PALETTE["green"]
 EGO, NEWTON = PALETTE["vermillion"], PALETTE["blue"]

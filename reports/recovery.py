@@ -12,7 +12,7 @@ from correlation_runs import solve_run
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Problem
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 BUDGET = 25
 STATED = 2.0

@@ -14,12 +14,12 @@ from correlation_runs import measured, nominal
 
 from doe_kc.axle.parameters import Parameter, design_parameters, with_values
 from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, NoiseModel
 from doe_kc.measurement.gradients import characteristic_estimates
 from doe_kc.measurement.reduction import static_sd
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 from doe_kc.workflow.scatter import one_sigma
 

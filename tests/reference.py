@@ -11,9 +11,9 @@ import pandas as pd
 
 from doe_kc.axle import Axle, parameter_value, read_axle, with_values
 from doe_kc.effects import apply_effect
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
-from doe_kc.solver.load_cases.vertical import Vertical
+from doe_kc.load_cases import LoadCase
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.load_cases.vertical import Vertical
 
 DATA = Path(__file__).parent / "data" / "reference"
 EXAMPLE = Path(__file__).parents[1] / "examples" / "front_axle"

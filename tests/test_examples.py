@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from doe_kc import examples
-from doe_kc.errors import InputError, RunError
 from doe_kc.examples import copy_example, example_folder
+from doe_kc.ground.errors import InputError, RunError
 from doe_kc.workflow.check import check_study
 from tests.reference import EXAMPLE
 

@@ -14,9 +14,9 @@ from benchmarks.discovery.path import Bench, triangle
 from doe_kc.axle import Axle
 from doe_kc.axle.model import BUSHINGS, both
 from doe_kc.curves import TYRE_LOAD
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
 from doe_kc.solver.curve import curve_values
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

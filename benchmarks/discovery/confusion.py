@@ -14,7 +14,7 @@ from matplotlib.patches import Rectangle
 
 from benchmarks.discovery.scoring import Score
 from benchmarks.discovery.truth import DELETED
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 OTHERS = ("none", "unexplained", "failed")
 

@@ -19,10 +19,10 @@ from doe_kc.axle import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import linearize
 from doe_kc.effects import EFFECTS, apply_effect, observed
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import NotConverged
 from doe_kc.solver.suite import solve
-from doe_kc.typing import FloatArray
 from doe_kc.variables import VariableOptions, build_space
 
 NO_CHARACTERISTICS = np.zeros(0)

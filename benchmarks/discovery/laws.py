@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 Shape = Literal["exponential", "soft_stop"]
 SHAPES: tuple[Shape, ...] = ("exponential", "soft_stop")

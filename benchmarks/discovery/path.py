@@ -12,14 +12,14 @@ import numpy as np
 
 from doe_kc.axle import Axle
 from doe_kc.curves import RIG_RESPONSES, SIDES
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.march import NewtonSettings, Start, march
 from doe_kc.solver.result import Failure, NotConverged, StaticState
 from doe_kc.solver.static import control_matrix, static_state
 from doe_kc.solver.suite import library_for
-from doe_kc.typing import FloatArray
 
 SAMPLES = 512
 RUN_IN = 24

@@ -12,9 +12,9 @@ from benchmarks.discovery.chance import stream
 from benchmarks.discovery.sensors import INPUT_WHITE, RESOLUTION, Levels, kind, read, rig_loops
 from doe_kc.axle import Axle
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases.lateral_offset import LateralOffset
 from doe_kc.measurement.channels import RIG_NAMES
-from doe_kc.solver.load_cases.lateral_offset import LateralOffset
-from doe_kc.typing import FloatArray
 
 RUNS = 3
 SAMPLE_TIME = 0.1

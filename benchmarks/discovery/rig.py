@@ -10,9 +10,9 @@ import numpy as np
 from benchmarks.discovery.hidden import Hidden
 from doe_kc.axle import Axle
 from doe_kc.curves import TYRE_LOAD
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.load_cases.roll import CounterPhaseRoll
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
+from doe_kc.load_cases.roll import CounterPhaseRoll
 
 
 def driven(

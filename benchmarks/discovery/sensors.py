@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from benchmarks.discovery.chance import spread
 from doe_kc.curves import TYRE_LOAD, WHEEL_CENTRE
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 RESOLUTION = {"angle": 0.003, "displacement": 0.02, "tyre_load": 4.0}
 """deg, mm, N: what the rig's papers say."""

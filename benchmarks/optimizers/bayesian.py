@@ -15,8 +15,8 @@ from optimizers.peer import Peer
 
 from doe_kc.correlation.methods.ego import OPENING
 from doe_kc.correlation.problem import Evaluated
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 
 SAMPLES, STARTS, RAW = 64, 4, 128
 NOISE = 1e-6

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from doe_kc.correlation.problem import Evaluated
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 
 SCORES = 14
 RESOLVED = 1e-4

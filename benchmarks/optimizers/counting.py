@@ -11,9 +11,9 @@ import numpy as np
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
 from doe_kc.true_solver.outcome import Outcome
-from doe_kc.typing import FloatArray
 
 FAILED = 10.0
 """A failed design counts as this many times the baseline's loss and residuals."""

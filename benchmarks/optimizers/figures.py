@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 import numpy as np
 from optimizers.running import Result
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 LEVELS = (0.1, 0.01, 0.001)
 OURS = {

@@ -13,7 +13,7 @@ from doe_kc.axle.parameters import design_parameters, parameter_value
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.methods.ego import WITH_SLOPES
 from doe_kc.correlation.problem import Candidate, Problem
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.variables import Change, VariableOptions, build_space
 from tests.correlation import cases
 

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from optimizers.figures import best_so_far
 from optimizers.running import PEERS, Result
 
-from doe_kc.reporting.style import PALETTE
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
+from doe_kc.report.style import PALETTE
 
 LOOKS = {
     "ego": ("black", "-"),

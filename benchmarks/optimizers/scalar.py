@@ -11,7 +11,7 @@ from scipy import optimize
 from scipy.stats import qmc
 
 from doe_kc.correlation.pareto.objectives import objectives
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 BUDGET = 300
 LONG = 1000

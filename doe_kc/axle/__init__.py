@@ -5,7 +5,7 @@ from __future__ import annotations
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value, with_values
 from doe_kc.axle.plausibility import axle_warnings
-from doe_kc.axle.read import read_axle
+from doe_kc.axle_file.read import read_axle
 
 __all__ = [
     "Axle",

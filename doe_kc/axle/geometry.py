@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.axle.model import EXTRA_HARDPOINTS, HARDPOINTS, Axle
-from doe_kc.errors import InputError
-from doe_kc.typing import FloatArray
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 
 MIN_DISTANCE = 1.0
 """mm; joints closer than this are the same point for every practical purpose."""

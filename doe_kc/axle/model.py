@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.topology import Topology
+from doe_kc.axle.topology import Topology
+from doe_kc.load_cases import LoadCase
 
 HARDPOINTS = {
     "LLF": "Lower link front",

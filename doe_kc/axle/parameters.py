@@ -19,7 +19,7 @@ from doe_kc.axle.model import (
     HARDPOINTS,
     Axle,
 )
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 
 Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
 SIDE_PREFIXES = {"left": "L", "right": "R"}

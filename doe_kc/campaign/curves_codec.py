@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from doe_kc.curves import CaseCurves, CurveSet
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 MAGIC = b"KC1"
 COMPRESSION_LEVEL = 1

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from typing import Any, ParamSpec, TypeVar
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -14,8 +14,8 @@ from doe_kc.campaign.record import StoredEvaluation
 from doe_kc.campaign.store import Store
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import SIDES, CurveSet
-from doe_kc.errors import InputError
-from doe_kc.output import write_csv, write_whole
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.output import write_csv, write_whole
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import Values
 

@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Mapping
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 KEY_DIGITS = 12
 """Significant digits that tell two designs apart: 0.1 + 0.2 is 0.3."""

@@ -6,7 +6,7 @@ import sqlite3
 from pathlib import Path
 
 from doe_kc.campaign.sql_errors import translated
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 
 
 def lock(path: Path) -> sqlite3.Connection:

@@ -16,7 +16,7 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Any, ParamSpec, TypeVar
 
-from doe_kc.threads import find_libraries, limit_process
+from doe_kc.ground.threads import find_libraries, limit_process
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -11,8 +11,8 @@ import numpy as np
 from doe_kc.campaign.curves_codec import pack, unpack
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.true_solver.outcome import Outcome, reduced
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

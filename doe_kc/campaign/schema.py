@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from datetime import UTC, datetime
 
 from doe_kc.campaign.sql_errors import REMOVE
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 SCHEMA = 1
 STORE_SCHEMA = """

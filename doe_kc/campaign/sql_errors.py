@@ -6,7 +6,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from doe_kc.errors import DoeKcError, InputError, RunError
+from doe_kc.ground.errors import DoeKcError, InputError, RunError
 
 DAMAGED = ("SQLITE_NOTADB", "SQLITE_CORRUPT", "SQLITE_FORMAT")
 REMOVE = "move it away and run again, or choose another folder with --out"

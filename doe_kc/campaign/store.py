@@ -15,8 +15,8 @@ from doe_kc.campaign.curves_codec import DamagedCurves
 from doe_kc.campaign.lock import lock
 from doe_kc.campaign.record import Packed, StoredEvaluation, outcome_of
 from doe_kc.campaign.sql_errors import REMOVE, in_words
-from doe_kc.errors import InputError
-from doe_kc.output import make_folder
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.output import make_folder
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver
 

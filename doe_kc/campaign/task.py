@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from doe_kc.campaign.record import Packed, packed_outcome
-from doe_kc.errors import DoeKcError
+from doe_kc.ground.errors import DoeKcError
 from doe_kc.solver.result import NotConverged
 from doe_kc.true_solver.outcome import checked, failure
 from doe_kc.true_solver.protocol import TrueSolver, Values

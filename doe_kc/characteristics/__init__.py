@@ -6,7 +6,7 @@ import sys
 
 from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic, appendix_c
 from doe_kc.characteristics.reduction import reduce_all, reduce_one, reduction_gradient
-from doe_kc.registry import import_members
+from doe_kc.ground.registry import import_members
 
 import_members(sys.modules[__name__])
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic
 from doe_kc.curves import CaseCurves, CurveSet
-from doe_kc.solver.load_cases import LOAD_CASES
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LOAD_CASES
 
 LEFT = 0
 
@@ -24,7 +24,7 @@ def fit_window(case: CaseCurves, half_width: float | None = None) -> NDArray[np.
 def default_window(case: CaseCurves) -> float:
     """Half-width of the default window in the unit of `case.input`."""
     if case.load_case == "roll" and case.input_unit == "mm":
-        from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
+        from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 
         return ROLL_TECHNIQUES["counter_phase"].window
     return LOAD_CASES[case.load_case].window

@@ -13,8 +13,8 @@ from typing import Annotated, NoReturn
 import typer
 
 from doe_kc import __version__
-from doe_kc.errors import DoeKcError, RunError
-from doe_kc.threads import set_thread_variables
+from doe_kc.ground.errors import DoeKcError, RunError
+from doe_kc.ground.threads import set_thread_variables
 
 INTERRUPTED = "interrupted; results written so far are kept, the same command starts again."
 

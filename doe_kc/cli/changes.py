@@ -10,7 +10,7 @@ from typing import Any
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.geometry import check_geometry
 from doe_kc.effects import apply_effect
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 SETTING = re.compile(r"\s*([^=+*\s]+)\s*([+*]?=)\s*(\S+)\s*$")
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from doe_kc.correlation.curve_terms import CurveTerms
 from doe_kc.correlation.scalar_terms import ConstraintTerms, ObjectiveTerms
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

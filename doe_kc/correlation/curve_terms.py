@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import LIMIT_WEIGHT, Targets
-from doe_kc.typing import FloatArray
 
 CURVE_ROUNDING = 1e-3
 """RMS over Norm at which the corner of the root is rounded for gradients."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import Space
 
 

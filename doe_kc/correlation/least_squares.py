@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 LEAST_SQUARES_ITERATIONS = 500
 HALVINGS = 30

@@ -14,12 +14,12 @@ from scipy.ndimage import maximum_filter, median_filter
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.reduction import static_sd
 from doe_kc.solver.curve_gradient import CurveGradients, interpolated
 from doe_kc.targets.build import reached
 from doe_kc.targets.target import Targets
-from doe_kc.typing import FloatArray
 
 SOLVER_FLOOR = 1e-3
 """Share of the white-noise variance added to every point: rounding of files and solver."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from doe_kc.correlation.methods._base import Method
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
-from doe_kc.errors import RunError
-from doe_kc.threads import one_thread
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.threads import one_thread
 from doe_kc.true_solver.outcome import Outcome
 
 Evaluate = Callable[[Sequence[Mapping[str, float]]], Sequence[Outcome]]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr, ndtri
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 VISIBLE_SHARE = 0.5
 """A variable is visible when the measurement at least halves its prior standard deviation."""

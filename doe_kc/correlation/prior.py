@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 PRIOR_RIDGE = 1e-3
 """Rating per squared prior standard deviation: far below what any target is worth."""

@@ -12,10 +12,10 @@ from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
 from doe_kc.correlation.prior import PRIOR_RIDGE, Prior
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Rating, Score, Targets, rate, score
 from doe_kc.true_solver.outcome import Outcome
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 EXPANSION_CACHE = 4

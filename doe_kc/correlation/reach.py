@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linprog, lsq_linear
 
-from doe_kc.comparison.interval import constraint_interval
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Target, Targets
+from doe_kc.targets.comparison.interval import constraint_interval
 from doe_kc.targets.improvement import SIGNIFICANT
 from doe_kc.true_solver.outcome import Outcome
-from doe_kc.typing import FloatArray
 
 FORECAST_MARGIN = 0.2
 """Share of a range by which a first-order forecast may be wrong before a target counts as out of reach."""

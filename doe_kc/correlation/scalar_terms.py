@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import erf, ndtr
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import LIMIT_WEIGHT, Constraint, Objective, Target
-from doe_kc.typing import FloatArray
 
 SCALAR_ROUNDING = 1e-3
 """Of Norm: width over which the corner of |e| is rounded for gradients."""

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, last_member, to_errors
 from doe_kc.discovery.leaders import compatible, leaders
@@ -19,6 +18,7 @@ from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.search import EffectSearch, Step, accepted_at, threshold
 from doe_kc.discovery.trials import HypothesisFit, log_odds, plausible, tried
+from doe_kc.discovery.workers import Bench
 from doe_kc.effects.hypothesis import Hypothesis
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from doe_kc.discovery.calibration import INPUT_GAIN
 from doe_kc.discovery.fit import Fit
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 SAME = "rig_input_gain"
 """The effect that is a calibration of the rig, only larger than a sound rig has."""

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from doe_kc.axle.model import Axle
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 INPUT_GAIN = 0.003
 """Standard deviation of an input's scale: load cells, travel and angle sensors of a rig are good to 0.3 %."""

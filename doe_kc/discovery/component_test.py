@@ -16,7 +16,7 @@ from scipy.linalg import cho_factor, cho_solve
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screen import NULL_SHARE, Screened
 from doe_kc.effects import EFFECTS
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 from doe_kc.variables.variable import Variable
 
 DETECTION_LEVEL = 10.0

@@ -15,7 +15,7 @@ from scipy.sparse import csc_array, hstack
 
 from doe_kc.correlation.likelihood import CurveData, Likelihood
 from doe_kc.curves import TYRE_LOAD
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 Shape = Literal[
     "offset", "gradient", "curvature", "progression", "dead band", "loop width", "loop tilt", "static"

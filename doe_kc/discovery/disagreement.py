@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.discovery.contrasts import Contrast, Contrasts
 from doe_kc.discovery.projection import Projection
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 FALSE_ALARM_CHANCE = 0.05
 """Chance that noise alone passes the threshold somewhere on the map."""

@@ -9,24 +9,24 @@ import numpy as np
 
 from doe_kc.discovery.adequacy import Adequacy, adequacy
 from doe_kc.discovery.alternatives import Alternatives, alternatives
-from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.bound_check import beyond, searched
 from doe_kc.discovery.disagreement import raw_map, remaining_map
+from doe_kc.discovery.exclusion import Standing, Status, standings
 from doe_kc.discovery.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.findings import findings
 from doe_kc.discovery.gaps import gaps, returned
-from doe_kc.discovery.granted import sticks
+from doe_kc.discovery.law_discrepancy import sticks
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import EffectSearch, accepted_at, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
-from doe_kc.discovery.standing import Standing, Status, standings
 from doe_kc.discovery.trials import HypothesisFit
 from doe_kc.discovery.verdict import classes, verdict
-from doe_kc.discovery.widening import beyond, searched
+from doe_kc.discovery.workers import Bench
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.threads import one_thread
+from doe_kc.ground.threads import one_thread
 
 WORST = 8
 """Unexplained disagreements that are listed."""

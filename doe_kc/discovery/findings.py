@@ -13,14 +13,14 @@ from doe_kc.discovery.alternatives import Alternatives
 from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.belief import believed, matters
 from doe_kc.discovery.disagreement import NOISE
+from doe_kc.discovery.exclusion import wrong_name_chance
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search import EffectSearch
-from doe_kc.discovery.standing import wrong_name_chance
 from doe_kc.discovery.trials import HypothesisFit, amounts
 from doe_kc.discovery.unseen import unseen
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 WEAK, STRONG = 6.0, 10.0
 """Standard deviations below which an effect is not named by them alone, and from which it is named beside any

@@ -19,8 +19,8 @@ from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
-from doe_kc.typing import FloatArray
 
 FIT_DECREASE = 0.02
 """Predicted decrease of the sum of squares below which a fit stands."""

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.discovery.fit import Fit, cost_of, fit, followed
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 CLOSE = 10.0
 """Decrease of the sum of squares up to which derivatives of the whole fit serve to the end. At 30 an RMS was

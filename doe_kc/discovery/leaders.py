@@ -11,7 +11,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 LEADERS = 5
 """Hypotheses refitted jointly at each step."""

@@ -20,8 +20,8 @@ from doe_kc.discovery.solutions import Solutions
 from doe_kc.effects import apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 AMPLITUDE_LIMIT = 2.0

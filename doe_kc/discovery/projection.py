@@ -9,7 +9,7 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csc_array
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.fit import Fit, to_errors
+from doe_kc.discovery.workers import Bench
 
 DOUBTFUL = 10.0
 """Times the threshold: a member that carries more is not tried without."""

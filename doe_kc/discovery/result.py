@@ -9,15 +9,15 @@ from typing import Literal
 from doe_kc.discovery.adequacy import Adequacy
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.disagreement import Map
+from doe_kc.discovery.exclusion import Standing
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.scan import Scan
 from doe_kc.discovery.search import EffectSearch
-from doe_kc.discovery.standing import Standing
 from doe_kc.discovery.trials import HypothesisFit
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 VerdictKind = Literal["named", "class", "none", "unexplained"]
 

@@ -15,11 +15,11 @@ from scipy.optimize import nnls
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.interface_columns import law_columns
 from doe_kc.solver.interface_laws import LAWS
 from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.probe import Probe
-from doe_kc.typing import FloatArray
 
 SIGNED = ("offset", "stiffness")
 """Laws whose amplitude may be negative."""

@@ -17,8 +17,8 @@ from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
-from doe_kc.typing import FloatArray
 
 PROBE = 0.3
 """First size at which an effect is solved for, in typical sizes."""

@@ -9,16 +9,16 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, to_errors
-from doe_kc.discovery.granted import closed, opened
+from doe_kc.discovery.law_discrepancy import closed, opened
 from doe_kc.discovery.leaders import compatible, leaders, overlooked
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.pruning import pruned
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
 from doe_kc.discovery.trials import HypothesisFit, plausible, stiffer_first, tried
+from doe_kc.discovery.workers import Bench
 from doe_kc.effects.hypothesis import Hypothesis
 
 EFFECTS_MOST = 6

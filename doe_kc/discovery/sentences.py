@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 
 from doe_kc.discovery.adequacy import UNLISTED, Adequacy
 from doe_kc.discovery.disagreement import NOISE_DRAWS, Map
+from doe_kc.discovery.exclusion import Standing
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.scan import Scan
-from doe_kc.discovery.standing import Standing
 from doe_kc.discovery.verdict import Verdict
 from doe_kc.effects import EFFECTS
-from doe_kc.rounding import unit_words, with_sd
+from doe_kc.ground.numbers import unit_words, with_sd
 
 CERTAIN = 6.0
 """log10 odds beyond which no more is said: what the models share is less sure than that."""

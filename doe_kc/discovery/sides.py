@@ -6,10 +6,10 @@ import numpy as np
 
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.discovery.model import EffectModel
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import curve_gradients
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Variable
 
 POSITION, CLEARANCE, ANGLE, BUSHING, RATE = 0.25, 1.0, 0.07, 0.03, 0.02

@@ -10,7 +10,7 @@ from collections import OrderedDict
 from dataclasses import dataclass
 
 from doe_kc.axle.model import Axle
-from doe_kc.solver.load_cases import LoadCase
+from doe_kc.load_cases import LoadCase
 from doe_kc.solver.result import CaseSolution, Solution, StaticState
 from doe_kc.solver.suite import solve
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.discovery.belief import believed
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.workers import Bench
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 

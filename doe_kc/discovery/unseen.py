@@ -11,7 +11,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.search import EffectSearch
 from doe_kc.effects import EFFECTS
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 PRESENT = 0.03
 """Standard deviation of a trace, in typical sizes."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 from doe_kc.effects._base import EFFECTS, Effect, Option, apply_effect, effect, observed, refuse_on_rig
-from doe_kc.registry import import_members
+from doe_kc.ground.registry import import_members
 
 import_members(sys.modules[__name__])
 

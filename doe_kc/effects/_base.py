@@ -11,7 +11,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.curves import CurveSet
 from doe_kc.effects._tables import checked_number
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 
 
 @dataclass(frozen=True)

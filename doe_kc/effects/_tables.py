@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 
 
 def checked_number(value: Any, name: str, *, positive: bool = False) -> float:

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from doe_kc.axle.model import BUSHINGS
 from doe_kc.effects._base import effect
 from doe_kc.effects._bushing_values import BushingValues
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 
 @effect

@@ -9,7 +9,7 @@ from doe_kc.axle.model import BUSHINGS, Axle
 from doe_kc.effects._base import Effect, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 BUSHING_KEYS = {f"{name.upper()}_{side}": (name, side) for name in BUSHINGS for side in "LR"}
 

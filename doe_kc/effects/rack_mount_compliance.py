@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Size
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 SOFTEST = -0.88
 """Stiffening at which the slope of the mount's force, at least k (1 + 9/8 c), is nearly zero."""

@@ -10,7 +10,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.effects._base import Effect, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.solver.load_cases import CASE_ORDER
+from doe_kc.load_cases import CASE_ORDER
 
 
 @effect

@@ -12,7 +12,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.curves import CurveSet
 from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.solver.load_cases.roll import PadRoll, Roll
+from doe_kc.load_cases.roll import PadRoll, Roll
 
 OTHER_TECHNIQUES = ("counter_phase", "wheel_to_ground")
 

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 from doe_kc.axle.model import Axle, both
 from doe_kc.effects._base import Effect, Option, effect
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 JOINTS = ("ROB_L", "ROB_R")
 

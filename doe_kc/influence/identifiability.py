@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 NO_INFLUENCE = 0.1
 """sd of the measurement; a parameter that moves all characteristics together by less is fixed."""

@@ -11,7 +11,7 @@ import pandas as pd
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 NONLINEAR_PERCENT = 5.0
 """A cell is flagged when one-at-a-time and exact change differ by more than this share of the larger one

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
-from doe_kc.comparison.interval import constraint_interval
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.identifiability import (
     Pivots,
     choose,
@@ -27,8 +28,7 @@ from doe_kc.influence.identifiability import (
 )
 from doe_kc.influence.result import Influence
 from doe_kc.influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
+from doe_kc.targets.comparison.interval import constraint_interval
 
 BOUND_TOLERANCE = 1e-6
 """Share of the range within which a move counts as being at its bound."""

@@ -11,15 +11,15 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.result import Influence
 from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
-from doe_kc.threads import one_thread
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.own import AxleSolver
-from doe_kc.typing import FloatArray
 
 
 @one_thread()

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CaseCurves
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
 from doe_kc.measurement.loops import Loop, split_loop
 from doe_kc.measurement.records import RigRecord
 from doe_kc.measurement.smoothing import local_weights
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.typing import FloatArray
 
 AMPLITUDE_SHARE = 0.99
 """The grid is kept whole when the rig reaches this fraction of its amplitude on both sides."""

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
-from doe_kc.errors import InputError, nearest
-from doe_kc.solver.load_cases import LOAD_CASES, LoadCase
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.load_cases import LOAD_CASES, LoadCase
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 
 RIG_NAMES: Mapping[str, str] = {r: "caster" if r == "spin" else r for r in RIG_RESPONSES}
 """Response -> channel name in a record; the rig's `caster` is read off the wheel, our `spin`."""

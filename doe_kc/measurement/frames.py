@@ -9,8 +9,8 @@ import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RESPONSE_UNITS, SIDES
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.reduction import Measurement
-from doe_kc.typing import FloatArray
 
 if TYPE_CHECKING:
     import pandas as pd

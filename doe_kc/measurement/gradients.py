@@ -10,8 +10,8 @@ import numpy as np
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one, reduction_gradient
 from doe_kc.characteristics.reduction import LEFT, default_window, fit_window, slope
 from doe_kc.curves import RESPONSE_UNITS, SIDES, CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import CaseNoise
-from doe_kc.typing import FloatArray
 
 Windows = Mapping[str, float]
 """Load case -> half-width of the fit window in the input's unit; missing ones take the default."""

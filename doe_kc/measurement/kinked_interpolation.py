@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator

@@ -8,9 +8,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.white_noise import white_sd
-from doe_kc.typing import FloatArray
 
 IndexArray = NDArray[np.intp]
 

@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement.sentences import refuse_unknown, sentence
-from doe_kc.solver.load_cases import LOAD_CASES
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Positive = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from doe_kc.curves import TYRE_LOAD
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 Source = Literal["repeats", "resolution"]
 

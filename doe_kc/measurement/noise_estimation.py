@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.curves import ANGLES, RIG_RESPONSES, TYRE_LOAD, WHEEL_CENTRE
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.branches import RunCurves, static_index
 from doe_kc.measurement.noise import CaseNoise, ErrorComponents, NoiseModel
 from doe_kc.measurement.repeatability import (
@@ -16,7 +17,6 @@ from doe_kc.measurement.repeatability import (
     thinned,
 )
 from doe_kc.measurement.white_noise import pooled_white_sd
-from doe_kc.typing import FloatArray
 
 SENSOR_KINDS: Mapping[str, tuple[str, ...]] = {
     "angle": tuple(r for r in RIG_RESPONSES if r in ANGLES),

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 KINEMATIC_SCATTER: Mapping[str, tuple[float, float, float]] = {
     "toe": (2.6e-3, 1.2e-6, 1.0e-8),

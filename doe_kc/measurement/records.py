@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES, SIDES
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
 from doe_kc.measurement.channels import TIME, locate
 from doe_kc.measurement.tables import RecordTable, column_numbers, read_csv_table
 from doe_kc.measurement.workbook import read_sheet_table
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.typing import FloatArray
 
 MIN_SAMPLES = 64
 """Fewer samples per loop leave under 32 points a branch: gradients in the fit window become guesses."""

@@ -9,7 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES, CurveSet
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.branches import RunCurves, case_curves, changes, reduce_case
 from doe_kc.measurement.gradients import (
     Gradient,
@@ -23,9 +26,6 @@ from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.noise_estimation import estimate_noise
 from doe_kc.measurement.records import RigRecord, read_record
 from doe_kc.measurement.trend import PolynomialTrend, fit_trends
-from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
 
 HALF_TRACK = 790.0
 """|y| of the design wheel centre, mm."""

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import ErrorComponents
-from doe_kc.typing import FloatArray
 
 LIKELIHOOD_POINTS = 21
 """Inputs per curve in the likelihood: enough for the shortest correlation length, cheap to factor."""

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.curves import CaseCurves, CurveSet
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.production_scatter import KINEMATIC_SCATTER
 from doe_kc.measurement.shift_problem import LOAD_CHANNEL, Scatter, ShiftProblem
 from doe_kc.measurement.shifted_curves import ShiftedCurves, both_sides
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
 
 CASE = "vertical"
 KINEMATIC_WINDOW = 20.0

@@ -10,7 +10,7 @@ from typing import Any, Union, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 
 
 def refuse_unknown(path: Path, data: Mapping[str, Any], model: type[BaseModel], prefix: str = "") -> None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.production_scatter import LOAD_OFFSET, kinematic_modes, load_modes
 from doe_kc.measurement.shifted_curves import ShiftedCurves
-from doe_kc.typing import FloatArray
 
 LOAD_CHANNEL = "tyre_load"
 STEP = 0.5

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from doe_kc.curves import CaseCurves
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.kinked_interpolation import KinkedCurve
-from doe_kc.typing import FloatArray
 
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline, PchipInterpolator

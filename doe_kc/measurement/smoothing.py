@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 DEGREE = 2
 MIN_NEIGHBOURS = 7

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from doe_kc.errors import InputError
-from doe_kc.typing import FloatArray
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 
 Cell = str | float | None
 

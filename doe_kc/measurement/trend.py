@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 MAX_DEGREE = 15
 TREND_FOLDS = 10

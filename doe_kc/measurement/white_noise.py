@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 _ORDER = 4
 _BINOMIAL_NORM = 70.0**0.5

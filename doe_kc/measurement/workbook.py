@@ -7,7 +7,7 @@ import warnings
 from pathlib import Path
 from typing import Any
 
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 from doe_kc.measurement.tables import ZIP_MAGIC, Cell, RecordTable, read_bytes
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from doe_kc.registry import import_members
+from doe_kc.ground.registry import import_members
 from doe_kc.sampling._base import SAMPLERS, Request, Sampler, find_sampler
 from doe_kc.sampling.design import Design
 from doe_kc.variables import Space

@@ -10,9 +10,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling.design import Design
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

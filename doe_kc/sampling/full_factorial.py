@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling._base import Request, Sampler, design_of, numbered, sampler
 from doe_kc.sampling.design import Design
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 DESIGNS_MOST = 20_000

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from doe_kc.errors import InputError, nearest
-from doe_kc.files import read_bytes
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.files import read_bytes
+from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling._base import Request, Sampler, design_of, sampler
 from doe_kc.sampling.design import Design
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space, Variable
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from functools import lru_cache
 
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.equations import Equations, finish
-from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)

@@ -10,6 +10,8 @@ import casadi as ca
 import numpy as np
 from scipy import sparse
 
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.compiled import (
     COMPILE_VARIABLE,
     CompileError,
@@ -18,8 +20,6 @@ from doe_kc.solver.compiled import (
     library_of,
 )
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
-from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
-from doe_kc.typing import FloatArray
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 
 import casadi as ca
 
+from doe_kc.axle.topology import Topology
 from doe_kc.solver import rotation
 from doe_kc.solver.probe import Probe
-from doe_kc.solver.topology import Topology
 
 Response = Callable[[], ca.SX]
 

@@ -10,10 +10,10 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import internal_gradient
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one, reduction_gradient
 from doe_kc.curves import CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set, mean_and_half_width
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
-from doe_kc.typing import FloatArray
 
 
 def characteristic_gradients(

@@ -21,10 +21,10 @@ from typing import TYPE_CHECKING, Any
 import casadi as ca
 import numpy as np
 
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
-from doe_kc.typing import FloatArray
 
 if TYPE_CHECKING:
     from doe_kc.solver import march as _march

@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping
 import casadi as ca
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.builder import Builder
-from doe_kc.typing import FloatArray
 
 SymbolicCurve = Callable[[ca.SX], ca.SX]
 

@@ -9,10 +9,10 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import mean_and_half_width, rising
 from doe_kc.solver.result import CaseSolution, Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
-from doe_kc.typing import FloatArray
 
 
 def is_loop(branches: Sequence[object]) -> bool:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, TYRE_LOAD, CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import CaseSolution, Solution
-from doe_kc.typing import FloatArray
 
 
 def rising(case: CaseSolution) -> FloatArray:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import Datum, LoadCase
 from doe_kc.solver.kernel import Kernel
-from doe_kc.solver.load_cases import Datum, LoadCase
 from doe_kc.solver.march import Substeps
 from doe_kc.solver.static import control_matrix
-from doe_kc.typing import FloatArray
 
 DATUM = (
     *("pad L", "pad R", "wheel centre L", "wheel centre R", "preload"),

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE
 from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.solver.march import Halt, March, Start
 from doe_kc.solver.newton import Newton, NewtonSettings
 from doe_kc.solver.result import Failure
-from doe_kc.typing import FloatArray
 
 SINGULAR = 1e-9
 """Smallest over largest stiffness below which nothing resists; the softest sound axle has 1e-6."""

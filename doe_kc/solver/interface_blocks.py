@@ -9,12 +9,12 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change
 from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.probe import Probe
-from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

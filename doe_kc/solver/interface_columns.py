@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import CurveGradients, gradients_of, is_loop
 from doe_kc.solver.interface_laws import LAWS, Law, stop_operator
 from doe_kc.solver.interfaces import BranchInfluences, Influences, StaticInfluences
 from doe_kc.solver.result import BranchSolution, CaseSolution
 from doe_kc.solver.sensitivity import Sensitivities
-from doe_kc.typing import FloatArray
 
 PRESLIDING = 0.05
 """mm or deg over which friction builds up."""

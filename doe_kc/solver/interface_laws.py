@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.probe import Kind, Probe
-from doe_kc.typing import FloatArray
 
 CLEARANCE_ROUNDING = 0.005
 """Share of a probe's largest response over which the sign of a clearance is rounded."""

@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.axle.model import Axle
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
 from doe_kc.solver.datum import AT_REST, control_gradient, gradient_between
 from doe_kc.solver.interface_blocks import InterfaceBlocks, Local
-from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.result import BranchSolution, Solution, StaticState
-from doe_kc.typing import FloatArray
 
 WHEEL_CENTRES = ("wc_z@L", "wc_z@R")
 GIVEN = (0, 1, 4)

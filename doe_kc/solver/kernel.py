@@ -8,10 +8,10 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.equations import Equations
-from doe_kc.solver.topology import TOPOLOGY_CACHE, Topology
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.solver.newton import Iterate, Newton, NewtonSettings
-from doe_kc.typing import FloatArray
 
 __all__ = ["Halt", "March", "NewtonSettings", "Start", "distance", "march"]
 

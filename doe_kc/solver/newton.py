@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import lapack
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.kernel import Buffered, Kernel
-from doe_kc.typing import FloatArray
 
 STALL_LEVEL = 1e-4
 """N; rounding of very stiff parts keeps the residual from falling below the tolerance."""

@@ -16,13 +16,13 @@ from scipy import sparse
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import internal_gradient
+from doe_kc.axle.topology import Topology
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change
 from doe_kc.solver.datum import control_gradient, gradient_between
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.load_cases import LoadCase
 from doe_kc.solver.result import BranchSolution, Solution, StaticState
-from doe_kc.solver.topology import Topology
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

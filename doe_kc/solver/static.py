@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.axle.model import Axle
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import Datum
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.diagnosis import static_failure, sweep_failure
 from doe_kc.solver.kernel import Kernel
-from doe_kc.solver.load_cases import Datum
 from doe_kc.solver.march import NewtonSettings, Start, distance, march
 from doe_kc.solver.result import Failure, StaticState
-from doe_kc.typing import FloatArray
 
 
 def control_matrix(kernel: Kernel, values: dict[str, float | FloatArray], n: int) -> FloatArray:

@@ -10,7 +10,10 @@ from functools import lru_cache
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.errors import InputError, nearest
+from doe_kc.axle.topology import Topology
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import CASE_ORDER, LoadCase
 from doe_kc.solver.compiled import (
     COMPILE_VARIABLE,
     CompiledKernel,
@@ -19,7 +22,6 @@ from doe_kc.solver.compiled import (
 )
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.load_cases import CASE_ORDER, LoadCase
 from doe_kc.solver.march import NewtonSettings, Start, march
 from doe_kc.solver.result import (
     BranchSolution,
@@ -30,8 +32,6 @@ from doe_kc.solver.result import (
     StaticState,
 )
 from doe_kc.solver.static import control_matrix, static_state
-from doe_kc.solver.topology import Topology
-from doe_kc.typing import FloatArray
 
 log = logging.getLogger("doe_kc")
 SEEDS = 3

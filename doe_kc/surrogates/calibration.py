@@ -10,9 +10,9 @@ from typing import final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.surrogates.validation import NOMINAL, NOMINAL_WIDTH
-from doe_kc.typing import FloatArray
 
 LEAST_VARIANCE_RATIO = 1e-12
 """Variance ratio below which a residual of zero against a variance of zero counts as in order."""

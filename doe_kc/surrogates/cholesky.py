@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import lapack
 
-from doe_kc.errors import RunError
-from doe_kc.typing import FloatArray
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.typing import FloatArray
 
 INDISTINCT = "surrogate: designs are nearly equal and cannot be told apart; spread them or leave one out."
 

@@ -12,7 +12,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.campaign.store import Store
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import Space
 
 EQUAL_TOLERANCE = 1e-9

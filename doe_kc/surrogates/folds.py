@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import LeftOut, Surrogate
 from doe_kc.surrogates.varying import fit_varying
-from doe_kc.typing import FloatArray
 
 
 def fold_rows(rows: int, folds: int, seed: int) -> list[np.ndarray]:

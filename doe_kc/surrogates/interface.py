@@ -9,9 +9,9 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.training import check_points, check_training
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.cholesky import inverses
 from doe_kc.surrogates.kernel import Bend, CovarianceKernel, training_covariance
-from doe_kc.typing import FloatArray
 
 LEAST_RELEVANCE = 1e-6
 """Smallest relevance, share of what it is when all variables are equally relevant."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 NONE = -1
 

@@ -12,10 +12,10 @@ from typing import final
 
 import numpy as np
 
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.cholesky import INDISTINCT, inverse_roots
 from doe_kc.surrogates.interface import Fitted, LeftOut
-from doe_kc.typing import FloatArray
 
 NUGGETS = (1e-10, 1e-8)
 """Tried in turn until the correlation can be factorised."""

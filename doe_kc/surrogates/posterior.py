@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.cholesky import inverse_roots
 from doe_kc.surrogates.kernel import (
     Bend,
@@ -19,7 +20,6 @@ from doe_kc.surrogates.kernel import (
     covariance,
     training_covariance,
 )
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.designs import Designs
 from doe_kc.surrogates.influence import Agreement
 from doe_kc.surrogates.study import SurrogateStudy
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 

@@ -10,8 +10,8 @@ from typing import final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
-from doe_kc.typing import FloatArray
 
 RIDGE_PENALTIES = np.logspace(-6.0, 2.0, 33)
 

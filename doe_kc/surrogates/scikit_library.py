@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import minimize
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 LENGTHS = (0.05, 1e3)
 VARIANCES = (1e-6, 1e4)

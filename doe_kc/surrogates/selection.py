@@ -8,8 +8,8 @@ from typing import final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
-from doe_kc.typing import FloatArray
 
 ERROR_MARGIN = 0.1
 """Share by which the left-out squared error may exceed the best model's for the sake of simplicity."""

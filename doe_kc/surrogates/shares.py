@@ -11,8 +11,8 @@ import warnings
 import numpy as np
 from scipy.stats import qmc
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 

@@ -12,7 +12,9 @@ import numpy as np
 
 from doe_kc.campaign.executors import processes
 from doe_kc.campaign.processes import available_cores
-from doe_kc.errors import DoeKcError, InputError, RunError
+from doe_kc.ground.errors import DoeKcError, InputError, RunError
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.calibration import Calibrated, calibration_factors, coverage_after
 from doe_kc.surrogates.folds import fold, fold_rows
 from doe_kc.surrogates.interface import Fitted, LeftOut
@@ -20,8 +22,6 @@ from doe_kc.surrogates.models import SURROGATES, make
 from doe_kc.surrogates.selection import choose, join
 from doe_kc.surrogates.validation import Quality, quality
 from doe_kc.surrogates.varying import fit_varying
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
 
 VALIDATION_DESIGNS = 10
 """Designs below which a cross-validation says little."""

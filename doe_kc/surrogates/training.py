@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.errors import InputError
-from doe_kc.typing import FloatArray
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 
 CONSTANT = 1e-10
 """Range over largest magnitude below which an output counts as constant: solver round-off."""

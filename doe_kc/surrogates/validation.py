@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
-from doe_kc.typing import FloatArray
 
 NOMINAL = 0.95
 """Coverage that an interval promises."""

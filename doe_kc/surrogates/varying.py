@@ -7,10 +7,10 @@ from typing import final
 
 import numpy as np
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
 from doe_kc.surrogates.training import constant_outputs
-from doe_kc.typing import FloatArray
 
 
 def fit_varying(model: Surrogate, x: FloatArray, y: FloatArray, *, seed: int = 0) -> Fitted:

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
-from doe_kc.comparison.interval import constraint_interval
 from doe_kc.curves import RIG_RESPONSES, CaseCurves
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement import Measurement
-from doe_kc.solver.load_cases import LOAD_CASES
+from doe_kc.targets.comparison.interval import constraint_interval
 from doe_kc.targets.names import check_names
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets

@@ -7,8 +7,8 @@ from fnmatch import fnmatchcase
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.errors import InputError, nearest
-from doe_kc.solver.load_cases import LOAD_CASES
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.load_cases import LOAD_CASES
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 
 

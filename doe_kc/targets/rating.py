@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets.score import Score
 from doe_kc.targets.target import Constraint, Objective, Targets
-from doe_kc.typing import FloatArray
 
 LIMIT_WEIGHT = 1e6
 """QuadWt of a limit: a hundred times that of a constraint, which is not to be met at the cost of what was

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.comparison.deviation import rms_deviation
 from doe_kc.curves import CurveSet
+from doe_kc.ground.typing import FloatArray
+from doe_kc.targets.comparison.deviation import rms_deviation
 from doe_kc.targets.target import Targets, sampled
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from itertools import pairwise
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
-from doe_kc.comparison.interval import FLOOR
 from doe_kc.curves import CurveSet
+from doe_kc.ground.typing import FloatArray
+from doe_kc.targets.comparison.interval import FLOOR
 from doe_kc.targets.options import Goal
-from doe_kc.typing import FloatArray
 
 LIMIT_MARGIN = 5e-4
 """Share of the measure within which a limit is charged for already: a design that leans on it, steep as the

@@ -14,9 +14,9 @@ import pandas as pd
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import CurveSet
-from doe_kc.errors import nearest
+from doe_kc.ground.errors import nearest
+from doe_kc.ground.typing import FloatArray
 from doe_kc.true_solver.tidy_curves import Unreadable, curves_from_frame
-from doe_kc.typing import FloatArray
 
 __all__ = ["Unreadable", "read_characteristics", "read_curves"]
 

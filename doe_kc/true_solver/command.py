@@ -14,7 +14,7 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import KINDS, with_values
-from doe_kc.errors import InputError, RunError
+from doe_kc.ground.errors import InputError, RunError
 from doe_kc.true_solver.answer import Unreadable, read_characteristics, read_curves
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
 from doe_kc.true_solver.own import describe_axle

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field, field_validator
 
-from doe_kc.axle.schema import Positive, Strict
-from doe_kc.errors import nearest
-from doe_kc.solver.load_cases import LOAD_CASES
+from doe_kc.axle_file.schema import Positive, Strict
+from doe_kc.ground.errors import nearest
+from doe_kc.load_cases import LOAD_CASES
 
 
 class SolverOptions(Strict):

@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.curves import CaseCurves, CurveSet
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

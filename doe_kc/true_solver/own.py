@@ -10,10 +10,10 @@ from dataclasses import dataclass, field, replace
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
+from doe_kc.axle.topology import Topology
 from doe_kc.effects import observed
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import library_for, solve
-from doe_kc.solver.topology import Topology
 from doe_kc.true_solver.outcome import Outcome, failure, from_curves
 from doe_kc.true_solver.protocol import Values, digest
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import KINDS, Parameter, design_parameters, parameter_value, with_values
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 from doe_kc.variables.options import Change, VariableOptions
 from doe_kc.variables.space import Space, Tie
 from doe_kc.variables.variable import Variable

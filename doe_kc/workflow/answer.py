@@ -16,13 +16,13 @@ from doe_kc.curves import CurveSet
 from doe_kc.discovery.model import NO_CHARACTERISTICS
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
-from doe_kc.reporting.discovery_sizes import size_words
-from doe_kc.reporting.discovery_words import effect_label
+from doe_kc.report.discovery_sizes import size_words
+from doe_kc.report.discovery_words import effect_label
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
-from doe_kc.workflow.handover import characteristic_entries
+from doe_kc.workflow.write_correlation import characteristic_entries
 
 
 @dataclass(frozen=True)

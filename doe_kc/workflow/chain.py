@@ -9,7 +9,7 @@ from doe_kc.campaign.runner import Campaign
 from doe_kc.correlation.reach import answers_alike
 from doe_kc.correlation.result import Correlation
 from doe_kc.discovery.result import Discovery
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for

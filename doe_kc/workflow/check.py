@@ -12,16 +12,16 @@ from pathlib import Path
 
 from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one
-from doe_kc.comparison.interval import constraint_interval
 from doe_kc.correlation.methods import check_method
 from doe_kc.curves import CaseCurves, CurveSet
-from doe_kc.errors import DoeKcError, InputError, RunError
+from doe_kc.ground.errors import DoeKcError, InputError, RunError
 from doe_kc.measurement import Manifest, load_manifest
 from doe_kc.measurement.branches import reduce_case
 from doe_kc.measurement.reduction import case_records, check_window_points, measured_cases, measured_curves
 from doe_kc.sampling._base import find_sampler
 from doe_kc.study import Study, read_study
 from doe_kc.targets.build import first, last
+from doe_kc.targets.comparison.interval import constraint_interval
 from doe_kc.workflow.setup import setup_differences
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from doe_kc.comparison import Comparison, compare
 from doe_kc.curves import CurveSet
+from doe_kc.ground.output import write_csv
+from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
-from doe_kc.output import write_csv
-from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.study import Study
+from doe_kc.targets.comparison import Comparison, compare
 
 
 def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Comparison:
@@ -29,7 +29,7 @@ def write_comparison(
     ]
     if pictures == "none":
         return written
-    from doe_kc.reporting.comparison_figures import write_comparison_figures
+    from doe_kc.report.comparison_figures import write_comparison_figures
 
     return written + write_comparison_figures(comparison, folder, workers=workers, pictures=pictures)
 

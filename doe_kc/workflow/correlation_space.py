@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.influence.selection_result import Selection
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study

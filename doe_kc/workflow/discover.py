@@ -11,14 +11,14 @@ from doe_kc.axle.model import Axle
 from doe_kc.campaign.executors import processes
 from doe_kc.campaign.processes import available_cores
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.bench import Bench, Watch
 from doe_kc.discovery.discover import discover
-from doe_kc.discovery.ledger import Ledger
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.result_cache import Ledger
+from doe_kc.discovery.workers import Bench, Watch
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study
 from doe_kc.variables import Space, VariableOptions, build_space

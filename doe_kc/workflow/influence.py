@@ -10,18 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
-from doe_kc.comparison.interval import constraint_interval
 from doe_kc.correlation.options import ObjectiveKind
+from doe_kc.ground.output import write_csv
 from doe_kc.influence.relations import relations
 from doe_kc.influence.result import Influence
 from doe_kc.influence.selection import select_variables
 from doe_kc.influence.selection_result import Selection
 from doe_kc.influence.study import influence_study
 from doe_kc.measurement import Measurement
-from doe_kc.output import write_csv
-from doe_kc.reporting.workbook import write_influence_workbook
+from doe_kc.report.workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
+from doe_kc.targets.comparison.interval import constraint_interval
 
 FORECAST_SHARE = 0.2
 """Of the constraint interval's half width: the error granted to a linear forecast of a target."""
@@ -112,7 +112,7 @@ def write_influence(
     ]
     if study.pictures == "none":
         return [book, *csv]
-    from doe_kc.reporting.influence_figures import write_influence_figures
+    from doe_kc.report.influence_figures import write_influence_figures
 
     pictures = write_influence_figures(
         matrix, folder, study=study.name, workers=workers, pictures=study.pictures

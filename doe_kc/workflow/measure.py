@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from doe_kc.ground.output import write_csv
+from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import (
     Measurement,
     RideHeight,
@@ -14,8 +16,6 @@ from doe_kc.measurement import (
     measurement_to_frames,
     reduce_measurement,
 )
-from doe_kc.output import write_csv
-from doe_kc.pictures import PNG, PictureFormat
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
@@ -77,7 +77,7 @@ def write_reduced(
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
     if pictures == "none":
         return written
-    from doe_kc.reporting.rig_figures import write_rig_figures
+    from doe_kc.report.rig_figures import write_rig_figures
 
     return written + write_rig_figures(reduced.measurement, folder, workers=workers, pictures=pictures)
 

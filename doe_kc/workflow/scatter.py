@@ -8,10 +8,10 @@ import numpy as np
 
 from doe_kc.axle import Axle, Parameter, design_parameters
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import mean_and_half_width, rising
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
-from doe_kc.typing import FloatArray
 
 HARDPOINT_SD = 1.0
 """mm, one standard deviation of a coordinate between cars of one design."""

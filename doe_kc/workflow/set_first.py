@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.correlation.loop import Evaluate
-from doe_kc.errors import InputError, RunError
+from doe_kc.ground.errors import InputError, RunError
 from doe_kc.measurement import RideHeight
 from doe_kc.study import Study
 from doe_kc.workflow.measure import Reduced

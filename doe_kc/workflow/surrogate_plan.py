@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.campaign.store import read_store
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs, designs_in_space
 from doe_kc.surrogates.models import SURROGATES, make

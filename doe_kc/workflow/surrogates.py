@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.study import influence_study
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs
@@ -13,8 +15,6 @@ from doe_kc.surrogates.influence import agreement, free_variables, surrogate_cha
 from doe_kc.surrogates.report import SurrogateReport
 from doe_kc.surrogates.shares import total_shares
 from doe_kc.surrogates.study import fit_study
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
 from doe_kc.workflow.surrogate_plan import Plan
 
 Progress = Callable[[int], None]

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
 from doe_kc.axle.parameters import internal_gradient, settable_paths
 from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from tests.reference import nominal
 
 PATHS = settable_paths(nominal())

@@ -18,7 +18,7 @@ import pytest
 from doe_kc.campaign import dask_cluster
 from doe_kc.campaign.executors import dask
 from doe_kc.campaign.runner import Campaign
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from tests.campaign.toys import Toy, bump_steer, designs, pids_of, runs_of
 
 ROOT = Path(__file__).parents[2]

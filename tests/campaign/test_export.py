@@ -17,7 +17,7 @@ from doe_kc.campaign.export import RESULTS, Format, designs_frame, evaluations_f
 from doe_kc.campaign.runner import Campaign
 from doe_kc.campaign.store import Store, open_store
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from tests.campaign.toys import Toy, bump_steer, designs, toy_curves
 from tests.reference import nominal
 

@@ -14,7 +14,7 @@ import pytest
 
 from doe_kc.campaign.interrupts import Interrupts
 from doe_kc.campaign.runner import Campaign
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 from tests.campaign.toys import Toy, designs, pids_of, runs_of
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals")

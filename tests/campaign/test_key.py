@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from doe_kc.campaign.key import design_key
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 
 NUMBER = st.floats(min_value=1e-6, max_value=1e6) | st.floats(min_value=-1e6, max_value=-1e-6)
 

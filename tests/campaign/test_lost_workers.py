@@ -11,7 +11,7 @@ import pytest
 
 from doe_kc.campaign.processes import available_cores, start_context
 from doe_kc.campaign.runner import Campaign
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 from tests.campaign.toys import Toy, bump_steer, designs, runs_of
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals")

@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 import numpy as np
 from doe_kc.campaign.executors import processes
-from doe_kc.reporting.series import draw_series
+from doe_kc.report.series import draw_series
 from doe_kc.surrogates.models import gp
 from doe_kc.surrogates.study import fit_study
 

@@ -13,7 +13,7 @@ import pytest
 
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.true_solver.outcome import Outcome
 from tests.campaign.test_curves_codec import assert_same
 from tests.campaign.toys import Toy, bump_steer, designs, pids_of, runs_of, toy_curves

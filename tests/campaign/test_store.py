@@ -15,7 +15,7 @@ import pytest
 
 from doe_kc.campaign.runner import Campaign
 from doe_kc.campaign.store import Store, open_store, read_store
-from doe_kc.errors import DoeKcError, InputError, RunError
+from doe_kc.ground.errors import DoeKcError, InputError, RunError
 from tests.campaign.toys import Toy, designs, runs_of
 
 
@@ -155,7 +155,7 @@ SECOND = """
 import sys
 from pathlib import Path
 from doe_kc.campaign.store import open_store
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 from tests.campaign.toys import Toy
 try:
     open_store(Path(sys.argv[1]), Toy(Path("log")))

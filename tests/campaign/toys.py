@@ -14,7 +14,7 @@ import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import CaseCurves, CurveSet
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.true_solver.outcome import Outcome, failure, from_curves
 from doe_kc.true_solver.protocol import TrueSolver, digest
 

@@ -8,7 +8,7 @@ import pytest
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all, reduce_one, reduction_gradient
 from doe_kc.characteristics.reduction import fit_window, pad_travel, slope
 from doe_kc.curves import RESPONSE_UNITS, CaseCurves, CurveSet
-from doe_kc.solver.load_cases import LOAD_CASES
+from doe_kc.load_cases import LOAD_CASES
 
 HALF_TRACK = 790.0
 GRADIENTS = [i for i, c in CHARACTERISTICS.items() if c.kind == "gradient"]

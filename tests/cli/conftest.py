@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.reporting import comparison_figures, correlation_figures, influence_figures, rig_figures
-from doe_kc.workflow import discovery_handover
+from doe_kc.report import comparison_figures, correlation_figures, influence_figures, rig_figures
+from doe_kc.workflow import write_discovery as discovery_handover
 
 
 @pytest.fixture(autouse=True)

@@ -72,7 +72,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Correlated:
     study = study_in(tmp_path_factory.mktemp("example"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DOE_KC_COMPILE", "0")
-        patch.setattr("doe_kc.reporting.correlation_figures.write_correlation_figures", lambda *_, **__: [])
+        patch.setattr("doe_kc.report.correlation_figures.write_correlation_figures", lambda *_, **__: [])
         return Correlated(study, document_of(study))
 
 
@@ -317,8 +317,8 @@ def test_report_without_a_correlation(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_keeps_what_was_evaluated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from doe_kc.errors import RunError
-    from doe_kc.workflow import handover
+    from doe_kc.ground.errors import RunError
+    from doe_kc.workflow import write_correlation as handover
 
     study = study_in(tmp_path, budget=4)
 

@@ -12,9 +12,9 @@ from typing import Any
 import pandas as pd
 import pytest
 
-from doe_kc import output
-from doe_kc.errors import RunError
-from doe_kc.reporting import style, workbook_file
+from doe_kc.ground import output
+from doe_kc.ground.errors import RunError
+from doe_kc.report import style, workbook_file
 from tests.cli.runner import (
     AXLE,
     Outcome,

@@ -15,8 +15,8 @@ import pytest
 from doe_kc.axle import parameter_value, with_values
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.cli.changes import apply_effects, apply_settings
-from doe_kc.errors import InputError
-from doe_kc.solver.load_cases import CASE_ORDER
+from doe_kc.ground.errors import InputError
+from doe_kc.load_cases import CASE_ORDER
 from tests.cli.runner import AXLE, succeeds
 from tests.reference import CASE_NAMES, DATA, OTHER_PATHS, POINT_NAMES, nominal, reference_curves
 

@@ -21,10 +21,10 @@ from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate
 from doe_kc.correlation.problem import Problem
 from doe_kc.curves import CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import CurveGradients
 from doe_kc.targets import CharacteristicOptions, CurveTarget, Objective, build_targets
 from doe_kc.true_solver.outcome import Outcome, failure
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Change, VariableOptions, build_space
 
 AXLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"

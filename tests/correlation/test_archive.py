@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.ego.archive import UNRESOLVED, principal_axes
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import with_values
+from doe_kc.correlation.constraint_penalty import Walls
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Evaluated, Problem
-from doe_kc.correlation.walls import Walls
 from doe_kc.targets.options import CharacteristicOptions
 from tests.correlation.cases import outcome, problem, solver, truth
 

@@ -16,8 +16,8 @@ from doe_kc.correlation.methods import hybrid
 from doe_kc.correlation.methods._base import MethodSettings
 from doe_kc.correlation.methods.hybrid import Hybrid
 from doe_kc.correlation.problem import Candidate, Evaluated
+from doe_kc.ground.typing import FloatArray
 from doe_kc.true_solver.outcome import failure
-from doe_kc.typing import FloatArray
 from tests.correlation.synthetic import Synthetic, answer, at_random, solver, synthetic
 
 

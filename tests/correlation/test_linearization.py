@@ -7,9 +7,9 @@ import numpy as np
 from doe_kc.axle import with_values
 from doe_kc.characteristics import reduce_all
 from doe_kc.correlation.linearization import linearize
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.typing import FloatArray
 from doe_kc.variables import VariableOptions, build_space
 from tests.discovery.cases import nominal
 

@@ -13,8 +13,8 @@ from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import METHODS, Method, MethodSettings
 from doe_kc.correlation.pareto import infill
 from doe_kc.correlation.problem import Candidate, Evaluated
+from doe_kc.ground.typing import FloatArray
 from doe_kc.true_solver.outcome import Outcome, failure
-from doe_kc.typing import FloatArray
 from tests.correlation.synthetic import Fails, Synthetic, at_random, everywhere, solver, synthetic
 
 BUDGETS = {"smt_ego": 7, "gauss_newton": 15, "pareto": 30}

@@ -19,7 +19,7 @@ from doe_kc.correlation.pareto.modelled import ModelledObjectives
 from doe_kc.correlation.pareto.nsga3 import nsga3, reference_directions
 from doe_kc.correlation.pareto.objectives import objectives, relative_violation, weighted
 from doe_kc.correlation.problem import Candidate, Evaluated
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.targets import Targets, rate
 from tests.correlation.synthetic import Synthetic, answer, solver, synthetic
 

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.correlation.reach import Relaxation, conflict, out_of_reach, reaches, relaxation
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Constraint, Objective, Target
-from doe_kc.typing import FloatArray
 
 ENTRIES = list(CHARACTERISTICS.values())
 

@@ -10,7 +10,7 @@ from doe_kc.correlation.methods._base import MethodSettings
 from doe_kc.correlation.methods._smt import propose
 from doe_kc.correlation.methods.smt_ego import SmtEgo
 from doe_kc.correlation.problem import Candidate
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 from tests.correlation.synthetic import answer, synthetic
 
 

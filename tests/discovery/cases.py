@@ -22,10 +22,10 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.effects import EFFECTS, apply_effect, observed
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, reduce_measurement
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space, VariableOptions, build_space
 
 RIG = Path(__file__).parents[1] / "data" / "rig"

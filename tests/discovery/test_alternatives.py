@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.alternatives import Alternatives, alternatives
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.findings import findings
 from doe_kc.discovery.fit import last_member
 from doe_kc.discovery.search import EffectSearch
 from doe_kc.discovery.trials import HypothesisFit, plausible
+from doe_kc.discovery.workers import Bench
 from tests.discovery.cases import discovery
 
 BOTH = {"hub_compliance", "steering_friction"}

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from doe_kc.campaign.executors import processes
-from doe_kc.discovery import ledger as ledgers
-from doe_kc.discovery.bench import Bench, _packed_fit, _unpacked_fit
+from doe_kc.discovery import result_cache as ledgers
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.ledger import Ledger
+from doe_kc.discovery.result_cache import Ledger
 from doe_kc.discovery.screen import effort
 from doe_kc.discovery.search import tune
+from doe_kc.discovery.workers import Bench, _packed_fit, _unpacked_fit
 from tests.discovery.cases import library, model
 
 

@@ -13,7 +13,7 @@ from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screen import Screened, screen
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import VariableOptions, build_space
 from tests.discovery.cases import library, nominal, records
 

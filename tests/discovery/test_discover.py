@@ -9,10 +9,10 @@ import pytest
 
 from doe_kc.axle import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.discover import discover, resolved, shown_traces
-from doe_kc.discovery.ledger import Ledger
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.result_cache import Ledger
+from doe_kc.discovery.workers import Bench
 from doe_kc.measurement import reduce_measurement
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space

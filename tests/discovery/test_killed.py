@@ -12,18 +12,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.discover import discover
-from doe_kc.discovery.ledger import TABLE, Ledger
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.result_cache import TABLE, Ledger
+from doe_kc.discovery.workers import Bench
 from tests.discovery.cases import LATERAL, library, model
 
 SEARCH = """
 import os, signal, sys
 from pathlib import Path
-from doe_kc.discovery.bench import Bench
+from doe_kc.discovery.workers import Bench
 from doe_kc.discovery.discover import discover
-from doe_kc.discovery.ledger import Ledger
+from doe_kc.discovery.result_cache import Ledger
 from tests.discovery.cases import LATERAL, library, model
 
 put, fresh = Ledger.put, []

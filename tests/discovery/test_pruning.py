@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.fit import Fit, fit, to_errors, with_errors
-from doe_kc.discovery.granted import changes, closed, granted
+from doe_kc.discovery.law_discrepancy import changes, closed, granted
 from doe_kc.discovery.pruning import pruned
+from doe_kc.discovery.workers import Bench
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from doe_kc.discovery.exclusion import _trusted, standings, wrong_name_chance
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.screen import PROBE, SMALLER, follow, rescreened, screen
-from doe_kc.discovery.standing import _trusted, standings, wrong_name_chance
 from tests.discovery.cases import library, model
 
 

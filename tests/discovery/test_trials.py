@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.belief import believed, matters
-from doe_kc.discovery.bench import Bench
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search import with_conditioning
 from doe_kc.discovery.trials import HypothesisFit, stiffer_first
+from doe_kc.discovery.workers import Bench
 from doe_kc.effects.hypothesis import Size
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
 

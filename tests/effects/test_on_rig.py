@@ -10,8 +10,8 @@ import pytest
 from doe_kc.axle import Axle
 from doe_kc.curves import CurveSet
 from doe_kc.effects import apply_effect, observed
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES, PadRoll, Roll
 from doe_kc.solver.curve_set import curve_set, rising
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES, PadRoll, Roll
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 

@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.axle import parameter_value, with_values
 from doe_kc.characteristics import reduce_all
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.influence.selection import (
     FIX_FAILED,
     FIX_NO_INFLUENCE,

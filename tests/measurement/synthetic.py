@@ -12,9 +12,9 @@ import pandas as pd
 from scipy.interpolate import PchipInterpolator
 
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement.channels import RIG_NAMES
-from doe_kc.solver.load_cases import LOAD_CASES
-from doe_kc.typing import FloatArray
 
 DATA = Path(__file__).parents[1] / "data" / "reference"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "rig"

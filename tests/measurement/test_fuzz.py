@@ -9,7 +9,7 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.measurement import load_manifest, read_record
 from tests.measurement.synthetic import csv_text, record_columns
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.measurement.loops import split_loop
 from tests.measurement.synthetic import triangle
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.measurement import load_manifest
 from tests.measurement.synthetic import EXAMPLE
 

@@ -10,9 +10,9 @@ import openpyxl
 import pytest
 
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.load_cases.roll import CounterPhaseRoll
 from doe_kc.measurement import read_record
-from doe_kc.solver.load_cases.roll import CounterPhaseRoll
 from tests.measurement.synthetic import EXAMPLE, csv_text, record_columns
 
 TEXT = csv_text(record_columns("vertical", samples=128))

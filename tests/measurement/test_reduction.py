@@ -9,10 +9,10 @@ import pytest
 
 from doe_kc.characteristics import reduce_all
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement import Measurement, measurement_to_frames, reduce_measurement
 from doe_kc.measurement.frames import CHARACTERISTIC_COLUMNS, CURVE_COLUMNS
-from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES
 from tests.measurement.synthetic import EXAMPLE, Errors, csv_text, record_columns, reference, write_rig
 
 

@@ -7,12 +7,12 @@ import matplotlib
 import pytest
 
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.measurement import Measurement
-from doe_kc.pictures import PictureFormat
-from doe_kc.reporting.rig_figures import rig_figure
-from doe_kc.reporting.sheet import sheet
-from doe_kc.reporting.style import PALETTE, save
+from doe_kc.report.rig_figures import rig_figure
+from doe_kc.report.sheet import sheet
+from doe_kc.report.style import PALETTE, save
 
 
 def test_every_panel_has_its_unit(car_a: Measurement) -> None:

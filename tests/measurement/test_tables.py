@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.measurement import tables
 from doe_kc.measurement.tables import Cell, RecordTable, column_numbers, number_at
 

@@ -10,7 +10,7 @@ import pytest
 
 from doe_kc.axle import design_parameters, with_values
 from doe_kc.axle.parameters import Parameter
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.sampling import SAMPLERS, Design, Sampler, sample
 from doe_kc.sampling._base import sampler
 from doe_kc.variables import Change, Space, VariableOptions, build_space

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.sampling import Design, sample
 from doe_kc.variables import Change, VariableOptions, build_space
 from tests.reference import nominal

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from doe_kc.load_cases import CASE_ORDER
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.load_cases import CASE_ORDER
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from tests.reference import nominal, variant

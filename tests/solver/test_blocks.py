@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from doe_kc.axle.topology import Topology
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change, interpreted_blocks
 from doe_kc.solver.compiled import find_compiler
 from doe_kc.solver.kernel import kernel
 from doe_kc.solver.suite import solve
-from doe_kc.solver.topology import Topology
-from doe_kc.typing import FloatArray
 from tests.reference import nominal
 
 PLAIN = nominal().topology

@@ -16,12 +16,12 @@ import pytest
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
 from doe_kc.effects import EFFECTS
+from doe_kc.load_cases import CASE_ORDER, LOAD_CASES, Datum
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver import elements
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.elements._base import STAGES
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
-from doe_kc.solver.load_cases import CASE_ORDER, LOAD_CASES, Datum
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from tests.reference import DATA
 
 HERE = Path(__file__).parent

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
-from doe_kc.axle.read import axle_from_document
+from doe_kc.axle_file.read import axle_from_document
 from doe_kc.effects import apply_effect
-from doe_kc.errors import DoeKcError, RunError
+from doe_kc.ground.errors import DoeKcError, RunError
 from doe_kc.solver.diagnosis import unresisted
 from doe_kc.solver.kernel import kernel
 from doe_kc.solver.march import Halt, NewtonSettings

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
+from doe_kc.axle.topology import Topology
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, CurveSet
 from doe_kc.effects import apply_effect
 from doe_kc.effects.subframe_flexibility import JOINT_STIFFNESS
@@ -23,7 +24,6 @@ from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.march import NewtonSettings
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.suite import solve
-from doe_kc.solver.topology import Topology
 from tests.reference import nominal
 
 SMALL = 1e-3

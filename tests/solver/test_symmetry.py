@@ -10,11 +10,11 @@ import pytest
 
 from doe_kc.axle import Axle, with_values
 from doe_kc.axle.model import BUSHINGS
-from doe_kc.axle.read import axle_from_document
+from doe_kc.axle_file.read import axle_from_document
 from doe_kc.effects import apply_effect
+from doe_kc.load_cases import LoadCase
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.elements.responses import OUTPUT_UNITS
-from doe_kc.solver.load_cases import LoadCase
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.march import NewtonSettings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve

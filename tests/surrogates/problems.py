@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import qmc
 
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 VARIABLES = 5
 

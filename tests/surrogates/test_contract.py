@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.surrogates.interface import Fitted, LeftOut
 from doe_kc.surrogates.models import SURROGATES, make
 from doe_kc.surrogates.training import Scaling

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.reporting.surrogate_figures import model_quality, predicted_against_true, write_surrogate_figures
+from doe_kc.report.surrogate_figures import model_quality, predicted_against_true, write_surrogate_figures
 from doe_kc.surrogates.designs import Designs
 from doe_kc.surrogates.influence import Agreement
 from doe_kc.surrogates.report import SurrogateReport

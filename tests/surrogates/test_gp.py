@@ -10,14 +10,14 @@ import pytest
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF, ConstantKernel, DotProduct
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.cholesky import inverse_roots, inverses
 from doe_kc.surrogates.kernel import CovarianceKernel, training_covariance
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn
 from doe_kc.surrogates.models.gp import FirstOrderTrend, FittedGaussianProcess, GaussianProcess
 from doe_kc.surrogates.posterior import condition
-from doe_kc.threads import one_thread
-from doe_kc.typing import FloatArray
 from tests.surrogates.problems import differences, points, problem
 
 P = problem()

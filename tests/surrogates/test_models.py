@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from smt.surrogate_models import KPLS, KRG, RBF
 
+from doe_kc.ground.threads import one_thread
 from doe_kc.surrogates.interface import Surrogate
 from doe_kc.surrogates.legendre import all_terms, features, jacobian
 from doe_kc.surrogates.models import make
@@ -15,7 +16,6 @@ from doe_kc.surrogates.models.linear import Linear
 from doe_kc.surrogates.models.rbf import FittedRadialBasis, RadialBasis
 from doe_kc.surrogates.ordinary_kriging import OrdinaryKriging, ordinary_kriging
 from doe_kc.surrogates.ridge import FittedLinear
-from doe_kc.threads import one_thread
 from tests.surrogates.problems import differences, points, problem
 
 P = problem()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle.parameters import Parameter
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.surrogates.calibration import Calibrated, calibration_factors, coverage_after, scaled
 from doe_kc.surrogates.folds import fold_rows, refit_folds
 from doe_kc.surrogates.interface import LeftOut

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from doe_kc.comparison.deviation import rms_deviation
-from doe_kc.comparison.interval import constraint_interval
-from doe_kc.errors import InputError
-from doe_kc.files import validate
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.files import validate
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.targets import CharacteristicOptions, CurveOptions, Targets, build_targets, score
+from doe_kc.targets.comparison.deviation import rms_deviation
+from doe_kc.targets.comparison.interval import constraint_interval
 from tests.correlation.cases import measured
 from tests.reference import nominal
 

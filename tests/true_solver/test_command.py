@@ -19,8 +19,8 @@ import pytest
 from doe_kc.axle import Axle, read_axle, with_values
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.effects import apply_effect
-from doe_kc.errors import InputError
-from doe_kc.reporting.simulation_tables import curves_frame
+from doe_kc.ground.errors import InputError
+from doe_kc.report.simulation_tables import curves_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver.answer import read_characteristics

@@ -12,9 +12,9 @@ from doe_kc.axle import Axle, with_values
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.effects import apply_effect
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver import own
 from doe_kc.true_solver.make import solver_for

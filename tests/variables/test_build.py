@@ -9,8 +9,8 @@ import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.axle.model import Axle
-from doe_kc.errors import InputError
-from doe_kc.files import validate
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.files import validate
 from doe_kc.variables import Space, VariableOptions, build_space
 from doe_kc.variables.build import Advice
 from tests.reference import nominal

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from doe_kc.discovery.options import DiscoveryOptions
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.study import read_study
 from doe_kc.workflow.adopt import adopt, adopted
 from tests.discovery.cases import discovery

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.study import read_study
 from doe_kc.workflow.check import Fault, check_study
 from doe_kc.workflow.correlate import study_problem

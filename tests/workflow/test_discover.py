@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
 from doe_kc.measurement import reduce_measurement
 from doe_kc.study import read_study
 from doe_kc.variables import VariableOptions

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import design_parameters, read_axle
-from doe_kc.comparison import Comparison
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.output import write_json
+from doe_kc.ground.output import write_json
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
+from doe_kc.targets.comparison import Comparison
 from doe_kc.workflow.compare import compare_model, comparison_document, comparison_lines
 from doe_kc.workflow.influence import influence_runs, study_influence
 from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document

@@ -6,8 +6,8 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument
-from doe_kc.errors import InputError
-from doe_kc.output import write_json
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.output import write_json
 from doe_kc.workflow.check import StudyCheck, check_study
 
 

@@ -7,20 +7,20 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.live import live_rating
 from doe_kc.cli.options import SchedulerOption
+from doe_kc.cli.study_options import Given, takes_study
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.output import write_json
 from doe_kc.influence.selection_result import Selection
-from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.correlate import correlate as run_correlation
-from doe_kc.workflow.handover import AXLE, correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.measure import Reduced, study_records
-from doe_kc.workflow.recall import write_run
+from doe_kc.workflow.reload_correlation import write_run
+from doe_kc.workflow.write_correlation import AXLE, correlation_document, correlation_lines, write_correlation
 
 CORRELATED_AXLE = (
     "{axle}: the study's axle tuned as it is; what it may lack is not looked for. doe-kc run does that first "

@@ -8,16 +8,16 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.progress import described_bar
+from doe_kc.cli.study_options import Given, takes_study
 from doe_kc.discovery.result import Discovery
+from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
-from doe_kc.output import write_json
 from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study, expected_steps
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
-from doe_kc.workflow.discovery_handover import AXLE, write_discovery
 from doe_kc.workflow.measure import study_measurement
+from doe_kc.workflow.write_discovery import AXLE, write_discovery
 
 DISCOVERED_AXLE = (
     "{axle}: refitted to the records with what was found, not yet correlated to the targets; doe-kc run does "

@@ -5,12 +5,12 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.progress import progress_bar
+from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.ground.output import write_json
 from doe_kc.influence.relations import relations
 from doe_kc.influence.result import Influence
 from doe_kc.measurement import reduce_measurement
-from doe_kc.output import write_json
 from doe_kc.workflow.influence import (
     influence_document,
     influence_runs,

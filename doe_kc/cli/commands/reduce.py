@@ -5,9 +5,9 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.given import Given, takes_study
+from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.ground.output import write_json
 from doe_kc.measurement import RideHeight
-from doe_kc.output import write_json
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.workflow.compare import compare_model, comparison_lines, write_comparison

@@ -5,14 +5,14 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.given import Given, takes_study
-from doe_kc.output import write_json
+from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.ground.output import write_json
 from doe_kc.workflow.answer import answer_lines
-from doe_kc.workflow.answer_handover import AXLE, write_answer
 from doe_kc.workflow.compare import compare_model, write_comparison
-from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.measure import study_records
-from doe_kc.workflow.recall import recall
+from doe_kc.workflow.reload_correlation import recall
+from doe_kc.workflow.write_answer import AXLE, write_answer
+from doe_kc.workflow.write_correlation import correlation_document, correlation_lines, write_correlation
 
 NO_RUN = (
     "No run is stored, only a correlation: axle.toml, index.html and summary.json in {out} were not rebuilt; "

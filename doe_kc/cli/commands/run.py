@@ -12,27 +12,27 @@ from doe_kc.cli.commands.correlate import correlated, leave_unless_usable
 from doe_kc.cli.commands.discover import discovered
 from doe_kc.cli.commands.influence import influence_lines
 from doe_kc.cli.commands.reduce import ride_height_line
-from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
+from doe_kc.cli.study_options import Given, takes_study
 from doe_kc.correlation.result import Correlation
+from doe_kc.ground.output import write_json
 from doe_kc.influence.selection_result import Selection
-from doe_kc.output import write_json
-from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
+from doe_kc.report.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.answer import answer_lines, answer_record, summary_document
-from doe_kc.workflow.answer_handover import AXLE, write_answer
 from doe_kc.workflow.chain import Steps, follow_chain
 from doe_kc.workflow.compare import compare_model, comparison_document, write_comparison
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
-from doe_kc.workflow.discovery_handover import write_discovery
-from doe_kc.workflow.handover import correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.influence import influence_document, influence_runs, study_influence, write_influence
 from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document, write_reduced
-from doe_kc.workflow.recall import write_chain
+from doe_kc.workflow.reload_correlation import write_chain
+from doe_kc.workflow.write_answer import AXLE, write_answer
+from doe_kc.workflow.write_correlation import correlation_document, correlation_lines, write_correlation
+from doe_kc.workflow.write_discovery import write_discovery
 
 
 @app.command("run")

@@ -16,10 +16,10 @@ from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.cli._app import app
 from doe_kc.cli.changes import apply_effects, apply_settings
 from doe_kc.cli.options import JsonOption
-from doe_kc.errors import InputError, nearest
-from doe_kc.output import write_json
-from doe_kc.reporting.simulation_tables import characteristics_document, write_simulation
-from doe_kc.solver.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.output import write_json
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.report.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.suite import solve
 
 log = logging.getLogger("doe_kc")

@@ -8,14 +8,14 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.given import Given, takes_study
 from doe_kc.cli.progress import progress_bar
+from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.ground.output import write_json
 from doe_kc.measurement import reduce_measurement
-from doe_kc.output import write_json
 from doe_kc.study import Study
-from doe_kc.workflow.surrogate_handover import surrogate_lines, surrogates_document, write_surrogates
 from doe_kc.workflow.surrogate_plan import plan_surrogates
 from doe_kc.workflow.surrogates import run_surrogates
+from doe_kc.workflow.write_surrogates import surrogate_lines, surrogates_document, write_surrogates
 
 
 @app.command("surrogates")

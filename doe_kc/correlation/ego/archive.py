@@ -11,8 +11,8 @@ from scipy.linalg import qr, svd
 
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.problem import Evaluated
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 
 UNRESOLVED = 2e-3
 """RMS over Norm that the left-out principal components of a curve may have: a tenth of a rig's noise."""

@@ -17,8 +17,8 @@ from scipy.stats import norm, qmc
 
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.ego.proposal import Box
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
-from doe_kc.typing import FloatArray
 
 IMPROVEMENT_SAMPLES = 64
 SHARPNESS = 1e-2

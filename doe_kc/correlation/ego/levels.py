@@ -13,8 +13,8 @@ import numpy as np
 
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.prior import Prior
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
-from doe_kc.typing import FloatArray
 
 MOVES = 60
 FLAT = 1e-9

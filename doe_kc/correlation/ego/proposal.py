@@ -10,8 +10,8 @@ import numpy as np
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.prior import Prior
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
-from doe_kc.typing import FloatArray
 
 PROPOSAL_STEPS = 30
 STEP_GAIN = 1e-4

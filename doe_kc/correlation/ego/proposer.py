@@ -14,11 +14,11 @@ from doe_kc.correlation.ego.proposal import Box, gauss_newton
 from doe_kc.correlation.ego.strategy import AVERSION, Kind, Strategy
 from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.problem import Candidate, RatingForecast
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
 from doe_kc.surrogates.training import constant_outputs
 from doe_kc.surrogates.varying import fit_varying
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 HALF_WIDTH = 0.3

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.correlation.hybrid.search import SearchTrial
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 LEAST_CREDIT = 0.05
 """Probability that every search keeps."""

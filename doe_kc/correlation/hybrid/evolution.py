@@ -9,7 +9,7 @@ import numpy as np
 from doe_kc.correlation.hybrid.record import SearchHistory
 from doe_kc.correlation.hybrid.search import CandidateSearch, SearchTrial
 from doe_kc.correlation.problem import Candidate
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 POPULATION = 30
 TOP_SHARE = 0.2

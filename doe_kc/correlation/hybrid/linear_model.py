@@ -12,8 +12,8 @@ from typing import final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
-from doe_kc.typing import FloatArray
 
 STEP_RIDGE = 1e-6
 """Share of the mean square of the steps: below what one level changes."""

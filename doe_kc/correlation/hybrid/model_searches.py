@@ -13,9 +13,9 @@ from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
 from doe_kc.correlation.hybrid.record import SearchHistory
 from doe_kc.correlation.hybrid.search import CandidateSearch, SearchTrial
 from doe_kc.correlation.problem import Candidate
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.training import constant_outputs
-from doe_kc.typing import FloatArray
 
 FIRST_RADIUS, LARGEST, SMALLEST = 0.2, 0.5, 0.01
 SHRINK, GROW = 0.5, 1.6

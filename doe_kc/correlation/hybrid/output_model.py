@@ -9,11 +9,11 @@ from doe_kc.correlation.ego.archive import Archive
 from doe_kc.correlation.ego.levels import on_levels
 from doe_kc.correlation.ego.proposal import Box, gauss_newton
 from doe_kc.correlation.problem import Problem, RatingForecast
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.learning import Learning
 from doe_kc.surrogates.models.gp import GaussianProcess
 from doe_kc.surrogates.varying import fit_varying
-from doe_kc.typing import FloatArray
 from doe_kc.variables import Space
 
 RATING_SAMPLES = 64

@@ -10,8 +10,8 @@ import numpy as np
 from doe_kc.correlation.ego.archive import Archive, build_archive
 from doe_kc.correlation.hybrid.output_model import fit_outputs, level_steps
 from doe_kc.correlation.problem import Evaluated, Problem
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
-from doe_kc.typing import FloatArray
 
 ROWS = 160
 """Designs that surrogates are fitted to, those nearest the best one: the cost grows with their cube."""

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from doe_kc.correlation.options import Gradients
-from doe_kc.errors import InputError, nearest
-from doe_kc.registry import Members
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.registry import Members
 
 if TYPE_CHECKING:
     from doe_kc.correlation.problem import Candidate, Evaluated, Problem

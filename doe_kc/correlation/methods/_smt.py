@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.errors import RunError
-from doe_kc.typing import FloatArray
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)

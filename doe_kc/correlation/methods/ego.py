@@ -21,9 +21,9 @@ from doe_kc.correlation.ego.first_order import first_order
 from doe_kc.correlation.ego.proposer import Proposer, fitted
 from doe_kc.correlation.ego.strategy import PATIENCE_WITH_SLOPES, PROPOSAL_CYCLE, Strategy
 from doe_kc.correlation.ego.trust import Trust
+from doe_kc.correlation.initial_design import Opening
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
-from doe_kc.correlation.opening import Opening
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
 

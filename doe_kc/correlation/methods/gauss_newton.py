@@ -15,13 +15,13 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
+from doe_kc.correlation.constraint_penalty import Walls
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.methods._base import Method, MethodSettings, best_design, register
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem, RatingForecast
-from doe_kc.correlation.walls import Walls
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
-from doe_kc.typing import FloatArray
 
 LEAST_DECREASE = 0.01
 """Predicted decrease of the sum of squares below which the fit stands: a tenth of a standard deviation."""

@@ -26,7 +26,7 @@ from doe_kc.correlation.pareto.modelled import ModelledObjectives
 from doe_kc.correlation.pareto.nsga3 import check_installed
 from doe_kc.correlation.pareto.objectives import objectives
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 ROUND = 5
 """Designs of a round at least: one search for the front is dearer than a fit."""

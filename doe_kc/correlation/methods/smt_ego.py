@@ -18,7 +18,7 @@ from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.methods._smt import Proposal, propose
 from doe_kc.correlation.problem import Candidate, Problem, RatingForecast
-from doe_kc.errors import RunError
+from doe_kc.ground.errors import RunError
 
 SMT_DESIGNS = 3
 """Designs with an answer that the surrogate needs."""

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from doe_kc.correlation.pareto.objectives import Objectives, objectives, relative_violation
 from doe_kc.correlation.problem import Evaluated
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 
 VIOLATION = "constraint violation"
 LOSS_LIMIT = 3.0

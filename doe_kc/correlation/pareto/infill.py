@@ -11,7 +11,7 @@ from doe_kc.correlation.hybrid.record import SearchHistory
 from doe_kc.correlation.pareto.front import bearable, non_dominated
 from doe_kc.correlation.pareto.modelled import ModelledObjectives
 from doe_kc.correlation.pareto.nsga3 import Judge, nsga3, reference_directions
-from doe_kc.typing import FloatArray
+from doe_kc.ground.typing import FloatArray
 
 GENERATIONS = 40
 STRESS = 4.0

@@ -9,9 +9,9 @@ import numpy as np
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.ego.archive import Archive, principal_axes
 from doe_kc.correlation.pareto.objectives import Objectives, only_constraints, weighted
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.targets import Targets
-from doe_kc.typing import FloatArray
 
 
 class ModelledObjectives:

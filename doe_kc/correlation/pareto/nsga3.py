@@ -11,8 +11,8 @@ from math import comb
 
 import numpy as np
 
-from doe_kc.errors import InputError
-from doe_kc.typing import FloatArray
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 
 Judge = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 """Objectives (p, g), to be minimized, and violation (p,), 0 when feasible, of points (p, d)."""

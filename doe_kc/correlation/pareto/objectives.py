@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Objective, Rating, Target, Targets
-from doe_kc.typing import FloatArray
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 
-from doe_kc.registry import import_members
+from doe_kc.ground.registry import import_members
 from doe_kc.solver.elements._base import ELEMENTS, Element, element
 
 import_members(sys.modules[__name__])

@@ -14,9 +14,9 @@ import casadi as ca
 import numpy as np
 from scipy.special import gammaincinv
 
+from doe_kc.axle.topology import FrictionLaw
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements._base import SIDES, Element, Stage, element
-from doe_kc.solver.topology import FrictionLaw
 
 IWAN_ELEMENTS = 8
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from doe_kc.registry import import_members
+from doe_kc.ground.registry import import_members
 from doe_kc.surrogates.models._base import SURROGATES, make, register
 
 import_members(sys.modules[__name__])

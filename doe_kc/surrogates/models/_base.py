@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from doe_kc.errors import InputError, nearest
+from doe_kc.ground.errors import InputError, nearest
 from doe_kc.surrogates.interface import Surrogate
 
 SURROGATES: dict[str, type[Surrogate]] = {}

@@ -7,14 +7,14 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.errors import InputError
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates import posterior as gp
 from doe_kc.surrogates.interface import Fitted, LeftOut, Prediction, Surrogate
 from doe_kc.surrogates.kernel import CovarianceKernel
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn, pinned_kernel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.training import Scaling
-from doe_kc.typing import FloatArray
 
 DEFAULT = Learning()
 ROUND_OFF_SHARE = 1e-6

@@ -9,6 +9,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates import posterior as gp
 from doe_kc.surrogates.interface import Fitted, Surrogate
 from doe_kc.surrogates.kernel import CovarianceKernel
@@ -16,7 +17,6 @@ from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.models.gp import FittedGaussianProcess
 from doe_kc.surrogates.scikit_library import ArdParameters, train_ard
 from doe_kc.surrogates.training import Scaling
-from doe_kc.typing import FloatArray
 
 
 @final

@@ -7,11 +7,11 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, Surrogate
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ordinary_kriging import ordinary_kriging
 from doe_kc.surrogates.smt_library import train_kriging
-from doe_kc.typing import FloatArray
 
 
 @final

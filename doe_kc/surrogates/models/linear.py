@@ -7,10 +7,10 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, Surrogate
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ridge import RIDGE_PENALTIES, fit_ridge
-from doe_kc.typing import FloatArray
 
 
 @final

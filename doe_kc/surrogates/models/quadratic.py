@@ -7,13 +7,13 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.folds import fold_rows
 from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
 from doe_kc.surrogates.legendre import Terms, all_terms, feature_slopes, features, jacobian
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ridge import FittedLinear, fit_ridge
 from doe_kc.surrogates.scikit_library import PenaltyPath, lasso_path
-from doe_kc.typing import FloatArray
 
 QUADRATIC_PENALTIES = np.logspace(0.0, -3.0, 25)
 """Candidates, as share of the smallest penalty that leaves no term."""

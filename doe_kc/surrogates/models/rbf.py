@@ -7,12 +7,12 @@ from typing import ClassVar, final
 
 import numpy as np
 
+from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ordinary_kriging import correlation
 from doe_kc.surrogates.smt_library import RadialFit, train_rbf
 from doe_kc.surrogates.training import Scaling
-from doe_kc.typing import FloatArray
 
 WIDTHS = (1.0, 2.0, 4.0)
 """Candidates for the width, in typical distances sqrt(d / 6) of two random points of the unit cube."""

@@ -8,8 +8,8 @@ import casadi as ca
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from doe_kc.axle.topology import Topology
 from doe_kc.solver.builder import Body, Builder, body
-from doe_kc.solver.topology import Topology
 from tests.reference import nominal
 
 SIDES = ("L", "R")

@@ -1,0 +1,103 @@
+"""Where an axle file holds each internal value, and how to change one entry without touching the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, MutableMapping
+from typing import Any
+
+import tomlkit
+
+from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS, strut_clamp
+from doe_kc.axle_file.schema import AxleFile
+from doe_kc.effects import EFFECTS
+
+Place = tuple[str | int, ...]
+"""Keys and indices from the top of the file to one number."""
+
+
+def effect_id(key: str) -> str:
+    """Id of the effect that a table's name stands for."""
+    return next((e.id for e in EFFECTS.values() if e.table == key), key)
+
+
+def own_place(name: str) -> Place:
+    """Where the file holds an internal value; empty when only an effect can give it."""
+    path = name.split("@")[0]
+    head, _, rest = path.partition(".")
+    if name.endswith("@R"):
+        return ("right", path)
+    if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
+        return ("hardpoints", head, "xyz".index(rest))
+    if head in BUSHINGS:
+        return ("bushings", head, *(["factor", rest] if rest in BUSHING_AXES else rest.split(".")))
+    return (head, rest) if rest in _keys(head) else (head,) if path in AxleFile.model_fields else ()
+
+
+def _keys(table: str) -> set[str]:
+    """Keys that the file may have in a table."""
+    field = AxleFile.model_fields.get(table)
+    return set(getattr(field.annotation, "model_fields", {})) if field is not None else set()
+
+
+def path_of(name: str) -> str:
+    """Parameter path of an internal value, its side named when it is the right one."""
+    return f"right.{name[:-2]}" if name.endswith("@R") else name.removesuffix("@L")
+
+
+def option_places(effects: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[Place, float]]:
+    """Every number among the effects' options, defaults included."""
+    for key, given in effects.items():
+        ident = effect_id(key)
+        defaults = {k: o.default for k, o in EFFECTS[ident].options.items()}
+        yield from _numbers(("effects", key), defaults | dict(given))
+
+
+def _numbers(place: Place, value: Any) -> Iterator[tuple[Place, float]]:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _numbers((*place, key), inner)
+    elif isinstance(value, list | tuple):
+        for i, inner in enumerate(value):
+            yield from _numbers((*place, i), inner)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield place, float(value)
+
+
+def entry(document: Any, place: Place) -> Any:
+    """The entry at a place, None when there is none."""
+    for key in place:
+        if not isinstance(key, int) and key not in document:
+            return None
+        document = document[key]
+    return document
+
+
+def put_entry(document: MutableMapping[str, Any], place: Place, value: Any) -> None:
+    """Set one entry, making the tables on the way; comments beside it stay."""
+    *way, last = place
+    table: Any = document
+    for depth, key in enumerate(way):
+        if not isinstance(key, int) and key not in table:
+            table[key] = _new(document, place, depth)
+        table = table[key]
+    table[last] = value
+
+
+def _new(document: Mapping[str, Any], place: Place, depth: int) -> Any:
+    """An empty table as its place is written by hand: inline for what a bushing has per axis."""
+    if place[0] == "bushings" and depth == 2:
+        return tomlkit.inline_table()
+    if place[0] == "hardpoints":
+        return strut_clamp(document["hardpoints"])  # the only one that a file may lack
+    return tomlkit.table(is_super_table=place[0] == "effects" and depth == 0)
+
+
+def restore_entry(document: MutableMapping[str, Any], place: Place, before: Any) -> None:
+    """Put an entry back, or take it out when there was none."""
+    if before is not None:
+        put_entry(document, place, before)
+        return
+    table = entry(document, place[:-1])
+    del table[place[-1]]
+    if not table and place[0] == "right":
+        del document["right"]

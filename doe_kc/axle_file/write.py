@@ -1,0 +1,174 @@
+"""Writes a changed axle: the original file's text and comments, only the values that changed replaced."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomlkit
+
+from doe_kc import __version__
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import parameter_value
+from doe_kc.axle_file.effect_tables import set_effects
+from doe_kc.axle_file.load_case_tables import set_conditioning
+from doe_kc.axle_file.places import (
+    Place,
+    entry,
+    option_places,
+    own_place,
+    path_of,
+    put_entry,
+    restore_entry,
+)
+from doe_kc.axle_file.read import axle_from_document
+from doe_kc.ground.errors import InputError, RunError
+from doe_kc.ground.files import read_bytes, read_toml
+from doe_kc.ground.output import write_whole
+
+AXLE_HEADER = "# Written by doe_kc"
+WRITE_CORRECTIONS = 4
+"""Corrections of a place until the axle reads as wanted: what moves with a value follows in the next."""
+NUDGES = 8
+"""Neighbouring floating-point numbers tried where right = left + difference is rounded."""
+TOLERANCE = 1e-12
+"""Relative; a right-side value of the opposite sign can miss by the last digit."""
+
+
+def write_axle(axle: Axle, original: Path, path: Path, *, note: str = "") -> Path:
+    """TOML of `axle`, made from the file that it came from; `read_axle(path)` gives the same values.
+
+    Comments, order and unchanged numbers stay; missing keys and tables are added where they belong. A first
+    line says what wrote it. note: goes into that line. RunError when a value has no place in the file beside
+    one of its effects, or the file cannot be written.
+    """
+    read_toml(original)  # its messages name line and remedy
+    text = read_bytes(original, "TOML file").decode("utf-8")
+    document = tomlkit.parse(text)
+    set_effects(document, axle)
+    set_conditioning(document, axle)
+    if not _fit(document, axle):
+        _fit_without_an_effect(document, axle, str(path))
+    content = _with_header(tomlkit.dumps(document), original, note)
+    return write_whole(path, lambda p: p.write_bytes(content.encode("utf-8")))
+
+
+def _with_header(text: str, original: Path, note: str) -> str:
+    line = f"{AXLE_HEADER} {__version__} from {original.name}" + (f": {note}" if note else "")
+    line = "".join(c if c.isprintable() else " " for c in line)
+    end = "\r\n" if "\r\n" in text else "\n"
+    if text.startswith(AXLE_HEADER):
+        text = text.partition("\n")[2]
+    # Tables that were added end their lines with \n in a file of any kind.
+    return f"{line}\n{text}".replace("\r\n", "\n").replace("\n", end)
+
+
+def _read(document: tomlkit.TOMLDocument) -> Axle:
+    return axle_from_document(document.unwrap(), source="axle")
+
+
+def _wrong(document: tomlkit.TOMLDocument, axle: Axle) -> list[str]:
+    """Internal values that do not read as wanted, the left side's first."""
+    now = _read(document).values
+    return sorted((n for n, v in axle.values.items() if now.get(n) != v), key=lambda n: n.endswith("@R"))
+
+
+def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
+    """Change the document until it reads as the axle; False when that cannot be."""
+    drivers = _drivers(document)
+    for _ in range(WRITE_CORRECTIONS):
+        wrong = [n for n in _wrong(document, axle) if n not in drivers and own_place(n)]
+        left = [n for n in wrong if not n.endswith("@R")]
+        for name in left or wrong:
+            put_entry(document, own_place(name), parameter_value(axle, path_of(name)))
+    for name in _wrong(document, axle):
+        places = [own_place(name), *drivers.get(name, [])]
+        any(_solve(document, axle, name, place) for place in places if place)
+    return _agrees(document, axle)
+
+
+def _agrees(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
+    now = _read(document)
+    return now.topology == axle.topology and all(
+        abs(now.values.get(n, np.nan) - v) <= TOLERANCE * abs(v) for n, v in axle.values.items()
+    )
+
+
+def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: str) -> None:
+    """An effect may hold a value that the file's own keys can say: leave such a one out."""
+    for ident in list(document.get("effects", {})):
+        trial = tomlkit.parse(tomlkit.dumps(document))
+        del trial["effects"][ident]
+        if _fit(trial, axle):
+            del document["effects"][ident]
+            _fit(document, axle)
+            return
+    names = ", ".join(dict.fromkeys(path_of(n) for n in _wrong(document, axle))) or "its topology"
+    effects = ", ".join(axle.effects) or "none"
+    raise RunError(
+        f"{source}: {names} cannot be written beside the axle's effects ({effects}); "
+        "leave them out of the variables."
+    )
+
+
+def _drivers(document: tomlkit.TOMLDocument) -> dict[str, list[Place]]:
+    """Internal value -> options of effects that it moves with, found by changing each a little."""
+    base = _read(document).values
+    out: dict[str, list[Place]] = {}
+    for place, value in list(option_places(document.unwrap().get("effects", {}))):
+        trial = document.unwrap()
+        put_entry(trial, place, value * 1.0001 if value else 1e-4)
+        for name, moved in axle_from_document(trial, source="axle").values.items():
+            if moved != base[name]:
+                out.setdefault(name, []).append(place)
+    return out
+
+
+def _solve(document: tomlkit.TOMLDocument, axle: Axle, name: str, place: Place) -> bool:
+    """Change one number until the internal value reads as wanted; undone when it does not answer."""
+    path = path_of(name)
+    want, before = parameter_value(axle, path), entry(document, place)
+    readings: dict[float, float] = {}
+    for trial in _secant(readings, want, before):
+        readings[trial] = _reading(document, place, trial, path)
+    best = min(readings, key=lambda t: abs(readings[t] - want))
+    if len(set(readings.values())) < 2 or not np.isfinite(readings[best]):
+        restore_entry(document, place, before)
+        return False
+    for trial in _neighbours(best):
+        if readings[best] == want:
+            break
+        readings[trial] = _reading(document, place, trial, path)
+        best = min((best, trial), key=lambda t: abs(readings[t] - want))
+    put_entry(document, place, best)
+    return readings[best] == want
+
+
+def _secant(readings: Mapping[float, float], want: float, before: Any) -> Iterator[float]:
+    """Numbers to try: a neighbour to compare with, the wanted one, then where the line through two leads."""
+    yield float(before) if isinstance(before, int | float) and before != want else want * 1.001 + 1e-6
+    yield want
+    for _ in range(WRITE_CORRECTIONS):
+        (t0, g0), (t1, g1) = list(readings.items())[-2:]
+        if g1 in (want, g0) or not np.isfinite([g0, g1]).all():
+            return
+        yield t1 + (want - g1) * (t1 - t0) / (g1 - g0)
+
+
+def _neighbours(value: float) -> Iterator[float]:
+    below = above = value
+    for _ in range(NUDGES):
+        below, above = float(np.nextafter(below, -np.inf)), float(np.nextafter(above, np.inf))
+        yield below
+        yield above
+
+
+def _reading(document: tomlkit.TOMLDocument, place: Place, value: float, path: str) -> float:
+    """The chassis value of a path with one number of the document changed; nan when no axle has it."""
+    put_entry(document, place, value)
+    try:
+        return parameter_value(_read(document), path)
+    except InputError:
+        return np.nan

@@ -1,0 +1,144 @@
+"""What the law of an effect leaves open, granted as a further error of the records.
+
+An effect that is in the model follows a law of its own in the car: a compliance stiffens, a friction breaks
+away more softly. Without this, the difference would be taken for another effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, cholesky
+
+from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
+from doe_kc.curves import TYRE_LOAD
+from doe_kc.discovery.fit import Fit, followed, with_errors
+from doe_kc.discovery.model import EffectModel
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+from doe_kc.measurement.noise import smooth_correlation
+
+DISCREPANCY_SHARES = (0.0, 0.01, 0.02, 0.05, 0.1)
+"""Standard deviations, relative to what the model's law makes of a curve, that are tried for another law."""
+LENGTH = 0.5
+"""Correlation length of that ratio over the input, as a fraction of its amplitude."""
+
+
+@dataclass(frozen=True)
+class Made:
+    """What one member makes: change of every curve (n,), the largest of each response and branches, and the
+    sum of squares in the records' errors.
+
+    sticks: a friction, whose smaller loops hang on the shape of its law, so that each curve's scale is open
+    too; an elastic law's scale is the same in every curve, which is what tells effects apart.
+    """
+
+    changes: tuple[FloatArray, ...]
+    largest: Mapping[tuple[str, Branches], float]
+    sticks: bool
+    square: float
+
+
+def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
+    """The fit with the laws of its effects left open by as much as the records ask for, and by how much.
+
+    exact: to the records' own errors. The share of each effect is the one of SHARES with the largest
+    evidence, one effect after the other, largest first: the errors of the records grow by what its law may
+    do to the curves, and with them their determinant, so that a law that fits is left as it is.
+    """
+    made = changes(exact)
+    shares = [0.0] * len(made)
+    best, most = exact, marginal(exact)
+    for i in sorted(range(len(made)), key=lambda i: -made[i].square):
+        for share in DISCREPANCY_SHARES[1:]:
+            tried = [share if k == i else s for k, s in enumerate(shares)]
+            wider = with_errors(exact, granted(exact.model, made, tried))
+            evidence = marginal(wider)
+            if evidence > most:
+                best, most, shares[i] = wider, evidence, share
+    names = [h.name for h in exact.model.members]
+    found = followed(best, best.model) if any(shares) else exact
+    return found, dict(zip(names, shares, strict=True))
+
+
+def closed(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
+    """Of each member whose law was opened, the records' errors with all laws opened but its own."""
+    if not any(shares.values()):
+        return {}
+    made, names = changes(exact), [h.name for h in exact.model.members]
+    return {
+        name: granted(exact.model, made, [shares[n] * (n != name) for n in names]).likelihood
+        for name in names
+        if shares[name]
+    }
+
+
+def marginal(fit: Fit) -> float:
+    """ln density of the records under a model of effects, those of different errors comparable.
+
+    At the minimum of the quadratic through the fit's point.
+    """
+    gradient, hessian = fit.gradient, fit.hessian
+    lower = 0.5 * float(gradient @ cho_solve(cho_factor(hessian), gradient))
+    roots = sum(float(np.sum(np.log(np.diag(c.root)))) for c in fit.model.likelihood.curves)
+    return fit.evidence + lower - roots
+
+
+def granted(model: EffectModel, signals: Sequence[Made], shares: Sequence[float]) -> EffectModel:
+    """The model, its records' errors its own and those of the laws of its effects.
+
+    made: what each member makes, see `changes`. shares: one a member.
+    """
+    likelihood = model.likelihood
+    curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
+    return model.with_errors(replace(likelihood, curves=tuple(curves)))
+
+
+def changes(exact: Fit) -> list[Made]:
+    """What each member of a fit to the records' own errors makes of their curves."""
+    model = exact.model
+    return [_made(model, member, place, exact.residual, exact.z) for member, place in model.places()]
+
+
+def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray) -> Made:
+    without = model.without(member)
+    whitened = residual - without.residual(np.delete(z, np.r_[place]))
+    changes = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
+    largest: dict[tuple[str, Branches], float] = {}
+    for curve, change in zip(model.likelihood.curves, changes, strict=True):
+        key = (curve.response, curve.branches)
+        largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
+    return Made(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
+
+
+def sticks(fit: Fit, member: Hypothesis) -> bool:
+    """Whether a member of a fit is a friction."""
+    return _frictional(fit.model, member, fit.z)
+
+
+def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
+    place = next(p for h, p in model.places() if h == member)
+    alone = replace(model, members=(member,))
+    return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
+
+
+def _widened(curve: CurveData, at: int, signals: Sequence[Made], shares: Sequence[float]) -> CurveData:
+    if not any(shares):
+        return curve
+    relative = curve.input / np.abs(curve.input).max()
+    smooth = smooth_correlation(relative, LENGTH)
+    centred = np.eye(curve.size) - 1.0 / curve.size
+    covariance = curve.root @ curve.root.T
+    for one, share in zip(signals, shares, strict=True):
+        change = one.changes[at]
+        ratio = smooth if one.sticks else centred @ smooth @ centred
+        covariance = covariance + share**2 * ratio * np.outer(change, change)
+        if one.sticks:
+            level = share * one.largest[curve.response, curve.branches]
+            left_open = level * (1.0 - relative**2 if curve.branches == "half_width" else relative)
+            covariance = covariance + smooth * np.outer(left_open, left_open)
+            if curve.response == TYRE_LOAD:
+                covariance = covariance + level**2
+    return replace(curve, root=np.asarray(cholesky(covariance, lower=True)))

@@ -1,0 +1,192 @@
+"""Where the work of a discovery is done: in worker processes, each result remembered in the ledger."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, as_completed
+from typing import Any, TypeVar
+
+import numpy as np
+
+from doe_kc.campaign.in_process import InProcess
+from doe_kc.discovery.fit import Fit, cost_of, fit
+from doe_kc.discovery.held_out import HeldOut, held_out
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.result_cache import Arrays, Ledger, fingerprint, key_of
+from doe_kc.discovery.scan import Scan, scan
+from doe_kc.discovery.screen import Screened, effort, screen
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.result import NotConverged
+
+Watch = Callable[[str, int], None]
+"""Told what has been done, and how many steps of the work that were."""
+T = TypeVar("T")
+CHUNKS = 4
+"""Parts that a screening is cut into for each worker: enough for a bar that moves."""
+
+
+class Bench:
+    """executor: where tasks run, default this process. ledger: what is known already."""
+
+    def __init__(
+        self,
+        executor: Executor | None = None,
+        ledger: Ledger | None = None,
+        watch: Watch = lambda *_: None,
+        *,
+        workers: int = 1,
+    ) -> None:
+        self._executor = executor or InProcess()
+        self._ledger = ledger or Ledger(None)
+        self.watch = watch
+        self._workers = workers
+
+    def screened(self, fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+        """Every hypothesis added to a fitted model, in their order."""
+        base = fingerprint(fit.model)
+        keys = [key_of("screen", base, fit.z, repr(h)) for h in hypotheses]
+        out: dict[int, Screened] = {}
+        missing: list[int] = []
+        for i, (key, h) in enumerate(zip(keys, hypotheses, strict=True)):
+            known = self._ledger.get(key)
+            if known is None:
+                missing.append(i)
+            else:
+                out[i] = _unpacked(h, known)
+        missing.sort(key=lambda i: -effort(hypotheses[i]))  # the long ones first, or one worker ends alone
+        parts = max(1, min(len(missing), CHUNKS * self._workers))
+        groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
+        tasks = [(fit, [hypotheses[i] for i in part]) for part in groups]
+        for at, results in self._run(_screen_many, tasks):
+            part = groups[at]
+            for i, result in zip(part, results, strict=True):
+                self._ledger.put(keys[i], _packed(result))
+                out[i] = result
+            self.watch("screening effects", len(part))
+        return [out[i] for i in range(len(hypotheses))]
+
+    def fitted(
+        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
+    ) -> list[Fit | None]:
+        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step.
+
+        They are of the very models of `starts`, wherever they were computed: whether two fits are to the
+        same errors is asked by identity.
+        """
+        keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
+        stored = {i: self._ledger.get(key) for i, key in enumerate(keys)}
+        known: dict[int, Arrays] = {i: arrays for i, arrays in stored.items() if arrays is not None}
+        if known:
+            self.watch(what, len(known))
+        missing = [i for i in range(len(starts)) if i not in known]
+        tasks = [(*starts[i], tuning[:, : starts[i][0].dimension]) for i in missing]
+        for at, arrays in self._run(_fit_one, tasks):
+            i = missing[at]
+            known[i] = arrays
+            self._ledger.put(keys[i], arrays)
+            self.watch(what, 1)
+        return [_unpacked_fit(m, known[i]) for i, (m, _) in enumerate(starts)]
+
+    def held_out(self, tuned: Fit, plain: Fit, final: Fit) -> tuple[HeldOut, ...]:
+        """Every load case of the records, predicted from the others; see `held_out`."""
+        cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
+        found: dict[int, HeldOut] = {}
+        for i, result in self._run(held_out, [(tuned, plain, final, case) for case in cases]):
+            found[i] = result
+            self.watch("load cases held out", 1)
+        return tuple(found[i] for i in range(len(cases)))
+
+    def scanned(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
+        """Begins the generic scan at a model; what is returned waits for it.
+
+        None when its axle has no equilibrium with the instruments in.
+        """
+        future = self._executor.submit(_scan, tuned, temper)
+
+        def waited() -> Scan | None:
+            found = future.result()
+            self.watch("scanning every interface", 1)
+            return found
+
+        return waited
+
+    def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
+        """(place, result) of every task as it is done; in this process one is done before the next begins."""
+        if isinstance(self._executor, InProcess):
+            for i, given in enumerate(arguments):
+                yield i, task(*given)
+            return
+        futures = {self._executor.submit(task, *given): i for i, given in enumerate(arguments)}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+
+
+def _screen_many(fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+    return [screen(fit, h) for h in hypotheses]
+
+
+def _scan(tuned: Fit, temper: float) -> Scan | None:
+    try:
+        return scan(tuned, temper=temper)
+    except NotConverged:
+        return None
+
+
+def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Arrays:
+    try:
+        return _packed_fit(fit(model, start, tuning=tuning))
+    except NotConverged:
+        return {"z": np.zeros(0)}
+
+
+def _packed_fit(fit: Fit) -> Arrays:
+    """Without what its model says of it, the derivatives to the differences between the sides among that."""
+    sides = range(fit.model.calibrations.stop, fit.model.dimension)
+    return {
+        "z": fit.z,
+        "residual": fit.residual,
+        "jacobian": np.delete(fit.jacobian, sides, axis=1),
+        "evaluations": np.array(float(fit.evaluations)),
+        "converged": np.array(float(fit.converged)),
+    }
+
+
+def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
+    """None for one without an equilibrium."""
+    if not known["z"].size:
+        return None
+    z, residual = known["z"], known["residual"]
+    own, at = known["jacobian"], model.calibrations.stop
+    parts = [own] if model.sides is None else [own[:, :at], model.sides, own[:, at:]]
+    counts = int(known["evaluations"]), bool(known["converged"])
+    return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
+
+
+def _packed(screening: Screened) -> Arrays:
+    return {
+        "amplitudes": screening.amplitudes,
+        "sd": screening.sd,
+        "numbers": np.array([screening.gain, screening.score, screening.detectability, screening.absorbed]),
+        "columns": screening.columns,
+        "change": screening.change,
+        "visible": screening.visible,
+        "failed": np.frombuffer(screening.failed.encode(), dtype=np.uint8).astype(float),
+    }
+
+
+def _unpacked(hypothesis: Hypothesis, known: Arrays) -> Screened:
+    gain, score, detectability, absorbed = (float(v) for v in known["numbers"])
+    return Screened(
+        hypothesis,
+        known["amplitudes"],
+        known["sd"],
+        gain,
+        score,
+        known["columns"],
+        known["change"],
+        detectability,
+        absorbed,
+        known["visible"],
+        bytes(known["failed"].astype(np.uint8)).decode(),
+    )

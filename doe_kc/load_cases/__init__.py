@@ -1,0 +1,23 @@
+"""The eight K&C load cases, one module each; `LOAD_CASES` maps id to definition."""
+
+from __future__ import annotations
+
+import sys
+
+from doe_kc.ground.registry import import_members
+from doe_kc.load_cases._base import LOAD_CASES, Controls, Datum, LoadCase, load_case
+
+import_members(sys.modules[__name__])
+
+CASE_ORDER = (
+    "vertical",
+    "roll",
+    "lateral",
+    "lateral_opposite",
+    "lateral_offset",
+    "drive",
+    "brake",
+    "steer",
+)
+
+__all__ = ["CASE_ORDER", "LOAD_CASES", "Controls", "Datum", "LoadCase", "load_case"]

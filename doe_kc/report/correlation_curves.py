@@ -1,0 +1,149 @@
+"""Measured, baseline and final curves of every load case (thesis, Appendix E)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+
+from doe_kc.correlation.result import Correlation
+from doe_kc.curves import RESPONSE_LABELS, CaseCurves
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import CASE_ORDER
+from doe_kc.measurement import Measurement
+from doe_kc.report import style
+from doe_kc.report.names import case_label, input_label, response_axis
+from doe_kc.report.panel import Dash, Panel
+from doe_kc.report.panel_axis import ticks
+from doe_kc.report.sheet import Sheet, sheet
+from doe_kc.targets.comparison.compare import same_input
+
+CURVE_PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
+BAND = 2.0
+"""Standard deviations of the measured mean curve that its band shows."""
+MEASURED, BASELINE, FINAL = style.PALETTE["black"], style.PALETTE["orange"], style.PALETTE["blue"]
+CURVES_MARGINS = {"left": 0.07, "right": 0.985, "top": 0.89, "bottom": 0.145, "wspace": 0.24, "hspace": 0.3}
+
+
+@dataclass(frozen=True)
+class CaseView:
+    """One load case; None or empty for what there is not. sd: response -> (2, n) of the measured mean."""
+
+    load_case: str
+    measured: CaseCurves | None
+    baseline: CaseCurves | None
+    final: CaseCurves | None
+    sd: Mapping[str, FloatArray]
+
+    @property
+    def any(self) -> CaseCurves:
+        """One of the curves, for input and unit."""
+        return next(c for c in (self.final, self.measured, self.baseline) if c is not None)
+
+    @property
+    def input_label(self) -> str:
+        """Name and unit of the input."""
+        return input_label(self.load_case, self.any.input_unit)
+
+
+def case_views(correlation: Correlation, measurement: Measurement | None) -> list[CaseView]:
+    """Every load case that model or rig has; measured curves over another input are left out."""
+    ours = [
+        e.outcome.curves.cases if e.outcome.curves else {} for e in (correlation.baseline, correlation.best)
+    ]
+    rig = measurement.curves.cases if measurement is not None else {}
+    views = []
+    for case in CASE_ORDER:
+        before, after = (c.get(case) for c in ours)
+        measured = rig.get(case)
+        if measured is not None and after is not None and not same_input(after, measured):
+            measured = None
+        if any(c is not None for c in (before, after, measured)):
+            views.append(CaseView(case, measured, before, after, _sd(measurement, measured)))
+    return views
+
+
+def _sd(measurement: Measurement | None, case: CaseCurves | None) -> dict[str, FloatArray]:
+    if measurement is None or case is None:
+        return {}
+    noise = measurement.noise.get(case.load_case, {})
+    return {
+        r: np.array([np.sqrt(np.maximum(np.diag(noise[r].covariance(side=s)), 0.0)) for s in (0, 1)])
+        for r in noise
+    }
+
+
+def curve_figure(view: CaseView, study: str) -> Sheet:
+    """Six responses of both wheels over the input; angles and wheel centre are changes from static."""
+    page, panels = sheet(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=CURVES_MARGINS)
+    for panel, response in zip(panels.flat, CURVE_PANELS, strict=True):
+        _panel(panel, view, response)
+        panel.set_labels(None, response_axis(response))
+        panel.set_title(RESPONSE_LABELS[response])
+        panel.x.set_locator(ticks(6))
+        panel.y.set_locator(ticks(7))
+    for panel in panels[-1]:
+        panel.set_labels(view.input_label, None)
+    page.add_legend(_handles(view), 4, 7.5)
+    page.set_heading(f"{case_label(view.load_case)}: {study}", 0.965)
+    return page
+
+
+def _panel(panel: Panel, view: CaseView, response: str) -> None:
+    for side in (1, 0):
+        if view.measured is not None:
+            _measured(panel, view, response, side)
+        models: list[tuple[CaseCurves | None, str, Dash]]
+        models = [(view.baseline, BASELINE, "--"), (view.final, FINAL, "-")]
+        for case, colour, dash in models:
+            if case is not None and response in case.mean:
+                panel.plot(case.input, case.mean[response][side], dash, color=colour, **_weight(side))
+
+
+def _weight(side: int) -> dict[str, Any]:
+    """The right wheel stands back."""
+    return {"lw": 0.8, "alpha": 0.55} if side else {"lw": 1.5, "alpha": 1.0}
+
+
+def _measured(panel: Panel, view: CaseView, response: str, side: int) -> None:
+    case = view.measured
+    if case is None or response not in case.mean:
+        return
+    mean, half = case.mean[response][side], case.half_width[response][side]
+    sd = view.sd.get(response, np.zeros((2, mean.size)))[side]
+    face = "none" if side else MEASURED
+    panel.fill_between(
+        case.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0, zorder=0
+    )
+    for sign in (-1, 1):
+        panel.plot(case.input, mean + sign * half, color=style.PALETTE["grey"], lw=0.4 if side else 0.7)
+    step = max(1, mean.size // 20)
+    panel.plot(case.input[::step], mean[::step], "", marker="o", color=MEASURED, mfc=face, ms=2.6, mew=0.5)
+
+
+def _handles(view: CaseView) -> list[Line2D | Patch]:
+    dots: dict[str, Any] = {"color": MEASURED, "ls": "", "marker": "o", "ms": 3}
+    out: list[Line2D | Patch] = []
+    if view.measured is not None:
+        out += [
+            Line2D([], [], **dots, label="measured mean, left wheel"),
+            Line2D([], [], **dots, mfc="none", label="measured mean, right wheel"),
+            Line2D(
+                [], [], color=style.PALETTE["grey"], lw=0.7, label="its branches, input rising and falling"
+            ),
+            Patch(color="#BBBBBB", label=f"its ±{BAND:g} sd"),
+        ]
+    for case, colour, dash, name in (
+        (view.baseline, BASELINE, "--", "baseline"),
+        (view.final, FINAL, "-", "final"),
+    ):
+        if case is not None:
+            out += [
+                Line2D([], [], color=colour, ls=dash, lw=1.5, label=f"{name}, left wheel"),
+                Line2D([], [], color=colour, ls=dash, lw=0.8, alpha=0.55, label=f"{name}, right wheel"),
+            ]
+    return out

@@ -1,0 +1,40 @@
+"""The pictures of a correlation, drawn side by side."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from doe_kc.correlation.result import Correlation
+from doe_kc.ground.picture_format import PNG, PictureFormat
+from doe_kc.measurement import Measurement
+from doe_kc.report.correlation_bars import parameter_figure
+from doe_kc.report.correlation_convergence import convergence_figure
+from doe_kc.report.correlation_curves import case_views, curve_figure
+from doe_kc.report.correlation_dna import dna_figure
+from doe_kc.report.series import Job, draw_series
+
+
+def write_correlation_figures(
+    correlation: Correlation,
+    measurement: Measurement | None,
+    folder: Path,
+    *,
+    study: str,
+    workers: int | None = None,
+    pictures: PictureFormat = PNG,
+) -> list[Path]:
+    """Pictures `correlation_dna`, `_parameters`, `_convergence` and one `curves_<load case>` each.
+
+    Raises RunError when the folder cannot be written.
+    """
+    jobs: list[Job] = [
+        (folder / "correlation_dna", partial(dna_figure, correlation, study)),
+        (folder / "correlation_parameters", partial(parameter_figure, correlation, study)),
+        (folder / "correlation_convergence", partial(convergence_figure, correlation, study)),
+    ]
+    jobs += [
+        (folder / f"curves_{view.load_case}", partial(curve_figure, view, study))
+        for view in case_views(correlation, measurement)
+    ]
+    return draw_series(jobs, workers, pictures=pictures)

@@ -1,0 +1,183 @@
+"""The parameters of a correlation before and after (thesis, Appendix A)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from typing import Literal
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.axle.parameters import KINDS, SIDE_PREFIXES
+from doe_kc.correlation.posterior import BOUND_SHARE
+from doe_kc.correlation.result import Correlation
+from doe_kc.ground.numbers import number
+from doe_kc.variables import Tie
+
+Role = Literal["variable", "tied", "fixed"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ParameterRow:
+    """One parameter; baseline, final, lower, upper, sd absolute in `unit`, nan where there is none.
+
+    role: free between bounds, tied to `leader`, or fixed. at_bound: "lower", "upper" or "". sd: from the
+    posterior, nan at a bound. inward: there the distance from the bound within which the value lies with a
+    probability of 68 %, nan elsewhere. visible: whether the measurement at least halves what was known
+    before; None without posterior. start, place, spread: baseline, final and sd as places between the
+    bounds (0 = lower, 1 = upper).
+    """
+
+    path: str
+    label: str
+    group: str
+    unit: str
+    role: Role = "variable"
+    leader: str = ""
+    baseline: float
+    final: float
+    lower: float = np.nan
+    upper: float = np.nan
+    at_bound: str = ""
+    sd: float = np.nan
+    inward: float = np.nan
+    visible: bool | None = None
+    start: float = np.nan
+    place: float = np.nan
+    spread: float = np.nan
+
+    @property
+    def change(self) -> float:
+        """Final minus baseline."""
+        return self.final - self.baseline
+
+    @property
+    def remark(self) -> str:
+        """What an engineer should know of the final value, in words; empty when nothing."""
+        words = {
+            "tied": f"follows {self.leader}",
+            "fixed": "fixed",
+            "variable": self._bound_words(),
+        }[self.role]
+        unseen = "not visible in these measurements" if self.visible is False else ""
+        return "; ".join(w for w in (words, unseen) if w)
+
+    def _bound_words(self) -> str:
+        if not self.at_bound:
+            return ""
+        if not np.isfinite(self.inward):
+            return f"at its {self.at_bound} bound"
+        sense = "above" if self.at_bound == "lower" else "below"
+        return f"at its {self.at_bound} bound, at most {number(self.inward)} {sense} it (68 %)"
+
+
+def parameter_rows(correlation: Correlation) -> list[ParameterRow]:
+    """Variables in their order, then tied and fixed parameters."""
+    space = correlation.problem.space
+    before, after = space.values(correlation.baseline.point), correlation.values
+    rows = list(_variables(correlation, before, after))
+    by_path = {r.path: r for r in rows}
+    rows += [_tied(t, by_path[t.leader], before, after) for t in space.ties]
+    fixed = dict(space.fixed or {})
+    return rows + [_plain(path, "fixed", before, after) for path in fixed]
+
+
+def _variables(
+    correlation: Correlation, before: dict[str, float], after: dict[str, float]
+) -> Iterator[ParameterRow]:
+    space, seen = correlation.problem.space, correlation.posterior
+    for i, variable in enumerate(space.variables):
+        place = float(correlation.best.point[i])
+        ended = seen is not None and seen.at_bound[i] != 0
+        spread = float(seen.sd[i]) if seen is not None and not ended else np.nan
+        yield ParameterRow(
+            path=variable.path,
+            label=variable.parameter.label,
+            group=variable.parameter.group,
+            unit=variable.unit,
+            baseline=before[variable.path],
+            final=after[variable.path],
+            lower=variable.lower,
+            upper=variable.upper,
+            at_bound="lower" if place <= BOUND_SHARE else "upper" if place >= 1.0 - BOUND_SHARE else "",
+            sd=spread * variable.slope(place),
+            inward=float(seen.inward[i]) * variable.slope(place) if seen is not None else np.nan,
+            visible=bool(seen.visible[i]) if seen is not None else None,
+            start=float(correlation.baseline.point[i]),
+            place=place,
+            spread=spread,
+        )
+
+
+def _tied(tie: Tie, leader: ParameterRow, before: dict[str, float], after: dict[str, float]) -> ParameterRow:
+    row = _plain(tie.follower, "tied", before, after)
+    slope = abs(tie.slope)
+    extra = {
+        "leader": tie.leader,
+        "sd": leader.sd * slope,
+        "inward": leader.inward * slope,
+        "visible": leader.visible,
+    }
+    return ParameterRow(**{**asdict(row), **extra})
+
+
+def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, float]) -> ParameterRow:
+    head, _, rest = path.partition(".")
+    kind = KINDS.get(rest if head in SIDE_PREFIXES else path)
+    return ParameterRow(
+        path=path,
+        label=kind.label if kind else path,
+        group=kind.group if kind else "OTHER",
+        unit=kind.unit if kind else "",
+        role=role,
+        baseline=before[path],
+        final=after[path],
+    )
+
+
+def parameter_frame(correlation: Correlation) -> pd.DataFrame:
+    """One row a parameter: path, label, group, unit, role, values, bounds, sd and what to think of them."""
+    return pd.DataFrame(
+        [
+            {
+                "path": r.path,
+                "label": r.label,
+                "group": r.group,
+                "unit": r.unit,
+                "role": r.role,
+                "tied_to": r.leader,
+                "baseline": r.baseline,
+                "final": r.final,
+                "change": r.change,
+                "lower": r.lower,
+                "upper": r.upper,
+                "at_bound": r.at_bound,
+                "sd": r.sd,
+                "inward": r.inward,
+                "not_visible": "" if r.visible is None else not r.visible,
+            }
+            for r in parameter_rows(correlation)
+        ]
+    )
+
+
+def remark_sentences(correlation: Correlation) -> list[str]:
+    """Targets out of reach, constraints in conflict, variables at their bounds, variables not visible."""
+    rows = [r for r in parameter_rows(correlation) if r.role == "variable"]
+    bound = [f"{r.path} ({r.at_bound})" for r in rows if r.at_bound]
+    unseen = [r.path for r in rows if r.visible is False]
+    out = list(correlation.notes)
+    if bound:
+        out.append(
+            f"{len(bound)} of {len(rows)} variables end at a bound: {', '.join(bound)}. Widen the bound if "
+            "the part allows it; otherwise the model may lack an effect that they stand in for."
+        )
+    if unseen:
+        out.append(
+            f"{len(unseen)} of {len(rows)} variables are not visible in these measurements: "
+            f"{', '.join(unseen)}. Their final values say nothing about the car."
+        )
+    if correlation.posterior is None:
+        out.append("No standard deviations: the solver gives no sensitivities or no records were given.")
+    return out

@@ -1,0 +1,157 @@
+"""The terms of the rating (thesis, equation 2.2) and the deviations of the curves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass, fields
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+
+from doe_kc.characteristics import Characteristic
+from doe_kc.correlation.result import Correlation
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
+from doe_kc.report.names import case_label
+from doe_kc.targets import Constraint, Objective, Rating, Score
+from doe_kc.targets.options import Goal
+
+Kind = Literal["objective", "curve", "constraint"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class TermRow:
+    """One term of the rating; target, low, high, norm, baseline, final in `unit`, nan where there is none.
+
+    baseline, final: the characteristic's value or the curve's RMS deviation. sign: S. goal: what an objective
+    is. baseline_term, final_term: LinWt S Obj / Norm + QuadWt S Obj^2 / Norm^2, or minus the same of ConViol.
+    """
+
+    kind: Kind
+    id: str
+    label: str
+    unit: str
+    goal: Goal | Literal[""] = ""
+    target: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    linear: float
+    quadratic: float
+    norm: float
+    sign: float
+    baseline: float
+    final: float
+    baseline_term: float
+    final_term: float
+
+
+def term_rows(correlation: Correlation) -> list[TermRow]:
+    """Objectives, curves, constraints; their terms sum to the rating."""
+    return [*_objectives(correlation), *_curves(correlation), *_constraints(correlation)]
+
+
+def term_frame(correlation: Correlation) -> pd.DataFrame:
+    """One row a term, with its weights."""
+    return pd.DataFrame([asdict(r) for r in term_rows(correlation)])
+
+
+def _weights(of: Objective | Constraint) -> dict[str, Any]:
+    return {"linear": of.linear, "quadratic": of.quadratic, "norm": of.norm}
+
+
+def _named(entry: Characteristic) -> dict[str, Any]:
+    label = f"{case_label(entry.load_case)}: {entry.label}"
+    return {"id": entry.id, "label": label, "unit": entry.unit}
+
+
+def _judged(correlation: Correlation, part: str, terms: str, row: int) -> dict[str, Any]:
+    """What the row has before and after; part: of the score. terms: of the rating."""
+    before, after = correlation.baseline, correlation.best
+    return {
+        "baseline": _of(before.score, part, row),
+        "final": _of(after.score, part, row),
+        "baseline_term": _of(before.rating, terms, row),
+        "final_term": _of(after.rating, terms, row),
+    }
+
+
+def _of(where: Score | Rating | None, part: str, row: int) -> float:
+    return float(getattr(where, part)[row]) + 0.0 if where is not None else np.nan  # + 0: no minus zero
+
+
+def _objectives(correlation: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(correlation.problem.targets.characteristics):
+        if t.objective is not None:
+            yield TermRow(
+                kind="objective",
+                goal=t.objective.goal,
+                target=t.value,
+                sign=t.objective.sign,
+                **_named(t.entry),
+                **_weights(t.objective),
+                **_judged(correlation, "values", "objectives", i),
+            )
+
+
+def _constraints(correlation: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(correlation.problem.targets.characteristics):
+        if t.constraint is not None:
+            yield TermRow(
+                kind="constraint",
+                low=t.constraint.low,
+                high=t.constraint.high,
+                sign=-1.0,
+                **_named(t.entry),
+                **_weights(t.constraint),
+                **_judged(correlation, "values", "constraints", i),
+            )
+
+
+def _curves(correlation: Correlation) -> Iterator[TermRow]:
+    for i, t in enumerate(correlation.problem.targets.curves):
+        yield TermRow(
+            kind="curve",
+            id=t.id,
+            label=f"{case_label(t.load_case)}: {RESPONSE_LABELS[t.response]}, RMS",
+            unit=RESPONSE_UNITS[t.response],
+            sign=t.objective.sign,
+            **_weights(t.objective),
+            **_judged(correlation, "rms", "curves", i),
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurveRow:
+    """One curve that is an objective: RMS deviations of both wheels, noise and Norm in `unit`."""
+
+    id: str
+    load_case: str
+    response: str
+    unit: str
+    rms_baseline: float
+    rms_final: float
+    noise_rms: float
+    norm: float
+
+
+def curve_rows(correlation: Correlation) -> list[CurveRow]:
+    """In the order of the targets."""
+    return [
+        CurveRow(
+            id=t.id,
+            load_case=t.load_case,
+            response=t.response,
+            unit=row.unit,
+            rms_baseline=row.baseline,
+            rms_final=row.final,
+            noise_rms=t.noise,
+            norm=row.norm,
+        )
+        for t, row in zip(correlation.problem.targets.curves, _curves(correlation), strict=True)
+    ]
+
+
+def curve_frame(correlation: Correlation) -> pd.DataFrame:
+    """`curve_rows` as a table; its heads stand even when no curve is an objective."""
+    columns = [f.name for f in fields(CurveRow)]
+    return pd.DataFrame([asdict(r) for r in curve_rows(correlation)], columns=columns)

@@ -1,0 +1,166 @@
+"""The curves that re-tuning explains worst: measured, re-tuned, with the effect and with the best decoy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from numpy.typing import NDArray
+
+from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
+from doe_kc.discovery.result import Discovery
+from doe_kc.ground.typing import FloatArray
+from doe_kc.report import style
+from doe_kc.report.correlation_curves import BAND
+from doe_kc.report.discovery_gaps import MODEL_COLOURS
+from doe_kc.report.discovery_views import ModelView, model_views, view_gaps
+from doe_kc.report.names import case_label, response_name
+from doe_kc.report.panel import Box, Dash, Panel
+from doe_kc.report.panel_axis import ticks
+from doe_kc.report.sheet import Sheet, sheet
+from doe_kc.report.words import POINTS
+
+CURVES_SHOWN = 6
+PER_CASE = 2
+COLUMNS = 3
+HEAD, FOOT, PAIR = 0.45, 0.5, 3.65
+"""Inches of the title of all, of the legend, and of a curve with its deviation."""
+TITLE, CURVE, GAP, DEVIATION = 0.42, 1.72, 0.13, 0.8
+"""Inches of the parts of a pair from above; numbers and name of the input have the rest."""
+DASHES: Mapping[str, Dash] = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
+WORDS = {
+    "tuned": "re-tuned without an effect",
+    "with_effect": "with the effect",
+    "best_decoy": "with the decoy",
+}
+WHEEL_WORDS = ("left wheel", "right wheel")
+
+
+@dataclass(frozen=True)
+class WorstView:
+    """A curve of one wheel. gaps: whitened RMS of both wheels by model. half: measured half-width for the
+    branches of a mean curve, (n,), else None."""
+
+    view: ModelView
+    side: int
+    gaps: Mapping[str, float]
+    half: FloatArray | None
+
+    @property
+    def title(self) -> str:
+        """Load case and wheel, and the gap."""
+        place = f"{case_label(self.view.load_case)}, {WHEEL_WORDS[self.side]}"
+        gap = f"{self.gaps['tuned']:.1f} re-tuned"
+        if "with_effect" in self.gaps:
+            gap += f", {self.gaps['with_effect']:.1f} with the effect"
+        return f"{place}\ngap {gap}"
+
+    @property
+    def label(self) -> str:
+        """Response with its unit."""
+        view = self.view
+        name, unit = response_name(view.response), RESPONSE_UNITS[view.response]
+        if view.branches == "half_width":
+            return f"{name}, half-width of the loop [{unit}]"
+        return f"{'' if view.response == TYRE_LOAD else 'Δ '}{name} [{unit}]"
+
+
+def worst_views(discovery: Discovery) -> list[WorstView]:
+    """Curves with the largest gaps after re-tuning, at most two of a load case, each of its worse wheel."""
+    views = model_views(discovery)
+    gaps = view_gaps(discovery)
+    out: list[WorstView] = []
+    taken: dict[str, int] = {}
+    for key in sorted(gaps, key=lambda k: -gaps[k]["tuned"]):
+        view = views[key]
+        if taken.get(view.load_case, 0) >= PER_CASE:
+            continue
+        loop = views.get((view.load_case, view.response, "half_width"))
+        side = int(np.argmax(np.mean(view.deviation("tuned") ** 2, axis=1)))
+        half = None
+        if view.branches == "mean" and loop is not None:
+            half = np.interp(view.input, loop.input, loop.measured[side])
+        out.append(WorstView(view, side, gaps[key], half))
+        taken[view.load_case] = taken.get(view.load_case, 0) + 1
+        if len(out) == CURVES_SHOWN:
+            break
+    return out
+
+
+def curve_figure(worst: Sequence[WorstView], study: str) -> Sheet:
+    """Two rows of three curves, each with its deviation from the measured one below."""
+    rows = max(1, -(-len(worst) // COLUMNS))
+    height = HEAD + PAIR * rows + FOOT
+    margins = {"left": 0.065, "right": 0.985, "wspace": 0.3}
+    page, panels = sheet(2 * rows, COLUMNS, size=(11.69, height), share_x=False, margins=margins)
+    _place(panels, height)
+    for k, one in enumerate(worst):
+        row, column = divmod(k, COLUMNS)
+        _curve(panels[2 * row, column], one)
+        _deviation(panels[2 * row + 1, column], one)
+    shown = [p for k in range(len(worst)) for p in panels[2 * (k // COLUMNS) :, k % COLUMNS][:2]]
+    page.panels[:] = [p for p in page.panels if any(p is s for s in shown)]
+    page.add_legend(_handles(worst), 6, 7.5)
+    page.set_heading(f"Curves that re-tuning explains worst: {study}", 1.0 - 0.12 / height)
+    return page
+
+
+def _place(panels: NDArray[Any], height: float) -> None:
+    """A deviation close below its curve, room for a title above the curve and for the input's name between
+    the pairs; height: of the page, inches."""
+    for row, members in enumerate(panels):
+        pair, below = divmod(row, 2)
+        tall, low = (DEVIATION, CURVE + GAP + DEVIATION) if below else (CURVE, CURVE)
+        bottom = height - HEAD - PAIR * pair - TITLE - low
+        for panel in members:
+            panel.box = Box(panel.box.left, bottom * POINTS, panel.box.width, tall * POINTS)
+
+
+def _curve(panel: Panel, worst: WorstView) -> None:
+    view, side = worst.view, worst.side
+    mean, sd = view.measured[side], view.sd[side]
+    panel.fill_between(view.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0)
+    if worst.half is not None:
+        for sign in (-1.0, 1.0):
+            panel.plot(view.input, mean + sign * worst.half, color=style.PALETTE["grey"], lw=0.6)
+    for name, dash in DASHES.items():
+        if name in view.models:
+            panel.plot(view.input, view.models[name][side], dash, color=MODEL_COLOURS[name], lw=1.4)
+    step = max(1, mean.size // 22)
+    panel.plot(view.input[::step], mean[::step], "", marker="o", color="black", ms=2.4, mew=0.0, zorder=4)
+    panel.set_title(worst.title, size=8.5)
+    panel.set_labels(None, worst.label)
+    panel.numbers["x"] = False
+    panel.x.set_locator(ticks(6))
+    panel.y.set_locator(ticks(6))
+
+
+def _deviation(panel: Panel, worst: WorstView) -> None:
+    view = worst.view
+    panel.hspan(-BAND, BAND, color="#DDDDDD", zorder=0)
+    panel.hline(0.0, color="black", lw=0.6)
+    for name, dash in DASHES.items():
+        if name in view.models:
+            panel.plot(view.input, view.deviation(name)[worst.side], dash, color=MODEL_COLOURS[name], lw=1.2)
+    panel.set_labels(view.input_label, "model − measured\n[sd of the noise]")
+    panel.x.set_locator(ticks(6))
+    panel.y.set_locator(ticks(4))
+
+
+def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:
+    models = worst[0].view.models if worst else {}
+    out: list[Line2D | Patch] = [
+        Line2D([], [], color="black", ls="", marker="o", ms=3, label="measured"),
+        Line2D([], [], color=style.PALETTE["grey"], lw=0.8, label="its branches, input rising and falling"),
+        Patch(color="#BBBBBB", label=f"±{BAND:g} sd of the noise"),
+    ]
+    out += [
+        Line2D([], [], color=MODEL_COLOURS[m], ls=dash, lw=1.4, label=WORDS[m])
+        for m, dash in DASHES.items()
+        if m in models
+    ]
+    return out

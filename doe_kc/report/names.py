@@ -1,0 +1,38 @@
+"""How figures, sheets and pages call load cases, inputs and responses: one name each, everywhere."""
+
+from __future__ import annotations
+
+from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
+from doe_kc.load_cases import LOAD_CASES
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
+
+RESPONSE_NAMES = {
+    "spin": "caster (knuckle)",
+    "wc_x": "wheel centre x",
+    "wc_y": "wheel centre y",
+    "wc_z": "wheel centre z",
+    "tyre_load": "tyre load",
+}
+
+
+def case_label(load_case: str) -> str:
+    """Name of a load case; Static for what needs none."""
+    return LOAD_CASES[load_case].label if load_case in LOAD_CASES else load_case.capitalize()
+
+
+def input_label(load_case: str, unit: str) -> str:
+    """Name, sign and unit of a load case's input; the technique of a roll is told by its unit, deg or mm."""
+    cases = [LOAD_CASES[load_case], *(ROLL_TECHNIQUES.values() if load_case == "roll" else ())]
+    name = next((c.input_label for c in cases if c.unit == unit), "Input")
+    return f"{name} [{unit}]"
+
+
+def response_name(response: str) -> str:
+    """Short name of a response within a sentence or an axis."""
+    return RESPONSE_NAMES.get(response, response)
+
+
+def response_axis(response: str) -> str:
+    """Axis of a response's curve, with its unit; all but the tyre load are changes from static (Δ)."""
+    change = "" if response == TYRE_LOAD else "Δ "
+    return f"{change}{response_name(response)} [{RESPONSE_UNITS[response]}]"

@@ -1,0 +1,118 @@
+"""Measured, baseline and final curves, to choose, hover and zoom (thesis, Appendix E)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from doe_kc.correlation.result import Correlation
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
+from doe_kc.measurement import Measurement
+from doe_kc.report.correlation_curves import BAND, CaseView, case_views
+from doe_kc.report.names import case_label, response_axis
+from doe_kc.report.page.section import Section, embedded, render
+from doe_kc.targets.comparison.deviation import rms_deviation
+
+
+@dataclass(frozen=True)
+class ShownModel:
+    """A model's curve: key of its set, name, colour and SVG dash pattern; shown: from the start."""
+
+    id: str
+    label: str
+    colour: str
+    dash: str = ""
+    shown: bool = True
+
+
+CORRELATION_MODELS = (
+    ShownModel("baseline", "baseline", "#e69f00", "7 4"),
+    ShownModel("final", "final", "#0072b2"),
+)
+CURVES_LEAD = (
+    "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
+)
+
+
+def curves_section(correlation: Correlation, measurement: Measurement | None) -> list[Section]:
+    """One chart for all load cases and responses; no section when there is no curve at all."""
+    views = case_views(correlation, measurement)
+    if not views:
+        return []
+    cases = {view.load_case: _case(view) for view in views}
+    responses = {r: _response(r) for r in RIG_RESPONSES}
+    return [Section("Curves", curves_html("curves", cases, responses, CORRELATION_MODELS), CURVES_LEAD)]
+
+
+def curves_html(
+    prefix: str,
+    cases: Mapping[str, Mapping[str, Any]],
+    responses: Mapping[str, Mapping[str, str]],
+    models: Sequence[ShownModel],
+) -> Markup:
+    """A chart of curves to choose from.
+
+    prefix: of its anchors, one for each chart of a page. cases: id -> label, input, unit, measured (x, y,
+    half, sd), a set (x, y) for each model's id, and rms of each side and model; x: for all responses or by
+    response, the case's own where a set has none. responses: id -> label, axis, unit.
+    """
+    shown = [vars(m) for m in models]
+    data = {"cases": cases, "responses": responses, "models": shown, "band": BAND}
+    return render(
+        "curves.html", prefix=prefix, data=embedded(data), cases=cases, responses=responses, models=models
+    )
+
+
+def _response(response: str) -> dict[str, str]:
+    return {
+        "label": RESPONSE_LABELS[response],
+        "axis": response_axis(response),
+        "unit": RESPONSE_UNITS[response],
+    }
+
+
+def _case(view: CaseView) -> dict[str, Any]:
+    return {
+        "label": case_label(view.load_case),
+        "input": view.input_label,
+        "unit": view.any.input_unit,
+        "measured": None if view.measured is None else _measured(view, view.measured),
+        "baseline": _model(view.baseline),
+        "final": _model(view.final),
+        "rms": {r: _rms(view, r) for r in RIG_RESPONSES},
+    }
+
+
+def _model(case: CaseCurves | None) -> dict[str, Any] | None:
+    if case is None:
+        return None
+    return {"x": case.input, "y": {r: case.mean[r] for r in RIG_RESPONSES if r in case.mean}}
+
+
+def _measured(view: CaseView, case: CaseCurves) -> dict[str, Any]:
+    present = [r for r in RIG_RESPONSES if r in case.mean]
+    nothing = np.zeros((2, case.input.size))
+    return {
+        "x": case.input,
+        "y": {r: case.mean[r] for r in present},
+        "half": {r: case.half_width[r] for r in present},
+        "sd": {r: view.sd.get(r, nothing) for r in present},
+    }
+
+
+def _rms(view: CaseView, response: str) -> list[list[float | None]]:
+    """[baseline, final] of the left and of the right wheel, where both curves reach."""
+    return [[_deviation(view, c, response, s) for c in (view.baseline, view.final)] for s in (0, 1)]
+
+
+def _deviation(view: CaseView, model: CaseCurves | None, response: str, side: int) -> float | None:
+    rig = view.measured
+    if model is None or rig is None or response not in rig.mean or response not in model.mean:
+        return None
+    inside = (rig.input >= model.input[0]) & (rig.input <= model.input[-1])
+    ours = np.interp(rig.input[inside], model.input, model.mean[response][side])
+    return rms_deviation(ours, rig.mean[response][side][inside])

@@ -1,0 +1,164 @@
+"""Puts a model's curves beside measured ones."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
+from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES, CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
+from doe_kc.targets.comparison.deviation import rms_deviation
+from doe_kc.targets.comparison.interval import constraint_interval
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class CharacteristicComparison:
+    """One characteristic of the left wheel, in `entry.unit`; target_sd: nan when it is not known."""
+
+    entry: Characteristic
+    value: float
+    target: float
+    target_sd: float
+    low: float
+    high: float
+
+    @property
+    def difference(self) -> float:
+        """Model minus target."""
+        return self.value - self.target
+
+    @property
+    def inside(self) -> bool:
+        """Whether the model lies in the constraint interval."""
+        return self.low <= self.value <= self.high
+
+
+@dataclass(frozen=True)
+class CurveComparison:
+    """RMS deviation of one mean curve and one half-width curve, in the response's unit."""
+
+    load_case: str
+    response: str
+    side: str
+    rms: float
+    rms_half_width: float
+    span: float
+    """Range of the measured curve, to judge the RMS by."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Model and measurement; static angles are compared only where the measurement has them."""
+
+    model: CurveSet
+    measured: CurveSet
+    characteristics: tuple[CharacteristicComparison, ...]
+    curves: tuple[CurveComparison, ...]
+
+    def characteristics_frame(self) -> pd.DataFrame:
+        """One row a characteristic: name, load_case, unit, model, target, target_sd, difference, low, ..."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            [
+                {
+                    "name": c.entry.id,
+                    "label": c.entry.label,
+                    "load_case": c.entry.load_case,
+                    "unit": c.entry.unit,
+                    "model": c.value,
+                    "target": c.target,
+                    "target_sd": c.target_sd,
+                    "difference": c.difference,
+                    "low": c.low,
+                    "high": c.high,
+                    "inside": c.inside,
+                }
+                for c in self.characteristics
+            ]
+        )
+
+    def curves_frame(self) -> pd.DataFrame:
+        """One row a curve: load_case, response, unit, side, rms, rms_half_width, span."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            [
+                {
+                    "load_case": c.load_case,
+                    "response": c.response,
+                    "unit": RESPONSE_UNITS[c.response],
+                    "side": c.side,
+                    "rms": c.rms,
+                    "rms_half_width": c.rms_half_width,
+                    "span": c.span,
+                }
+                for c in self.curves
+            ]
+        )
+
+
+def compare(
+    model: CurveSet,
+    measured: CurveSet,
+    *,
+    target_sd: Mapping[str, float] | None = None,
+    windows: Mapping[str, float] | None = None,
+) -> Comparison:
+    """Every characteristic that the measurement has, and every curve that both have.
+
+    target_sd: characteristic id -> standard deviation of its target. windows: as in `reduce_all`.
+    """
+    ours, targets = reduce_all(model, windows), reduce_all(measured, windows)
+    spread = target_sd or {}
+    rows = [
+        CharacteristicComparison(
+            entry, ours[i], targets[i], spread.get(i, math.nan), *constraint_interval(targets[i])
+        )
+        for i, entry in CHARACTERISTICS.items()
+        if math.isfinite(targets[i])
+    ]
+    curves = [
+        _curve(model.cases[case], measured.cases[case], response, side)
+        for case in measured.cases
+        if case in model.cases and same_input(model.cases[case], measured.cases[case])
+        for response in RIG_RESPONSES
+        for side in range(2)
+    ]
+    return Comparison(model, measured, tuple(rows), tuple(curves))
+
+
+def same_input(model: CaseCurves, measured: CaseCurves) -> bool:
+    """False when the two rolled by different techniques: mm of pad travel against deg of body roll."""
+    return model.input_unit == measured.input_unit
+
+
+def resample(case: CaseCurves, curve: FloatArray, inputs: FloatArray) -> FloatArray:
+    """(n,) curve at other inputs, linear between the solved points."""
+    return np.interp(inputs, case.input, curve)
+
+
+def _curve(model: CaseCurves, measured: CaseCurves, response: str, side: int) -> CurveComparison:
+    inside = (measured.input >= model.input[0]) & (measured.input <= model.input[-1])
+    at = measured.input[inside]
+    means = resample(model, model.mean[response][side], at), measured.mean[response][side][inside]
+    halves = (
+        resample(model, model.half_width[response][side], at),
+        measured.half_width[response][side][inside],
+    )
+    return CurveComparison(
+        measured.load_case,
+        response,
+        SIDES[side],
+        rms_deviation(*means),
+        rms_deviation(*halves),
+        float(np.ptp(means[1])),
+    )

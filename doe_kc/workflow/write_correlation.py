@@ -1,0 +1,165 @@
+"""Handover: everything that a finished correlation leaves to the engineer, and its JSON and terminal text."""
+
+from __future__ import annotations
+
+import math
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from doe_kc.axle_file.write import write_axle
+from doe_kc.correlation.assessment import Assessment, assess, inside
+from doe_kc.correlation.pareto.front import front_of
+from doe_kc.correlation.result import Correlation
+from doe_kc.ground.output import write_csv
+from doe_kc.measurement import Measurement
+from doe_kc.report.correlation_characteristics import characteristic_frame, characteristic_rows
+from doe_kc.report.correlation_evaluations import evaluation_frame
+from doe_kc.report.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
+from doe_kc.report.correlation_summary import summary
+from doe_kc.report.correlation_terms import curve_frame, term_frame
+from doe_kc.report.correlation_workbook import write_correlation_workbook
+from doe_kc.report.page import write_correlation_page
+from doe_kc.study import Study
+
+CORRELATION_TABLES = {
+    "parameters.csv": parameter_frame,
+    "characteristics.csv": characteristic_frame,
+    "curves.csv": curve_frame,
+    "rating_terms.csv": term_frame,
+    "evaluations.csv": evaluation_frame,
+}
+AXLE = "axle.toml"
+
+
+def write_correlation(
+    study: Study,
+    correlation: Correlation,
+    measurement: Measurement | None,
+    folder: Path,
+    *,
+    assessment: Assessment | None = None,
+    workers: int | None = None,
+) -> list[Path]:
+    """axle.toml, five tables, correlation.xlsx, report.html and the figures; returns the paths.
+
+    measurement: for the measured curves; None with typed targets. assessment: by default the correlation's
+    own. workers: processes that draw. RunError when the folder cannot be written.
+    """
+    verdict = assessment or assess(correlation)
+    axle = write_axle(correlation.axle, study.axle_path, folder / AXLE, note=axle_note(correlation, verdict))
+    notes = {
+        "Axle": f"{correlation.axle.name}: {AXLE}, from {study.axle_path.name}",
+        "Measurement": measurement.manifest.name if measurement is not None else "none, targets are typed",
+        "Effects": ", ".join(correlation.axle.effects) or "none",
+    }
+    words: dict[str, Any] = {
+        "study": study.name,
+        "date": date.today().isoformat(),
+        "notes": notes,
+        "assessment": verdict,
+    }
+    return [
+        axle,
+        *(write_csv(folder / name, make(correlation)) for name, make in CORRELATION_TABLES.items()),
+        write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
+        write_correlation_page(folder / "report.html", correlation, measurement, **words),
+        *_write_figures(study, correlation, measurement, folder, workers),
+        *(_write_front(correlation, folder, study) if correlation.method == "pareto" else ()),
+    ]
+
+
+def _write_figures(
+    study: Study, correlation: Correlation, measurement: Measurement | None, folder: Path, workers: int | None
+) -> list[Path]:
+    if study.pictures == "none":
+        return []
+    from doe_kc.report.correlation_figures import write_correlation_figures
+
+    return write_correlation_figures(
+        correlation, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
+    )
+
+
+def axle_note(correlation: Correlation, assessment: Assessment) -> str:
+    """First line of the axle file: status, effects, rating."""
+    effects = ", ".join(correlation.axle.effects) or "none"
+    return f"{assessment.line} Effects: {effects}. Rating {correlation.rating:.6g}, correlated by {correlation.method}."
+
+
+def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[Path]:
+    """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
+    front = front_of(correlation.problem.search, correlation.run.evaluated)
+    table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
+    if study.pictures == "none":
+        return [table]
+    from doe_kc.report.pareto_figure import write_pareto_figure
+
+    return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
+
+
+def characteristic_entries(correlation: Correlation) -> list[dict[str, Any]]:
+    """Every characteristic with a target. low, high: the constraint interval; where the study sets none, that
+    of equations 5.1 and 5.2. held, reachable: as in `CharacteristicRow`."""
+    return [
+        {
+            "name": r.id,
+            "unit": r.unit,
+            "target": r.entry.target.value,
+            "sd": r.entry.target.sd,
+            "baseline": r.entry.baseline,
+            "final": r.entry.final,
+            "improvement_percent": r.entry.percent,
+            "low": r.interval[0],
+            "high": r.interval[1],
+            "role": r.role,
+            "held": r.held,
+            "reachable": r.reachable,
+        }
+        for r in characteristic_rows(correlation)
+    ]
+
+
+def correlation_document(
+    correlation: Correlation, axle_path: Path, assessment: Assessment | None = None
+) -> dict[str, Any]:
+    """What `correlate --json` writes. Numbers that are not finite become null in the file.
+
+    parameters: sd is null at a bound, where `inward` tells how far inside the value may lie (68 %).
+    """
+    verdict = assessment or assess(correlation)
+    return {
+        "status": verdict.status,
+        "reasons": list(verdict.reasons),
+        "method": correlation.method,
+        "evaluations": len(correlation.run.evaluated),
+        "rating": correlation.rating,
+        "feasible": correlation.feasible,
+        "mean_improvement_percent": correlation.mean_improvement,
+        "characteristics": characteristic_entries(correlation),
+        "parameters": {
+            r.path: {"baseline": r.baseline, "final": r.final, "sd": r.sd, "inward": r.inward}
+            for r in parameter_rows(correlation)
+        },
+        "axle": str(axle_path),
+        "seconds": correlation.seconds,
+        "stopped": correlation.run.stopped,
+        "steps": list(correlation.steps),
+        "notes": list(correlation.notes),
+    }
+
+
+def correlation_lines(correlation: Correlation, assessment: Assessment | None = None) -> list[str]:
+    """The outcome for a terminal, its status first; * marks what lies outside interval and noise."""
+    words = summary(correlation, assessment)
+    head = f"{'characteristic':34}{'target':>11}{'baseline':>11}{'final':>11}{'improved':>10}  unit"
+    lines = [words.pop("Status"), head]
+    for r in characteristic_rows(correlation):
+        e = r.entry
+        percent = f"{e.percent:.1f} %" if math.isfinite(e.percent) else "-"
+        mark = " " if inside(e) else "*"
+        lines.append(
+            f"{r.id:34}{e.target.value:>11.4g}{e.baseline:>11.4g}{e.final:>11.4g}{percent:>10} {mark}{r.unit}"
+        )
+    lines += [f"{key}: {text}" for key, text in words.items()]
+    return lines + remark_sentences(correlation)

@@ -1,0 +1,79 @@
+"""Handover of a discovery: everything that it leaves to the engineer."""
+
+from __future__ import annotations
+
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+from doe_kc.axle_file.write import write_axle
+from doe_kc.discovery.result import Discovery
+from doe_kc.ground.output import write_csv
+from doe_kc.measurement import Measurement
+from doe_kc.report.discovery_effects import effect_frame
+from doe_kc.report.discovery_figures import write_discovery_figures
+from doe_kc.report.discovery_tables import (
+    disagreement_frame,
+    gap_frame,
+    held_out_frame,
+    library_frame,
+    parameter_frame,
+)
+from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
+from doe_kc.report.discovery_workbook import write_discovery_workbook
+from doe_kc.report.page import write_discovery_page
+from doe_kc.study import Study
+
+DISCOVERY_TABLES = {
+    "disagreement.csv": disagreement_frame,
+    "effects.csv": effect_frame,
+    "library.csv": library_frame,
+    "gap.csv": gap_frame,
+    "held_out.csv": held_out_frame,
+    "parameters.csv": parameter_frame,
+}
+AXLE = "axle.toml"
+EFFECTS_ONLY = "axle_effects_only.toml"
+
+
+def write_discovery(
+    study: Study,
+    discovery: Discovery,
+    measurement: Measurement,
+    folder: Path,
+    *,
+    workers: int | None = None,
+) -> list[Path]:
+    """axle.toml (refitted, with the effects), six tables, discovery.xlsx, report.html and the figures.
+
+    Where there are effects, axle_effects_only.toml is the study's axle with them, and with friction the
+    loops driven before the record; nothing else changed.
+    Returns the paths. workers: processes that draw. RunError when the folder cannot be written.
+    """
+    axle = discovery.fitted.model.axle_at(discovery.fitted.z)
+    written = [write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(discovery))]
+    if discovery.fitted.model.members:
+        extended = discovery.fitted.model.with_effects(discovery.fitted.z)
+        written.append(write_axle(extended, study.axle_path, folder / EFFECTS_ONLY, note="effects only"))
+    notes = {
+        "Axle": f"{axle.name}: {AXLE}, from {study.axle_path.name}",
+        "Run time": f"{discovery.seconds:.0f} s",
+    }
+    words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
+    known = {"Measurement": measurement.manifest.name, **notes}
+    return [
+        *written,
+        *(write_csv(folder / name, make(discovery)) for name, make in DISCOVERY_TABLES.items()),
+        write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
+        write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words),
+        *write_discovery_figures(
+            discovery, folder, study=study.name, workers=workers, pictures=study.pictures
+        ),
+    ]
+
+
+def axle_note(discovery: Discovery) -> str:
+    """First line of the axle file: the verdict, and what the file holds beyond the nominal axle."""
+    members = ", ".join(hypothesis_label(h).lower() for h in discovery.fitted.model.members)
+    lead = "leads, not confirmed: " if discovery.verdict == "unexplained" else ""
+    return f"{HEADLINES[discovery.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")

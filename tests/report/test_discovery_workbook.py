@@ -1,0 +1,84 @@
+"""The discovery workbook, read back."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from openpyxl import load_workbook
+from openpyxl.workbook import Workbook
+from openpyxl.worksheet.worksheet import Worksheet
+
+from doe_kc.ground.errors import RunError
+from doe_kc.report.discovery_verdict_sheet import verdict_lines
+from doe_kc.report.discovery_words import STATUS_WORDS
+from doe_kc.report.discovery_workbook import write_discovery_workbook
+from tests.discovery.cases import discovery
+from tests.report.correlations import EVIL
+
+SHEETS = ["Verdict", "Disagreement", "Effects", "Library", "Gap", "Held out", "Parameters", "Legend"]
+CARS = ["none", "named", "class", "unexplained", "lead", "two"]
+
+
+def written(tmp_path: Path, car: str, study: str = "Study") -> Workbook:
+    path = tmp_path / f"{car}.xlsx"
+    return load_workbook(
+        write_discovery_workbook(path, discovery(car), study=study, date="2026-01-31", notes={"Axle": EVIL})
+    )
+
+
+def column(ws: Worksheet, head: str) -> list[object]:
+    at = [c.value for c in ws[4]].index(head) + 1
+    return [ws.cell(r, at).value for r in range(5, ws.max_row + 1)]
+
+
+@pytest.mark.parametrize("car", CARS)
+def test_sheets_and_rows(car: str, tmp_path: Path) -> None:
+    book, found = written(tmp_path, car), discovery(car)
+    assert book.sheetnames == SHEETS
+    assert len(column(book["Disagreement"], "z re-tuned")) == len(found.raw.names)
+    status = column(book["Library"], "Status")
+    assert len(status) == len(found.standings)
+    assert set(status) <= set(STATUS_WORDS.values())
+    assert len(column(book["Gap"], "Re-tuned")) == 1 + len(found.gaps)
+    assert column(book["Parameters"], "Path") == list(found.fitted.model.space.paths)
+    text = [row[1].value for row in book["Verdict"].iter_rows(min_row=4)]
+    assert found.sentences[0] in str(text[0])
+
+
+def test_what_is_beyond_noise_comes_first_and_is_printed_the_worst_on_top(tmp_path: Path) -> None:
+    ws = written(tmp_path, "named")["Disagreement"]
+    sizes = [abs(float(v)) for v in column(ws, "z re-tuned") if isinstance(v, int | float)]
+    marked = [bool(v) for v in column(ws, "Beyond noise")]
+    beyond = sum(marked)
+    assert 0 < beyond < len(sizes) and all(marked[:beyond])
+    for part in (sizes[:beyond], sizes[beyond:]):
+        assert part == sorted(part, reverse=True)
+    assert str(ws.print_area).endswith(f"$H${4 + beyond}")
+    assert "re-tuned" in str(column(ws, "Beyond noise")[0])
+
+
+def test_text_never_becomes_a_formula(tmp_path: Path) -> None:
+    book = written(tmp_path, "named", study="=1+1" + EVIL)
+    assert not [c for ws in book for row in ws.iter_rows() for c in row if c.data_type == "f"]
+
+
+def test_sheets_without_rows_say_so(tmp_path: Path) -> None:
+    book = written(tmp_path, "none")
+    assert "No effect" in str(book["Effects"].cell(5, 1).value)
+    assert "No effect" in str(book["Held out"].cell(5, 1).value)
+
+
+def test_the_verdict_tells_what_is_open_and_what_to_test() -> None:
+    heads = [head for head, _ in verdict_lines(discovery("class"))]
+    assert "Cannot be told apart" in heads and "Test next" in heads
+    lines = dict(verdict_lines(discovery("unexplained")))
+    assert "standard deviations" in lines["Unexplained at"] and "Without the library" in lines
+    assert "Lead" in dict(verdict_lines(discovery("lead")))
+    assert "Effect" in dict(verdict_lines(discovery("named")))
+
+
+def test_unwritable_place_is_one_sentence(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("a file")
+    with pytest.raises(RunError, match="out"):
+        write_discovery_workbook(tmp_path / "out" / "x.xlsx", discovery("none"), study="S", date="d")
