@@ -14,7 +14,8 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
-from doe_kc.axle import Axle, read_axle  # noqa: E402  # after the thread limits
+from doe_kc.axle import Axle  # noqa: E402  # after the thread limits
+from doe_kc.axle_file import read_axle
 
 
 def example_axle() -> Axle:

@@ -25,8 +25,9 @@ from doe_kc.characteristics import reduce_all
 from doe_kc.effects import apply_effect
 from doe_kc.sampling import sample
 from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.equilibria import March
 from doe_kc.solver.kernel import Buffered, kernel
-from doe_kc.solver.march import March, NewtonSettings
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.static import static_state
 from doe_kc.solver.suite import library_for, solve

@@ -10,11 +10,12 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from doe_kc.axle import Axle, Parameter, design_parameters, read_axle
-from doe_kc.axle_file.schema import Positive, Strict
+from doe_kc.axle import Axle, Parameter, design_parameters
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.discovery.options import DiscoveryOptions
 from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.fields import Positive, Strict
 from doe_kc.ground.files import read_toml, validate
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES

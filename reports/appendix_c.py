@@ -16,7 +16,7 @@ from appendix_c_text import markdown
 from axes import draw_matrix, figure
 from matplotlib.figure import Figure
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report.style import save

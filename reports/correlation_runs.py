@@ -20,8 +20,8 @@ from typing import Any
 import numpy as np
 
 from doe_kc import __version__
-from doe_kc.axle import read_axle
 from doe_kc.axle.model import Axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.loop import Run, run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from report_text import number, table
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.campaign.executors import processes
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.discover import discover

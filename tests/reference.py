@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from doe_kc.axle import Axle, parameter_value, read_axle, with_values
+from doe_kc.axle import Axle, parameter_value, with_values
+from doe_kc.axle_file import read_axle
 from doe_kc.effects import apply_effect
 from doe_kc.load_cases import LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from doe_kc.axle import design_parameters, read_axle
+from doe_kc.axle import design_parameters
+from doe_kc.axle_file import read_axle
 from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.study import Study, read_study, select

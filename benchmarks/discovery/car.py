@@ -12,11 +12,11 @@ from benchmarks.discovery.hidden import Hidden
 from benchmarks.discovery.outside import Outside
 from benchmarks.discovery.path import Bench, triangle
 from doe_kc.axle import Axle
+from doe_kc.axle.force_curve import curve_values
 from doe_kc.axle.model import BUSHINGS, both
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
-from doe_kc.solver.curve import curve_values
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from benchmarks.discovery.chance import sign
 from benchmarks.discovery.path import SAMPLES
 from benchmarks.discovery.sensors import RESOLUTION, kind
 from doe_kc.axle import Axle
+from doe_kc.axle.force_curve import curve_values
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.curve import curve_values
 
 Channels = Mapping[str, FloatArray]
 """Response -> (2, n)."""

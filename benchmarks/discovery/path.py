@@ -15,8 +15,10 @@ from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
 from doe_kc.solver.diagnosis import sweep_failure
+from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.march import NewtonSettings, Start, march
+from doe_kc.solver.march import march
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Failure, NotConverged, StaticState
 from doe_kc.solver.static import control_matrix, static_state
 from doe_kc.solver.suite import library_for

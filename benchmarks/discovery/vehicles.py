@@ -6,8 +6,9 @@ import math
 from pathlib import Path
 
 from benchmarks.discovery.chance import cut_normal, spread, stream
-from doe_kc.axle import Axle, design_parameters, read_axle, with_values
+from doe_kc.axle import Axle, design_parameters, with_values
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS
+from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"

@@ -1,11 +1,10 @@
-"""The axle as data: file format, parameters, and how to change them."""
+"""The axle as data: its parameters, and how to change them."""
 
 from __future__ import annotations
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value, with_values
 from doe_kc.axle.plausibility import axle_warnings
-from doe_kc.axle_file.read import read_axle
 
 __all__ = [
     "Axle",
@@ -13,6 +12,5 @@ __all__ = [
     "axle_warnings",
     "design_parameters",
     "parameter_value",
-    "read_axle",
     "with_values",
 ]

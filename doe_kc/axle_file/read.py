@@ -9,15 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from doe_kc.axle.force_curve import curve_values
 from doe_kc.axle.geometry import check_geometry
 from doe_kc.axle.model import BUSHING_AXES, STRUT_BENDING, STRUT_TORSION, Axle, both, strut_clamp
+from doe_kc.axle.parameters import with_values
 from doe_kc.axle.topology import Topology
 from doe_kc.axle_file.schema import AxleFile, Stop, Sweep
+from doe_kc.effects import apply_effect, refuse_on_rig
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.files import read_toml, validate
 from doe_kc.load_cases import CASE_ORDER, LOAD_CASES, LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
-from doe_kc.solver.curve import curve_values
 
 NM_PER_DEG = 1000.0 * 180.0 / np.pi
 
@@ -29,9 +31,6 @@ def read_axle(path: Path) -> Axle:
 
 def axle_from_document(document: Mapping[str, Any], *, source: str) -> Axle:
     """Axle from the parsed file; `source` names it in messages."""
-    from doe_kc.axle.parameters import with_values
-    from doe_kc.effects import apply_effect, refuse_on_rig
-
     file = validate(AxleFile, document, source)
     axle = Axle(
         name=file.name,

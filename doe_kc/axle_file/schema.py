@@ -5,21 +5,10 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from doe_kc.axle.model import BUSHING_AXES, DEFAULT_FOLLOW
-
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Point = Annotated[list[Finite], Field(min_length=3, max_length=3)]
-Pair = Annotated[list[Finite], Field(min_length=2, max_length=2)]
-
-
-class Strict(BaseModel):
-    """Unknown keys are errors, numbers are not read from strings."""
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+from doe_kc.ground.fields import Finite, NotNegative, Pair, Point, Positive, Strict
 
 
 class Units(Strict):

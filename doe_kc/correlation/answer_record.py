@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from doe_kc.axle_file.schema import Strict
+from doe_kc.ground.fields import Strict
 
 
 class GapRecord(Strict):

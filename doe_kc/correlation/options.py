@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from doe_kc.axle_file.schema import Strict
+from doe_kc.ground.fields import Strict
 
 Count = Annotated[int, Field(ge=1)]
 Gradients = Literal["auto"] | bool

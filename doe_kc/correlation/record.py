@@ -9,7 +9,6 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
-from doe_kc.axle_file.schema import Strict
 from doe_kc.campaign.key import design_key
 from doe_kc.campaign.store import Store
 from doe_kc.correlation.answer_record import AnswerRecord
@@ -20,6 +19,7 @@ from doe_kc.correlation.posterior import ParameterPosterior
 from doe_kc.correlation.problem import Candidate, Problem, RatingForecast
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError
+from doe_kc.ground.fields import Strict
 from doe_kc.ground.files import validate
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import Space, Tie, Variable

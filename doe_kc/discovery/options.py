@@ -6,9 +6,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from doe_kc.axle_file.schema import Strict
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.fields import Strict
 
 
 class DiscoveryOptions(Strict):

@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -24,10 +24,9 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.elements import ELEMENTS
+from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import Kernel, kernel
-
-if TYPE_CHECKING:
-    from doe_kc.solver import march as _march
+from doe_kc.solver.newton import NewtonSettings
 
 CACHE_VARIABLE = "DOE_KC_CACHE"
 COMPILE_VARIABLE = "DOE_KC_COMPILE"
@@ -82,12 +81,12 @@ class CompiledKernel:
         self,
         kernel: Kernel,
         c: FloatArray,
-        start: _march.Start,
+        start: Start,
         s: FloatArray,
         u: FloatArray,
         active: int,
-        settings: _march.NewtonSettings,
-    ) -> _march.March:
+        settings: NewtonSettings,
+    ) -> March:
         """See `march.march`."""
         capacity = SUBSTEPS * len(s) if kernel.nz else 0
         path, passed = self._march(kernel, c, start, s, u, active, settings, capacity)
@@ -99,16 +98,14 @@ class CompiledKernel:
         self,
         kernel: Kernel,
         c: FloatArray,
-        start: _march.Start,
+        start: Start,
         s: FloatArray,
         u: FloatArray,
         active: int,
-        settings: _march.NewtonSettings,
+        settings: NewtonSettings,
         capacity: int,
-    ) -> tuple[_march.March, int]:
+    ) -> tuple[March, int]:
         """The path, with `capacity` of its substeps, and how many there were."""
-        from doe_kc.solver.march import Halt, substeps
-        from doe_kc.solver.march import March as Marched
 
         n = len(s)
         x, z = np.zeros((n, kernel.nx)), np.zeros((n, kernel.nz))
@@ -143,11 +140,11 @@ class CompiledKernel:
             raise MemoryError("the solver could not allocate its working memory")
         between = substeps(kernel, rows[: passed[0]]) if passed[0] else None
         if not code:
-            return Marched(x, z, y, iterations, level, None, counts, None, between), int(passed[0])
+            return March(x, z, y, iterations, level, None, counts, None, between), int(passed[0])
         (s_end, snap), rest = end[:2], end[2:]
         u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
         halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
-        return Marched(x, z, y, iterations, level, code - 1, counts, halt, between), int(passed[0])
+        return March(x, z, y, iterations, level, code - 1, counts, halt, between), int(passed[0])
 
 
 def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:

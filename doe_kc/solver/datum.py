@@ -6,8 +6,8 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
+from doe_kc.solver.equilibria import Substeps
 from doe_kc.solver.kernel import Kernel
-from doe_kc.solver.march import Substeps
 from doe_kc.solver.static import control_matrix
 
 DATUM = (

@@ -6,8 +6,8 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE
+from doe_kc.solver.equilibria import Halt, March, Start
 from doe_kc.solver.kernel import Buffered, Kernel
-from doe_kc.solver.march import Halt, March, Start
 from doe_kc.solver.newton import Newton, NewtonSettings
 from doe_kc.solver.result import Failure
 

@@ -8,17 +8,14 @@ Reference: E. L. Allgower, K. Georg, Introduction to Numerical Continuation Meth
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.compiled import CompiledKernel
+from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.solver.newton import Iterate, Newton, NewtonSettings
-
-__all__ = ["Halt", "March", "NewtonSettings", "Start", "distance", "march"]
 
 HISTORY = 4
 PREDICTION_SHARE = 0.1
@@ -38,77 +35,6 @@ ONWARD = 1e-3
 """Part of a step, on which the tangent at its end is measured."""
 RETURN = 0.01
 """Over the step, or over its distance from the prediction: how near the way back must come."""
-
-
-@dataclass(frozen=True)
-class Halt:
-    """Where a march ended before its end: the last equilibrium, at path coordinate s under the controls u.
-
-    snap: distance in mm (100 mm per Gibbs unit) from its prediction of an equilibrium that is not the
-    continuation of the path; 0 when Newton's method found none.
-    """
-
-    s: float
-    x: FloatArray
-    u: FloatArray
-    z: FloatArray
-    snap: float
-
-
-@dataclass(frozen=True)
-class Substeps:
-    """Every equilibrium that a march of an axle with friction went through, those inside steps included.
-
-    step: (m,) index of the step; share: (m,) of it, 1 at its end; u: (m, nu), x: (m, nx); z: (m, nz) friction
-    states before.
-    """
-
-    step: np.ndarray
-    share: FloatArray
-    u: FloatArray
-    x: FloatArray
-    z: FloatArray
-
-
-def substeps(kernel: Kernel, rows: FloatArray) -> Substeps:
-    """From rows (m, 2 + nu + nx + nz) of step, share, u, x, z."""
-    step, share, u, x, z = np.split(rows, np.cumsum([1, 1, kernel.nu, kernel.nx]), axis=1)
-    return Substeps(step[:, 0].astype(int), share[:, 0], u, x, z)
-
-
-@dataclass(frozen=True)
-class March:
-    """Equilibria along a branch. x: (n, nx); z: (n, nz) states after each step; y: (n, ny) outputs.
-
-    failed: index of the step that did not converge, or None; rows after it are not filled.
-    counts: residuals, Jacobians, factorizations, Newton steps. halt: of a march that failed.
-    between: of an axle with friction.
-    """
-
-    x: FloatArray
-    z: FloatArray
-    y: FloatArray
-    iterations: np.ndarray
-    level: FloatArray
-    failed: int | None
-    counts: np.ndarray
-    halt: Halt | None = None
-    between: Substeps | None = None
-
-
-@dataclass(frozen=True)
-class Start:
-    """Known equilibria before the branch, newest last: path coordinates s, states x; controls u and
-    friction states z of the newest.
-
-    guess: its only row of x is no equilibrium, so that nothing has to continue it.
-    """
-
-    s: FloatArray
-    x: FloatArray
-    u: FloatArray
-    z: FloatArray
-    guess: bool = False
 
 
 def march(

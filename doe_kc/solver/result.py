@@ -10,7 +10,7 @@ import numpy as np
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
-from doe_kc.solver.march import March
+from doe_kc.solver.equilibria import March
 
 
 @dataclass(frozen=True)

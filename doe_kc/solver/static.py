@@ -11,8 +11,10 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.diagnosis import static_failure, sweep_failure
+from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel
-from doe_kc.solver.march import NewtonSettings, Start, distance, march
+from doe_kc.solver.march import distance, march
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Failure, StaticState
 
 

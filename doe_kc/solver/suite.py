@@ -21,8 +21,10 @@ from doe_kc.solver.compiled import (
     compiled_kernel,
 )
 from doe_kc.solver.diagnosis import sweep_failure
+from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.march import NewtonSettings, Start, march
+from doe_kc.solver.march import march
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import (
     BranchSolution,
     CaseSolution,

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from doe_kc.axle_file.schema import Finite, NotNegative, Positive, Strict
+from doe_kc.ground.fields import Finite, NotNegative, Positive, Strict
 
 Goal = Literal["target", "minimize", "maximize"]
 

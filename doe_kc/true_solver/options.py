@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pydantic import Field, field_validator
 
-from doe_kc.axle_file.schema import Positive, Strict
 from doe_kc.ground.errors import nearest
+from doe_kc.ground.fields import Positive, Strict
 from doe_kc.load_cases import LOAD_CASES
 
 

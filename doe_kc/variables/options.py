@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from doe_kc.axle_file.schema import Finite, Pair, Strict
+from doe_kc.ground.fields import Finite, Pair, Strict
 
 Levels = Annotated[int, Field(ge=2, le=1_000_001)] | Literal["continuous"]
 Distribution = Literal["uniform", "gaussian"]

@@ -104,7 +104,7 @@ def discover_folder(
 
     variables: as in a study, by default all of the axle.
     """
-    from doe_kc.axle import read_axle
+    from doe_kc.axle_file import read_axle
     from doe_kc.measurement import reduce_measurement
     from doe_kc.workflow.discovery_document import discovery_document
 

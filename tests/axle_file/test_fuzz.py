@@ -10,7 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from doe_kc.axle import Axle, design_parameters, parameter_value, read_axle, with_values
+from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
+from doe_kc.axle_file import read_axle
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import design_parameters, parameter_value, read_axle
+from doe_kc.axle import design_parameters, parameter_value
+from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.read import axle_from_document
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE, nominal

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import Axle, parameter_value, read_axle, with_values
+from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.model import strut_clamp
+from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import AXLE_HEADER, write_axle
 from doe_kc.characteristics import reduce_all
 from doe_kc.effects import EFFECTS, apply_effect

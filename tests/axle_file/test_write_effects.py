@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import Axle, read_axle, with_values
+from doe_kc.axle import Axle, with_values
+from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.effect_tables import unit_beside
 from doe_kc.axle_file.write import write_axle
 from doe_kc.effects import EFFECTS, apply_effect

@@ -16,7 +16,7 @@ from benchmarks.discovery.cases import Case, cases, publish
 from benchmarks.discovery.followup import VARIABLES, Advice, advised, carry_out
 from benchmarks.discovery.generator import RECORDS, HiddenCar
 from benchmarks.discovery.unsealing import followups
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.measurement import reduce_measurement
 from doe_kc.solver.result import Failure, NotConverged
 from doe_kc.variables import VariableOptions, build_space

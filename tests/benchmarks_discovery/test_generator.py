@@ -11,7 +11,7 @@ import pytest
 from benchmarks.discovery.generator import RECORDS, HiddenCar, hidden_car
 from benchmarks.discovery.suites import SUITES
 from benchmarks.discovery.vehicles import nominal_axle, write_nominal
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.measurement import reduce_measurement
 from doe_kc.solver.curve_set import curve_set

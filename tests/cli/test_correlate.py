@@ -18,7 +18,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import reduce_all
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve

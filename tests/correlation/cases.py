@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.axle import read_axle, with_values
+from doe_kc.axle import with_values
 from doe_kc.axle.model import Axle
+from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.loop import Evaluate

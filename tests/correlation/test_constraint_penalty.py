@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.correlation.constraint_penalty import WALL_MARGIN, WALL_STIFFNESS, Walls
 from doe_kc.targets import build_targets

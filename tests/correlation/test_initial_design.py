@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.initial_design import Opening
 from doe_kc.correlation.methods._sampled import BROAD
 from doe_kc.correlation.methods.ego import OPENING, WITH_SLOPES

@@ -33,7 +33,7 @@ def start() -> Outcome:
 
 
 def targets(*options: CharacteristicOptions, curves: tuple[CurveOptions, ...] = ()) -> Targets:
-    from doe_kc.axle import read_axle
+    from doe_kc.axle_file import read_axle
 
     return build_targets(read_axle(AXLE), measured("car_b"), options, curves, source="test")
 

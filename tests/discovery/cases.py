@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.axle import read_axle, with_values
+from doe_kc.axle import with_values
 from doe_kc.axle.model import Axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
 from doe_kc.discovery.discover import discover

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.discovery.discover import discover, resolved, shown_traces
 from doe_kc.discovery.model import EffectModel

@@ -9,8 +9,9 @@ from typing import Any
 
 import pytest
 
-from doe_kc.axle import parameter_value, read_axle, with_values
+from doe_kc.axle import parameter_value, with_values
 from doe_kc.axle.topology import Topology
+from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
 from doe_kc.effects import EFFECTS, Option, apply_effect
 from doe_kc.ground.errors import InputError

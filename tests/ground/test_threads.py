@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from doe_kc.axle import design_parameters, read_axle
+from doe_kc.axle import design_parameters
+from doe_kc.axle_file import read_axle
 from doe_kc.campaign.executors import processes
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import Likelihood, build_likelihood
 from doe_kc.correlation.loop import Run, run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings

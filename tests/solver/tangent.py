@@ -8,8 +8,10 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.axle import Axle
+from doe_kc.solver.equilibria import March, Start
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.march import March, NewtonSettings, Start, march
+from doe_kc.solver.march import march
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import StaticState
 from doe_kc.solver.static import control_matrix, static_state
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from doe_kc.solver.curve import pchip_slopes
+from doe_kc.axle.force_curve import pchip_slopes
 
 RNG = np.random.default_rng(11)
 DRAWN = [

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import simpson
 
 from doe_kc.effects import apply_effect
-from doe_kc.solver.march import March
+from doe_kc.solver.equilibria import March
 from tests.reference import nominal
 from tests.solver.independent import evaluate, tyre_energy
 from tests.solver.tangent import Rig

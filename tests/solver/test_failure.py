@@ -13,8 +13,9 @@ from doe_kc.axle_file.read import axle_from_document
 from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import DoeKcError, RunError
 from doe_kc.solver.diagnosis import unresisted
+from doe_kc.solver.equilibria import Halt
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.march import Halt, NewtonSettings
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Failure, NotConverged
 from doe_kc.solver.suite import solve
 from tests.reference import EXAMPLE, nominal

@@ -21,7 +21,7 @@ from doe_kc.solver.elements.wheel import SPIN_STIFFNESS
 from doe_kc.solver.interface_columns import law_columns
 from doe_kc.solver.interface_laws import LAWS, stop_operator
 from doe_kc.solver.interfaces import Influences, interface_influences
-from doe_kc.solver.march import NewtonSettings
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.suite import solve
 from tests.reference import nominal

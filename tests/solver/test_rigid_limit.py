@@ -17,7 +17,7 @@ from doe_kc.axle import Axle, with_values
 from doe_kc.axle.model import BUSHINGS
 from doe_kc.load_cases.steer import Steer
 from doe_kc.load_cases.vertical import Vertical
-from doe_kc.solver.march import NewtonSettings
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.suite import solve
 from tests.reference import nominal, variant
 

@@ -16,7 +16,7 @@ from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.march import NewtonSettings
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
 from doe_kc.solver.suite import solve

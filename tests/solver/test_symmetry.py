@@ -15,7 +15,7 @@ from doe_kc.effects import apply_effect
 from doe_kc.load_cases import LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.solver.elements.responses import OUTPUT_UNITS
-from doe_kc.solver.march import NewtonSettings
+from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from tests.reference import EXAMPLE, nominal

@@ -16,7 +16,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from doe_kc.axle import Axle, read_axle, with_values
+from doe_kc.axle import Axle, with_values
+from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document

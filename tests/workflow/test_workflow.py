@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import design_parameters, read_axle
+from doe_kc.axle import design_parameters
+from doe_kc.axle_file import read_axle
 from doe_kc.curves import RIG_RESPONSES
 from doe_kc.ground.output import write_json
 from doe_kc.solver.curve_set import curve_set

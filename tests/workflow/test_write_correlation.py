@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.ground.output import write_json
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.write_correlation import correlation_document, correlation_lines, write_correlation

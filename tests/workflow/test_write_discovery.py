@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from doe_kc.axle import read_axle
+from doe_kc.axle_file import read_axle
 from doe_kc.discovery.exclusion import Standing
 from doe_kc.discovery.result import Finding, ParameterEstimate
 from doe_kc.discovery.sentences import odds_words

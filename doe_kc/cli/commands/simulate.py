@@ -10,9 +10,9 @@ from typing import Annotated
 
 import typer
 
-from doe_kc.axle import read_axle
 from doe_kc.axle.model import Axle
 from doe_kc.axle.plausibility import axle_warnings
+from doe_kc.axle_file import read_axle
 from doe_kc.cli._app import app
 from doe_kc.cli.changes import apply_effects, apply_settings
 from doe_kc.cli.options import JsonOption

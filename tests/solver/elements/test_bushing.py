@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
+from doe_kc.axle.force_curve import curve_values
 from doe_kc.solver.builder import Body, Builder
-from doe_kc.solver.curve import curve_values
 from doe_kc.solver.elements import bushing
 from doe_kc.solver.elements.lower_arm import ARM_AXES
 from tests.solver.elements.mini import MIRROR, about_origin, builder, number, stub, turned, wrench
