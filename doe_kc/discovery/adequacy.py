@@ -8,13 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr
 
-from doe_kc.discovery.disagreement import NOISE, NOISE_DRAWS, Map
+from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.held_out import HeldOut
-
-UNLISTED = 0.02
-"""Odds, before the records, that an effect outside the library is at work: an assumption."""
-LIMIT = 4.0
-"""Standard deviations by which the RMS of a load case held out may be above 1."""
+from doe_kc.discovery.thresholds import LIMIT, NOISE, NOISE_DRAWS, UNLISTED
 
 
 @dataclass(frozen=True)

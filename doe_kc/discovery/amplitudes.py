@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.calibration import INPUT_GAIN
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.thresholds import INPUT_GAIN
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 

@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from doe_kc.discovery.thresholds import CONFIDENT, RELEVANT
 from doe_kc.effects.hypothesis import Size
-
-RELEVANT = 0.1
-"""Typical sizes below which an effect is a trace: seen, but not worth a name."""
-CONFIDENT = 2.0
-"""Standard deviations by which a size must be beyond either."""
 
 Sized = Iterable[tuple[Size, float, float]]
 """Amplitude of a size in typical ones, and its standard deviation."""

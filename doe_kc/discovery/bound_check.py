@@ -15,19 +15,11 @@ from doe_kc.discovery.disagreement import remaining_map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search import EffectSearch, search
+from doe_kc.discovery.thresholds import AT, BOUND_EVIDENCE, FACTORS, HELD
 from doe_kc.discovery.workers import Bench
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import Space
-
-FACTORS = (1.5, 2.0)
-"""By how much wider ranges are tried."""
-HELD = 0.05
-"""Share of the parameters that must be at a bound before wider ones are tried."""
-AT = 1e-9
-"""Of a range: rounding of a value at its bound."""
-BOUND_EVIDENCE = 7.0
-"""ln evidence, a thousand to one, for which all bounds are widened."""
 
 
 def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> tuple[EffectSearch, float]:

@@ -11,10 +11,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from doe_kc.axle.model import Axle
+from doe_kc.discovery.thresholds import INPUT_GAIN
 from doe_kc.ground.typing import FloatArray
-
-INPUT_GAIN = 0.003
-"""Standard deviation of an input's scale: load cells, travel and angle sensors of a rig are good to 0.3 %."""
 
 
 def calibrated(axle: Axle, cases: Sequence[str], errors: FloatArray) -> Axle:

@@ -14,23 +14,19 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.screen import NULL_SHARE, Screened
+from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.thresholds import (
+    ANGLE,
+    BENCH_ACCURACY,
+    DETECTION_LEVEL,
+    NULL_SHARE,
+    PARTS_MOST,
+    POSITION,
+    RADIUS,
+)
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from doe_kc.variables.variable import Variable
-
-DETECTION_LEVEL = 10.0
-"""Standard deviations at typical size for which parts are measured, one more at a time."""
-PARTS_MOST = 4
-"""Parts to be measured for one effect."""
-BENCH_ACCURACY = 0.02
-"""Standard deviation of a measured stiffness or rate, relative; test benches of bushings and springs."""
-RADIUS = 0.005
-"""The same of a bar's radius, whose fourth power is its rate."""
-POSITION = 0.1
-"""mm, standard deviation of a point on a measuring machine."""
-ANGLE = 0.02
-"""deg, of an alignment bench."""
 
 
 @dataclass(frozen=True)

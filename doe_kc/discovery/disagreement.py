@@ -9,17 +9,8 @@ import numpy as np
 
 from doe_kc.discovery.contrasts import Contrast, Contrasts
 from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.thresholds import CONTRAST_SHARE, DOUBT, FALSE_ALARM_CHANCE, NOISE_DRAWS
 from doe_kc.ground.typing import FloatArray
-
-FALSE_ALARM_CHANCE = 0.05
-"""Chance that noise alone passes the threshold somewhere on the map."""
-NOISE = 0.01
-"""Chance of a map's largest disagreement below which noise does not explain it."""
-NOISE_DRAWS = 1000
-DOUBT = 0.2
-"""Share added to every variance: what a few repeats leave open of the noise's own size."""
-CONTRAST_SHARE = 1e-4
-"""Share of a contrast's square below which re-tuning is said to absorb it wholly."""
 
 
 @dataclass(frozen=True)

@@ -21,15 +21,13 @@ from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.search import EffectSearch, accepted_at, threshold
 from doe_kc.discovery.sentences import next_tests, sentences
+from doe_kc.discovery.thresholds import WORST
 from doe_kc.discovery.trials import HypothesisFit
 from doe_kc.discovery.verdict import classes, verdict
 from doe_kc.discovery.workers import Bench
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.threads import one_thread
-
-WORST = 8
-"""Unexplained disagreements that are listed."""
 
 
 @one_thread()

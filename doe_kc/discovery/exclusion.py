@@ -14,21 +14,11 @@ from doe_kc.discovery.component_test import ComponentTest, component_tests
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.thresholds import ALIKE_CORRELATION, HIDING, ONE_SIDED, POWER, UNSURE
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
 Status = Literal["found", "trace", "excluded", "unresolved", "not testable", "no solution"]
-POWER = 0.84
-"""Standard deviations above the critical value at which an effect is found in 80 % of cars."""
-ONE_SIDED = 1.645
-"""Standard deviations of a one-sided 95 % limit."""
-ALIKE_CORRELATION = 0.8
-"""|correlation| after re-tuning from which two effects are listed as alike."""
-UNSURE = 0.005
-"""Share of a change's square below which deviations that re-tuning leaves of it are not believed: it is
-linear to first order only, and parameters that follow so far bend."""
-HIDING = 3
-"""Parameters listed that hide an effect."""
 
 
 @dataclass(frozen=True)

@@ -16,16 +16,11 @@ from scipy.linalg import block_diag, cho_factor, cho_solve
 from doe_kc.correlation.likelihood import CurveData, Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import LARGER, TEST_WORTH, TESTS_LISTED
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES, LoadCase
 from doe_kc.load_cases.lateral_offset import LateralOffset
 from doe_kc.solver.result import NotConverged
-
-LARGER = 1.5
-"""Times the amplitude that was measured."""
-TEST_WORTH = 3.0
-"""Standard deviations from which a load case is worth running."""
-TESTS_LISTED = 2
 
 
 @dataclass(frozen=True)

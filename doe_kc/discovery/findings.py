@@ -12,11 +12,11 @@ from scipy.special import log_ndtr, logsumexp, ndtr
 from doe_kc.discovery.alternatives import Alternatives
 from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.belief import believed, matters
-from doe_kc.discovery.disagreement import NOISE
 from doe_kc.discovery.exclusion import wrong_name_chance
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search import EffectSearch
+from doe_kc.discovery.thresholds import BESIDE, DECISIVE, MENTIONED, NOISE, WRONG_NAME_CHANCE
 from doe_kc.discovery.trials import HypothesisFit, amounts
 from doe_kc.discovery.unseen import unseen
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
@@ -25,14 +25,6 @@ from doe_kc.ground.typing import FloatArray
 WEAK, STRONG = 6.0, 10.0
 """Standard deviations below which an effect is not named by them alone, and from which it is named beside any
 other."""
-BESIDE = 0.01
-"""Share of the largest gain from which an effect between the two is named where laws had to be opened."""
-WRONG_NAME_CHANCE = 0.05
-"""Chance of a wrong name from which two effects are alike to the records."""
-DECISIVE = 4.6
-"""ln evidence, a hundred to one, that settles even between effects that are alike."""
-MENTIONED = 0.01
-"""Probability from which a rival is listed."""
 NO_EFFECT = ""
 """In place of an effect's id: none at all."""
 

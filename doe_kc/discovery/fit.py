@@ -18,23 +18,21 @@ from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.thresholds import (
+    FIT_DECREASE,
+    FIT_STEPS,
+    FRESH,
+    LARGEST_RADIUS,
+    LAST_STEP_DECREASE,
+    LEAST_STEP,
+    REUSE_DECREASE,
+)
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
-FIT_DECREASE = 0.02
-"""Predicted decrease of the sum of squares below which a fit stands."""
-REUSE_DECREASE = 3000.0
-"""Decrease of the sum of squares below which derivatives still lead on, though they no longer end a fit."""
-FRESH = 3.0
-"""Decrease since they were taken up to which derivatives may end a fit."""
-LAST_STEP_DECREASE = 1.0
-"""Predicted decrease below which a step is the last, its derivatives those of the step before."""
 POOR, GOOD = 0.25, 0.75
-FIT_STEPS = 24
 FOLLOWED_STEPS = 6
-LEAST_STEP = 1e-4
-LARGEST_RADIUS = 2.0
 
 
 @dataclass(frozen=True)

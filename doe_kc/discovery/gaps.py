@@ -9,10 +9,8 @@ import numpy as np
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import CurveGap, Gap, Returned
+from doe_kc.discovery.thresholds import RETURNS_FROM
 from doe_kc.ground.typing import FloatArray
-
-RETURNS_FROM = 0.5
-"""Distance from nominal, in standard deviations of the prior, from which a return is worth a line."""
 
 
 def gaps(

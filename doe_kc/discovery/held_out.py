@@ -8,15 +8,12 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.discovery.fit import Fit, cost_of, fit, followed
+from doe_kc.discovery.thresholds import NOISE_SD_SHARE, REFIT_STEPS
 from doe_kc.ground.typing import FloatArray
 
 CLOSE = 10.0
 """Decrease of the sum of squares up to which derivatives of the whole fit serve to the end. At 30 an RMS was
 off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
-REFIT_STEPS = 8
-"""Most steps of a refit, which begins close to where it ends."""
-NOISE_SD_SHARE = 0.02
-"""Standard deviation of the noise's own size, relative: it is taken from three runs of every load case."""
 
 
 @dataclass(frozen=True)

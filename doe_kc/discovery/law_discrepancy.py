@@ -16,14 +16,10 @@ from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.discovery.fit import Fit, followed, with_errors
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import DISCREPANCY_SHARES, LENGTH
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import smooth_correlation
-
-DISCREPANCY_SHARES = (0.0, 0.01, 0.02, 0.05, 0.1)
-"""Standard deviations, relative to what the model's law makes of a curve, that are tried for another law."""
-LENGTH = 0.5
-"""Correlation length of that ratio over the input, as a fraction of its amplitude."""
 
 
 @dataclass(frozen=True)

@@ -6,27 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from doe_kc.discovery.belief import RELEVANT
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.thresholds import ABSORBED_SHARE, LEADERS, OF_ONE_KIND, REFIT_SHARE, RELEVANT, RIVAL
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 
-LEADERS = 5
-"""Hypotheses refitted jointly at each step."""
-RIVAL = 0.3
-"""|correlation| of what two effects explain from which they are rivals."""
-REFIT_SHARE = 0.2
-"""Share of the best screened gain below which a hypothesis is not refitted."""
-OF_ONE_KIND = 2
-"""Places of the same effect that are refitted at most."""
 SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
 """Effects that a model may have in several places at once."""
-
-ABSORBED_SHARE = 0.95
-"""Share from which what re-tuning leaves is a small difference of large changes, which a screening to first
-order in the parameters can miss."""
 
 
 def leaders(screened: Sequence[Screened], project: Projection, least: float) -> list[Screened]:

@@ -17,6 +17,7 @@ from doe_kc.curves import CurveSet
 from doe_kc.discovery.calibration import calibrated
 from doe_kc.discovery.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
+from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, CALIBRATION_STEP, DIFFERENCE, RIG
 from doe_kc.effects import apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -24,14 +25,6 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.variables import Space
 
-AMPLITUDE_LIMIT = 2.0
-"""Times what is believed: the amplitude that a search does not go beyond."""
-RIG = 6.0
-"""The same for the nuisances of the rig, in their standard deviations."""
-DIFFERENCE = 1e-3
-"""Step of amplitudes for their derivatives, in typical sizes."""
-CALIBRATION_STEP = 0.1
-"""Step of the inputs' calibrations for their derivatives, in standard deviations."""
 NO_CHARACTERISTICS = np.zeros(0)
 
 

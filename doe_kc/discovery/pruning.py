@@ -8,10 +8,8 @@ import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, to_errors
+from doe_kc.discovery.thresholds import DOUBTFUL
 from doe_kc.discovery.workers import Bench
-
-DOUBTFUL = 10.0
-"""Times the threshold: a member that carries more is not tried without."""
 
 
 def pruned(fit: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]) -> Fit:

@@ -15,6 +15,7 @@ from scipy.optimize import nnls
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.thresholds import COLUMN_SHARE, PLACE_PROBABILITY
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.interface_columns import law_columns
 from doe_kc.solver.interface_laws import LAWS
@@ -23,10 +24,6 @@ from doe_kc.solver.probe import Probe
 
 SIGNED = ("offset", "stiffness")
 """Laws whose amplitude may be negative."""
-COLUMN_SHARE = 1e-6
-"""Share of a column's square below which re-tuning absorbs it wholly."""
-PLACE_PROBABILITY = 0.9
-"""Summed probability from which a place is given."""
 AXIS_WORDS = {
     "x": "along x",
     "y": "along y",

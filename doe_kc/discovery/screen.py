@@ -16,25 +16,19 @@ from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import (
+    HOPELESS,
+    NULL_SHARE,
+    PROBE,
+    SCREEN_DECREASE,
+    SCREEN_STEP_SHARES,
+    SCREEN_STEPS,
+    SHAPES,
+    SMALLER,
+)
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
-
-PROBE = 0.3
-"""First size at which an effect is solved for, in typical sizes."""
-SMALLER = 0.1
-"""Factor of the first size where the effect is not linear below it."""
-SCREEN_STEPS = 4
-SCREEN_STEP_SHARES = (1.0, 0.5, 0.2, 0.05)
-"""Of a step, tried one after the other until one gains."""
-HOPELESS = 1.0
-"""ln likelihood that a step must promise over the model without the effect, or the effect is given up."""
-SCREEN_DECREASE = 0.1
-"""Decrease of the sum of squares below which an amplitude stands."""
-NULL_SHARE = 1e-12
-"""Share of what all sizes of an effect do, in squares, that counts as nothing."""
-SHAPES = (0.0, -2.0, 2.0)
-"""Starts of a shape: it does not exist where the effect is absent (Davies 1977), so several are tried."""
 
 
 @dataclass(frozen=True)

@@ -17,20 +17,10 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.pruning import pruned
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
+from doe_kc.discovery.thresholds import EFFECTS_MOST, FALSE_ALARM, LOOP_EVIDENCE, MOST_STEPS, PROMISING
 from doe_kc.discovery.trials import HypothesisFit, plausible, stiffer_first, tried
 from doe_kc.discovery.workers import Bench
 from doe_kc.effects.hypothesis import Hypothesis
-
-EFFECTS_MOST = 6
-"""Effects, named ones and traces, after which the search ends."""
-MOST_STEPS = 12
-"""Steps after which it ends although effects still come in and out again."""
-FALSE_ALARM = 0.01
-"""Chance that noise alone brings in any effect at a step."""
-LOOP_EVIDENCE = 2.3
-"""ln evidence, ten to one, for which the loops before the record are changed: a loop more takes its time."""
-PROMISING = 1.0
-"""ln evidence to first order from which a hypothesis is screened anew at a later step."""
 
 
 @dataclass(frozen=True)

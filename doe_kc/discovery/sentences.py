@@ -4,22 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from doe_kc.discovery.adequacy import UNLISTED, Adequacy
-from doe_kc.discovery.disagreement import NOISE_DRAWS, Map
+from doe_kc.discovery.adequacy import Adequacy
+from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.exclusion import Standing
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.scan import Scan
+from doe_kc.discovery.thresholds import ADVISED, CERTAIN, NOISE_DRAWS, PARAMETERS_LISTED, UNLISTED
 from doe_kc.discovery.verdict import Verdict
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.numbers import unit_words, with_sd
-
-CERTAIN = 6.0
-"""log10 odds beyond which no more is said: what the models share is less sure than that."""
-ADVISED = 6
-"""Tests that are listed at most."""
-PARAMETERS_LISTED = 8
-"""Parameters that are listed at most."""
 
 
 def sentences(

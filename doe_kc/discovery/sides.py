@@ -6,6 +6,7 @@ import numpy as np
 
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import ANGLE, POSITION
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import curve_gradients
 from doe_kc.solver.sensitivity import sensitivities

@@ -10,12 +10,10 @@ import numpy as np
 from doe_kc.discovery.belief import believed
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screen import Screened
+from doe_kc.discovery.thresholds import TIED
 from doe_kc.discovery.workers import Bench
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
-
-TIED = 1.0
-"""ln evidence up to which two places are taken for equally good."""
 
 
 @dataclass(frozen=True)

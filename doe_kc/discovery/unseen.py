@@ -10,13 +10,9 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.search import EffectSearch
+from doe_kc.discovery.thresholds import PRESENT, TRACE_LEVEL
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
-
-PRESENT = 0.03
-"""Standard deviation of a trace, in typical sizes."""
-TRACE_LEVEL = 4.0
-"""Standard deviations after re-tuning from which a trace would have been brought in."""
 
 
 def unseen(search: EffectSearch) -> FloatArray:

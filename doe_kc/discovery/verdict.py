@@ -5,22 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from doe_kc.discovery.adequacy import LIMIT
-from doe_kc.discovery.disagreement import NOISE, Map
+from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.result import Finding, VerdictKind
-
-NAME_PROBABILITY = 0.9
-"""Probability against its rivals from which an effect is named by itself."""
-CLOSED = 0.9
-"""Share of the gap that a name must close, where the gap is clear of noise."""
-CLEAR = 5.0
-"""Standard deviations of a sum of squares beyond which a gap is clear of noise."""
-HARM = 6.0
-"""ln predictive density that a held-out load case may lose to chance."""
-HARM_SHARE = 0.02
-"""Share of the total gain that a held-out load case may lose to the shape of the effect's law."""
+from doe_kc.discovery.thresholds import CLEAR, CLOSED, HARM, HARM_SHARE, LIMIT, NAME_PROBABILITY, NOISE
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, Ledger, fingerprint, key_of
 from doe_kc.discovery.scan import Scan, scan
 from doe_kc.discovery.screen import Screened, effort, screen
+from doe_kc.discovery.thresholds import CHUNKS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
@@ -22,8 +23,6 @@ from doe_kc.solver.result import NotConverged
 Watch = Callable[[str, int], None]
 """Told what has been done, and how many steps of the work that were."""
 T = TypeVar("T")
-CHUNKS = 4
-"""Parts that a screening is cut into for each worker: enough for a bar that moves."""
 
 
 class Bench:

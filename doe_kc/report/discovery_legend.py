@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from doe_kc.discovery.belief import RELEVANT
+from doe_kc.discovery.thresholds import RELEVANT
 
 DISCOVERY_LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0.",

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch
 
-from doe_kc.discovery.gaps import RETURNS_FROM
+from doe_kc.discovery.thresholds import RETURNS_FROM
 from doe_kc.ground.numbers import short, unit_words
 from doe_kc.report import style
 from doe_kc.report.discovery_gaps import MODEL_COLOURS

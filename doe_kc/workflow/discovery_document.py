@@ -10,7 +10,8 @@ from typing import Any
 from doe_kc.discovery.adequacy import Adequacy
 from doe_kc.discovery.exclusion import Standing, said_limit
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.sentences import CERTAIN, adequacy_words, odds_words
+from doe_kc.discovery.sentences import adequacy_words, odds_words
+from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.effects.hypothesis import Size
 from doe_kc.report.discovery_sizes import size_words
 from doe_kc.report.discovery_words import HEADLINES, contrast_words, effect_label, hypothesis_label

@@ -7,9 +7,9 @@ import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.amplitudes import amplitudes
-from doe_kc.discovery.calibration import INPUT_GAIN
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import INPUT_GAIN
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve

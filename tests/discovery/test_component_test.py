@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.component_test import DETECTION_LEVEL, PARTS_MOST, accuracy, component_tests
+from doe_kc.discovery.component_test import accuracy, component_tests
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screen import Screened, screen
+from doe_kc.discovery.thresholds import DETECTION_LEVEL, PARTS_MOST
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import VariableOptions, build_space

@@ -7,8 +7,9 @@ import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.contrasts import Contrasts, contrasts
-from doe_kc.discovery.disagreement import DOUBT, raw_map, remaining_map
+from doe_kc.discovery.disagreement import raw_map, remaining_map
 from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.thresholds import DOUBT
 from tests.discovery.cases import model
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
-from doe_kc.discovery.fit import FIT_DECREASE, Fit, cost_of, fit, followed
+from doe_kc.discovery.fit import Fit, cost_of, fit, followed
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import FIT_DECREASE
 from tests.discovery.cases import library, model
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from doe_kc.discovery.adequacy import LIMIT
 from doe_kc.discovery.fit import fit, followed
 from doe_kc.discovery.held_out import HeldOutScore, _prediction, _without, held_out
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import LIMIT
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import LOAD_CASES, discovery
 

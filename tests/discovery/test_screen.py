@@ -12,7 +12,8 @@ from scipy.stats import norm
 
 from doe_kc.discovery.exclusion import _trusted, standings, wrong_name_chance
 from doe_kc.discovery.fit import Fit, fit
-from doe_kc.discovery.screen import PROBE, SMALLER, follow, rescreened, screen
+from doe_kc.discovery.screen import follow, rescreened, screen
+from doe_kc.discovery.thresholds import PROBE, SMALLER
 from tests.discovery.cases import library, model
 
 

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.unseen import PRESENT, unseen
+from doe_kc.discovery.thresholds import PRESENT
+from doe_kc.discovery.unseen import unseen
 from tests.discovery.cases import discovery
 
 
