@@ -15,7 +15,7 @@ if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
 from doe_kc.axle import Axle  # noqa: E402  # after the thread limits
-from doe_kc.axle_file import read_axle
+from doe_kc.axle_file import read_axle  # noqa: E402
 
 
 def example_axle() -> Axle:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 from doe_kc.ground.typing import FloatArray
 
+SIDE_WORDS = {"L": "left", "R": "right"}
+
 SIDES = ("L", "R")
 
 ANGLES = ("toe", "camber", "caster", "spin")

@@ -7,13 +7,13 @@ from pathlib import Path
 
 from doe_kc.ground.errors import InputError, RunError
 
-NAME = "front_axle"
+EXAMPLE_NAME = "front_axle"
 
 
 def example_folder() -> Path:
     """Where the example lies: in the installed package, or in the source tree beside it."""
     package = Path(__file__).parent
-    for folder in (package / "_examples" / NAME, package.parent / "examples" / NAME):
+    for folder in (package / "_examples" / EXAMPLE_NAME, package.parent / "examples" / EXAMPLE_NAME):
         if (folder / "study.toml").is_file():
             return folder
     raise RunError("the example study is not part of this installation; reinstall doe-kc.")

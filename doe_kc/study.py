@@ -12,6 +12,7 @@ from pydantic import Field
 
 from doe_kc.axle import Axle, Parameter, design_parameters
 from doe_kc.axle_file import read_axle
+from doe_kc.characteristics.reduction import FEWEST_POINTS
 from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.discovery.options import DiscoveryOptions
 from doe_kc.ground.errors import InputError, nearest
@@ -26,7 +27,6 @@ from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.variables import Space, VariableOptions, build_space
 
-FEWEST_POINTS = 3
 STORES = "store"
 """Folder under `out` of the files that make a repetition quick."""
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from doe_kc.axle.topology import Topology
 from doe_kc.load_cases import LoadCase
+
+FORCE_AXES = ("Fx", "Fy", "Fz")
+
+NM_PER_DEG = 1000.0 * 180.0 / math.pi
+"""1 Nm/deg in N mm/rad."""
 
 HARDPOINTS = {
     "LLF": "Lower link front",

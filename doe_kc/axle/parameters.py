@@ -84,7 +84,7 @@ def _kinds() -> dict[str, _Kind]:
 
 
 KINDS: Mapping[str, _Kind] = _kinds()
-POSITIVE = {
+POSITIVE_PARAMETERS = {
     *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
     *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
@@ -245,7 +245,10 @@ def _must_be_positive(name: str) -> bool:
         return rest in BUSHING_AXES or rest.startswith("stiffness.")
     if head in HARDPOINTS or head in EXTRA_HARDPOINTS or _not_below_zero(name):
         return False
-    return name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"} or rest in POSITIVE
+    return (
+        name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"}
+        or rest in POSITIVE_PARAMETERS
+    )
 
 
 def _is_ratio(name: str) -> bool:

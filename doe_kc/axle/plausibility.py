@@ -9,8 +9,7 @@ import numpy as np
 
 from doe_kc.axle.geometry import point
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS, Axle
-
-SIDE_WORDS = {"L": "left", "R": "right"}
+from doe_kc.curves import SIDE_WORDS
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,6 @@ from doe_kc.ground.files import read_toml, validate
 from doe_kc.load_cases import CASE_ORDER, LOAD_CASES, LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 
-NM_PER_DEG = 1000.0 * 180.0 / np.pi
-
 
 def read_axle(path: Path) -> Axle:
     """Axle from its TOML file; InputError naming file and key for anything wrong."""

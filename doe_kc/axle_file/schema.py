@@ -42,10 +42,10 @@ class Bushing(Strict):
     """stiffness: N/mm and Nm/deg per axis; factor: 1 by default; table: axis -> [[d, F], ...]."""
 
     stiffness: dict[str, Positive]
-    factor: dict[str, Positive] = {}
-    cubic: dict[str, NotNegative] = {}
-    preload: dict[str, Finite] = {}
-    table: dict[str, list[Pair]] = {}
+    factor: dict[str, Positive] = Field(default_factory=dict)
+    cubic: dict[str, NotNegative] = Field(default_factory=dict)
+    preload: dict[str, Finite] = Field(default_factory=dict)
+    table: dict[str, list[Pair]] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _axes(self) -> Bushing:
@@ -179,9 +179,9 @@ class AxleFile(Strict):
     steer_arm: SteerArmTable = SteerArmTable()
     strut: StrutTable = StrutTable()
     ride_height: Finite = 0.0
-    right: dict[str, Finite] = {}
-    effects: dict[str, dict[str, Any]] = {}
-    load_cases: dict[str, Sweep] = {}
+    right: dict[str, Finite] = Field(default_factory=dict)
+    effects: dict[str, dict[str, Any]] = Field(default_factory=dict)
+    load_cases: dict[str, Sweep] = Field(default_factory=dict)
 
     @model_validator(mode="after")
     def _follow(self) -> AxleFile:

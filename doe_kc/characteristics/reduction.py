@@ -12,7 +12,10 @@ from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES
 
-LEFT = 0
+FEWEST_POINTS = 3
+"""Solved points in a fit window below which there is no gradient."""
+
+LEFT_WHEEL = 0
 
 
 def fit_window(case: CaseCurves, half_width: float | None = None) -> NDArray[np.bool_]:
@@ -42,7 +45,7 @@ def pad_travel(case: CaseCurves, half_track: float) -> FloatArray:
 def abscissa(entry: Characteristic, case: CaseCurves, half_track: float) -> FloatArray:
     """(n,) what the gradient is taken over: mm, N or deg."""
     if entry.abscissa == "wheel_travel":
-        return np.asarray(case.mean["wc_z"][LEFT])
+        return np.asarray(case.mean["wc_z"][LEFT_WHEEL])
     if entry.abscissa == "pad_travel":
         return pad_travel(case, half_track)
     return case.input
@@ -59,13 +62,13 @@ def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None 
     if entry.kind == "static":
         if curves.static is None or entry.response not in curves.static:
             return float("nan")
-        return float(curves.static[entry.response][LEFT])
+        return float(curves.static[entry.response][LEFT_WHEEL])
     case = curves.cases.get(entry.load_case)
     if case is None or entry.response not in case.mean:
         return float("nan")
     inside = fit_window(case, window)
     x = abscissa(entry, case, curves.half_track)[inside]
-    return entry.scale * slope(x, case.mean[entry.response][LEFT][inside])
+    return entry.scale * slope(x, case.mean[entry.response][LEFT_WHEEL][inside])
 
 
 def reduce_all(curves: CurveSet, windows: Mapping[str, float] | None = None) -> dict[str, float]:
@@ -87,7 +90,7 @@ def reduction_gradient(
     """
     inside = fit_window(case, window)
     x = abscissa(entry, case, half_track)[inside]
-    y = case.mean[entry.response][LEFT][inside]
+    y = case.mean[entry.response][LEFT_WHEEL][inside]
     dx, dy = x - x.mean(), y - y.mean()
     sxx = dx @ dx
     to_y = np.zeros(case.input.size)

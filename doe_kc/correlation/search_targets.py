@@ -32,7 +32,7 @@ MISFIT_WEIGHT = 2.0
 that is missed by its own size, and hitting all characteristics exactly costs a few hundredths."""
 NEGLIGIBLE_SHARE = 0.01
 """Share of the interval's measure below which no deviation is worth removing: exact targets have no noise."""
-STILL = 0.02
+STILL_SHARE = 0.02
 """Share of the interval's measure, a seventh of the interval, that what is not worked on may move."""
 NOT_COUNTED = Objective(linear=0.0, quadratic=0.0)
 
@@ -54,7 +54,7 @@ def hold_rms(curve: CurveTarget, baseline: float) -> float:
 
 def still_rms(curve: CurveTarget, baseline: float) -> float:
     """The same of a curve that is not worked on: it stays where it is."""
-    return max(SIGNIFICANT * curve.noise, STILL * curve.objective.norm, baseline) * (1.0 + ROUNDING)
+    return max(SIGNIFICANT * curve.noise, STILL_SHARE * curve.objective.norm, baseline) * (1.0 + ROUNDING)
 
 
 def search_targets(
@@ -149,7 +149,7 @@ def _searched(
 
 def _still(target: Target, baseline: float) -> float:
     """Limit of what is not worked on at all: it stays where it is, rather than anywhere in its interval."""
-    floor = max(SIGNIFICANT * target.sd, STILL * target.scale)
+    floor = max(SIGNIFICANT * target.sd, STILL_SHARE * target.scale)
     return max(floor, abs(baseline - target.value)) * (1.0 + ROUNDING)
 
 

@@ -16,15 +16,20 @@ from doe_kc.discovery.exclusion import wrong_name_chance
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search import EffectSearch
-from doe_kc.discovery.thresholds import BESIDE, DECISIVE, MENTIONED, NOISE, WRONG_NAME_CHANCE
+from doe_kc.discovery.thresholds import (
+    BESIDE,
+    DECISIVE,
+    MENTIONED,
+    NAME_ALWAYS_LEVEL,
+    NAME_LEVEL,
+    NOISE,
+    WRONG_NAME_CHANCE,
+)
 from doe_kc.discovery.trials import HypothesisFit, amounts
 from doe_kc.discovery.unseen import unseen
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
-WEAK, STRONG = 6.0, 10.0
-"""Standard deviations below which an effect is not named by them alone, and from which it is named beside any
-other."""
 NO_EFFECT = ""
 """In place of an effect's id: none at all."""
 
@@ -50,9 +55,9 @@ def _stands_out(own: Alternatives, least: float) -> bool:
     A weak one is named where noise does not explain what remains without it.
     """
     strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
-    if strength >= STRONG:
+    if strength >= NAME_ALWAYS_LEVEL:
         return True
-    return own.trials[0].gain >= least and (strength >= WEAK or own.map.chance < NOISE)
+    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE)
 
 
 def _finding(search: EffectSearch, own: Alternatives, place: slice, hidden: FloatArray) -> Finding:

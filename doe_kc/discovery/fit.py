@@ -20,7 +20,10 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.thresholds import (
     FIT_DECREASE,
+    FIT_GOOD_RATIO,
+    FIT_POOR_RATIO,
     FIT_STEPS,
+    FOLLOW_STEPS,
     FRESH,
     LARGEST_RADIUS,
     LAST_STEP_DECREASE,
@@ -30,9 +33,6 @@ from doe_kc.discovery.thresholds import (
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
-
-POOR, GOOD = 0.25, 0.75
-FOLLOWED_STEPS = 6
 
 
 @dataclass(frozen=True)
@@ -151,9 +151,9 @@ def fit(
             cost = np.inf
         current = replace(current, evaluations=current.evaluations + 1)
         ratio = (current.cost - cost) / predicted
-        if ratio < POOR:
+        if ratio < FIT_POOR_RATIO:
             radius = min(radius, float(np.abs(step).max())) / 4.0
-        elif ratio > GOOD:
+        elif ratio > FIT_GOOD_RATIO:
             radius = min(LARGEST_RADIUS, 2.0 * radius)
         if residual is not None and cost < current.cost:
             if predicted < LAST_STEP_DECREASE:
@@ -224,7 +224,7 @@ def followed(fit: Fit, model: EffectModel) -> Fit:
     cost = cost_of(model, fit.z, fit.residual)
     current = replace(fit, model=model, cost=cost, converged=False)
     hessian = current.hessian
-    for _ in range(FOLLOWED_STEPS):
+    for _ in range(FOLLOW_STEPS):
         low, high = model.lower - current.z, model.upper - current.z
         gradient = current.gradient
         step = bounded_step(hessian, gradient, low, high)

@@ -8,12 +8,8 @@ import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.discovery.fit import Fit, cost_of, fit, followed
-from doe_kc.discovery.thresholds import NOISE_SD_SHARE, REFIT_STEPS
+from doe_kc.discovery.thresholds import FOLLOW_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
 from doe_kc.ground.typing import FloatArray
-
-CLOSE = 10.0
-"""Decrease of the sum of squares up to which derivatives of the whole fit serve to the end. At 30 an RMS was
-off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +62,7 @@ def _without(found: Fit, case: str) -> Fit:
     model = replace(found.model, left_out=case)
     near = followed(found, model)
     gained = cost_of(model, found.z, found.residual) - near.cost
-    if near.converged and gained <= CLOSE:
+    if near.converged and gained <= FOLLOW_DECREASE:
         return near
     return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
 

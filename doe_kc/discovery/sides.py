@@ -6,18 +6,12 @@ import numpy as np
 
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import ANGLE, POSITION
+from doe_kc.discovery.thresholds import SIDE_ANGLE, SIDE_BUSHING, SIDE_CLEARANCE, SIDE_POSITION, SIDE_RATE
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import curve_gradients
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from doe_kc.variables import Variable
-
-POSITION, CLEARANCE, ANGLE, BUSHING, RATE = 0.25, 1.0, 0.07, 0.03, 0.02
-"""Standard deviation of right minus left: mm, mm, deg, and shares of a bushing's stiffness and of a rate.
-
-Engineering values: tolerances of drilled and welded parts, rubber of one batch, springs paired by rate.
-"""
 
 
 def side_differences(model: EffectModel, z: FloatArray) -> FloatArray:
@@ -41,9 +35,9 @@ def _lateral(variable: Variable) -> bool:
 
 def _sd(variable: Variable, value: float) -> float:
     if variable.path.endswith("clearance"):
-        return CLEARANCE
+        return SIDE_CLEARANCE
     if variable.parameter.group == "HARDPOINTS":
-        return POSITION
+        return SIDE_POSITION
     if variable.unit == "deg":
-        return ANGLE
-    return abs(value) * (BUSHING if variable.parameter.group == "BUSHINGS" else RATE)
+        return SIDE_ANGLE
+    return abs(value) * (SIDE_BUSHING if variable.parameter.group == "BUSHINGS" else SIDE_RATE)

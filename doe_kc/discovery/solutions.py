@@ -14,9 +14,9 @@ from doe_kc.load_cases import LoadCase
 from doe_kc.solver.result import CaseSolution, Solution, StaticState
 from doe_kc.solver.suite import solve
 
-AXLES = 2
+AXLE_CACHE = 2
 """Axles whose solutions are kept, those used last: the one that is varied, and its variation."""
-SUITES = 3
+SUITE_CACHE = 3
 """Solved load cases of one axle that are kept, in all its load cases."""
 
 
@@ -52,9 +52,9 @@ class Solutions:
         for case in wanted.values():
             known.cases.move_to_end(case)
         cases = {i: known.cases[case] for i, case in wanted.items()}
-        while len(known.cases) > SUITES * max(1, len(wanted)):
+        while len(known.cases) > SUITE_CACHE * max(1, len(wanted)):
             known.cases.popitem(last=False)
-        while len(self._axles) > AXLES:
+        while len(self._axles) > AXLE_CACHE:
             self._axles.popitem(last=False)
         return Solution(axle.name, known.output_names, known.static, cases, None, known.half_track)
 

@@ -6,13 +6,11 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from doe_kc.axle.model import BUSHINGS, Axle
+from doe_kc.axle.model import BUSHINGS, FORCE_AXES, Axle
 from doe_kc.curves import SIDES
 from doe_kc.effects._base import Effect
 from doe_kc.effects._tables import checked_flag, per_bushing
 from doe_kc.effects.hypothesis import Hypothesis, Size
-
-FORCE_AXES = ("Fx", "Fy", "Fz")
 
 
 class BushingValues(Effect):

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one, reduction_gradient
-from doe_kc.characteristics.reduction import LEFT, default_window, fit_window, slope
+from doe_kc.characteristics.reduction import LEFT_WHEEL, default_window, fit_window, slope
 from doe_kc.curves import RESPONSE_UNITS, SIDES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import CaseNoise
@@ -111,5 +111,5 @@ def _estimate(
     case = curves.cases[entry.load_case]
     weights = reduction_gradient(entry, case, curves.half_track, window=window)
     models = noise[entry.load_case]
-    variance = sum(float(w @ models[r].covariance(side=LEFT) @ w) for r, w in weights.items())
+    variance = sum(float(w @ models[r].covariance(side=LEFT_WHEEL) @ w) for r, w in weights.items())
     return GradientEstimate(value, float(np.sqrt(max(variance, 0.0))))

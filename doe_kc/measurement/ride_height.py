@@ -16,7 +16,7 @@ from doe_kc.measurement.production_scatter import KINEMATIC_SCATTER
 from doe_kc.measurement.shift_problem import LOAD_CHANNEL, Scatter, ShiftProblem
 from doe_kc.measurement.shifted_curves import ShiftedCurves, both_sides
 
-CASE = "vertical"
+RIDE_HEIGHT_CASE = "vertical"
 KINEMATIC_WINDOW = 20.0
 """Half-width in mm of pad travel over which kinematic curves count: free of the stops, where a shift
 shows as a change of slope only; further out stop forces bend the curves and tell nothing more."""
@@ -148,16 +148,16 @@ def _problem(
 
 def vertical_curves(curves: CurveSet) -> CaseCurves:
     """Those of vertical motion; InputError when there are none, or they are too short to tell ride height."""
-    case = curves.cases.get(CASE)
+    case = curves.cases.get(RIDE_HEIGHT_CASE)
     if case is None:
         raise InputError(
-            f"{curves.source}: has no load case {CASE}, which tells the ride height; "
+            f"{curves.source}: has no load case {RIDE_HEIGHT_CASE}, which tells the ride height; "
             "add its record or leave the ride height as it is."
         )
     covered = float(min(case.input.max(), -case.input.min()))
     if covered < LOAD_RANGE[1] + _MARGIN:
         raise InputError(
-            f"{curves.source}: {CASE} covers ±{covered:g} mm, expected at least "
+            f"{curves.source}: {RIDE_HEIGHT_CASE} covers ±{covered:g} mm, expected at least "
             f"±{LOAD_RANGE[1] + _MARGIN:g} mm to tell the ride height; use a larger sweep."
         )
     return case

@@ -14,7 +14,7 @@ from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.report import style
 from doe_kc.report.names import RESPONSE_NAMES, input_label, response_axis, response_name
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
@@ -94,7 +94,7 @@ def _handles() -> list[Line2D | Patch]:
     return out
 
 
-def _table(page: Sheet, box: Box, comparison: Comparison, load_case: str) -> None:
+def _table(page: Sheet, box: PageBox, comparison: Comparison, load_case: str) -> None:
     """Characteristics of the load case, and the RMS of its curves on the left wheel."""
     rows = [r for r in comparison.characteristics if r.entry.load_case == load_case]
     gradients = {f"{r.entry.label} [{r.entry.unit}]": r for r in rows if r.entry.kind == "gradient"}

@@ -11,15 +11,15 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, SymmetricalLogLocator
 from doe_kc.correlation.result import Correlation
 from doe_kc.report import style
 from doe_kc.report.correlation_evaluations import History, history
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.sheet import Sheet
+from doe_kc.report.style import MARKERS
 from doe_kc.report.words import POINTS, text_width
 
-SIZE = (8.27, 4.6)
-LEFT, BOTTOM, TOP = 0.72 * POINTS, 0.52 * POINTS, 0.34 * POINTS
-KEY = 34.0
+CONVERGENCE_SIZE = (8.27, 4.6)
+LEFT_MARGIN, BOTTOM_MARGIN, TOP_MARGIN = 0.72 * POINTS, 0.52 * POINTS, 0.34 * POINTS
+CONVERGENCE_KEY = 34.0
 """Points beside the words of the legend."""
-MARKERS = "osD^vPX"
 FAILED = style.PALETTE["vermillion"]
 FAILURE_BAND = 3.0
 """Half-decades kept free above the worst rating for the marks of failures."""
@@ -29,8 +29,12 @@ def convergence_figure(correlation: Correlation, study: str) -> Sheet:
     """Minus what the search maximizes, symmetric logarithmic, over the evaluations: 0 = every target met
     exactly. With the objective "thesis" it is the rating."""
     past = history(correlation)
-    page = Sheet(SIZE)
-    panel = page.add_panel(Box(LEFT, BOTTOM, page.width - LEFT, page.height - BOTTOM - TOP))
+    page = Sheet(CONVERGENCE_SIZE)
+    panel = page.add_panel(
+        PageBox(
+            LEFT_MARGIN, BOTTOM_MARGIN, page.width - LEFT_MARGIN, page.height - BOTTOM_MARGIN - TOP_MARGIN
+        )
+    )
     _scale(panel, past)
     panel.plot(
         np.repeat(past.number, 2)[1:], np.repeat(-past.best, 2)[:-1], color=style.PALETTE["black"], lw=1.2,
@@ -47,8 +51,8 @@ def convergence_figure(correlation: Correlation, study: str) -> Sheet:
     panel.x.set_limits(0.4, past.number[-1] + 0.9)
     panel.set_title(f"Convergence of {correlation.method}: {study}", size=10.0)
     words = max(text_width(str(h.get_label()), 7.0) for h in handles)
-    width = page.width - LEFT - words - KEY
-    panel.box = Box(LEFT, BOTTOM, width, panel.box.height)
+    width = page.width - LEFT_MARGIN - words - CONVERGENCE_KEY
+    panel.box = PageBox(LEFT_MARGIN, BOTTOM_MARGIN, width, panel.box.height)
     page.add_legend(handles, 1, 7.0, ("left", "top"), (panel.box.right, panel.box.top))
     return page
 

@@ -23,9 +23,9 @@ from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.targets.comparison.compare import same_input
 
 CURVE_PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
-BAND = 2.0
+BAND_SDS = 2.0
 """Standard deviations of the measured mean curve that its band shows."""
-MEASURED, BASELINE, FINAL = style.PALETTE["black"], style.PALETTE["orange"], style.PALETTE["blue"]
+MEASURED_COLOUR = style.PALETTE["black"]
 CURVES_MARGINS = {"left": 0.07, "right": 0.985, "top": 0.89, "bottom": 0.145, "wspace": 0.24, "hspace": 0.3}
 
 
@@ -98,7 +98,7 @@ def _panel(panel: Panel, view: CaseView, response: str) -> None:
         if view.measured is not None:
             _measured(panel, view, response, side)
         models: list[tuple[CaseCurves | None, str, Dash]]
-        models = [(view.baseline, BASELINE, "--"), (view.final, FINAL, "-")]
+        models = [(view.baseline, style.BASELINE_COLOUR, "--"), (view.final, style.FINAL_COLOUR, "-")]
         for case, colour, dash in models:
             if case is not None and response in case.mean:
                 panel.plot(case.input, case.mean[response][side], dash, color=colour, **_weight(side))
@@ -115,18 +115,20 @@ def _measured(panel: Panel, view: CaseView, response: str, side: int) -> None:
         return
     mean, half = case.mean[response][side], case.half_width[response][side]
     sd = view.sd.get(response, np.zeros((2, mean.size)))[side]
-    face = "none" if side else MEASURED
+    face = "none" if side else MEASURED_COLOUR
     panel.fill_between(
-        case.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0, zorder=0
+        case.input, mean - BAND_SDS * sd, mean + BAND_SDS * sd, color="#BBBBBB", alpha=0.7, lw=0, zorder=0
     )
     for sign in (-1, 1):
         panel.plot(case.input, mean + sign * half, color=style.PALETTE["grey"], lw=0.4 if side else 0.7)
     step = max(1, mean.size // 20)
-    panel.plot(case.input[::step], mean[::step], "", marker="o", color=MEASURED, mfc=face, ms=2.6, mew=0.5)
+    panel.plot(
+        case.input[::step], mean[::step], "", marker="o", color=MEASURED_COLOUR, mfc=face, ms=2.6, mew=0.5
+    )
 
 
 def _handles(view: CaseView) -> list[Line2D | Patch]:
-    dots: dict[str, Any] = {"color": MEASURED, "ls": "", "marker": "o", "ms": 3}
+    dots: dict[str, Any] = {"color": MEASURED_COLOUR, "ls": "", "marker": "o", "ms": 3}
     out: list[Line2D | Patch] = []
     if view.measured is not None:
         out += [
@@ -135,11 +137,11 @@ def _handles(view: CaseView) -> list[Line2D | Patch]:
             Line2D(
                 [], [], color=style.PALETTE["grey"], lw=0.7, label="its branches, input rising and falling"
             ),
-            Patch(color="#BBBBBB", label=f"its ±{BAND:g} sd"),
+            Patch(color="#BBBBBB", label=f"its ±{BAND_SDS:g} sd"),
         ]
     for case, colour, dash, name in (
-        (view.baseline, BASELINE, "--", "baseline"),
-        (view.final, FINAL, "-", "final"),
+        (view.baseline, style.BASELINE_COLOUR, "--", "baseline"),
+        (view.final, style.FINAL_COLOUR, "-", "final"),
     ):
         if case is not None:
             out += [

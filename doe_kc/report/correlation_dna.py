@@ -19,8 +19,8 @@ from doe_kc.report.words import Across
 
 DNA_REACH = 0.6
 """Normalised distance from the target at which a value is cut off and drawn as an arrow."""
-BAND, SOFT = "#C9CED3", "#EDEFF1"
-BASELINE, FINAL, WORSE = style.PALETTE["orange"], style.PALETTE["blue"], style.PALETTE["vermillion"]
+BAND_COLOUR, SOFT_BAND_COLOUR = "#C9CED3", "#EDEFF1"
+WORSE_COLOUR = style.PALETTE["vermillion"]
 DNA_ROW = 0.235
 """Inches."""
 X0, X1 = 0.475, 0.79
@@ -83,17 +83,18 @@ def _row(panel: Panel, y: float, row: CharacteristicRow) -> None:
     ends = sorted(row.normalized(v) for v in (low, high))
     ends = [float(np.clip(v, 1 - DNA_REACH, 1 + DNA_REACH)) for v in ends]
     fill: dict[str, Any] = (
-        {"colors": [BAND]}
+        {"colors": [BAND_COLOUR]}
         if row.constraint
-        else {"colors": ["none"], "edgecolors": BAND, "linestyles": ":", "linewidths": 0.7}
+        else {"colors": ["none"], "edgecolors": BAND_COLOUR, "linestyles": ":", "linewidths": 0.7}
     )
     panel.bars(y, ends[0], ends[1], 0.72, **fill, zorder=0)
     places = [row.normalized(v) for v in (entry.baseline, entry.final)]
     if np.isfinite(places).all():
         shown = np.clip(places, 1 - DNA_REACH, 1 + DNA_REACH)
         panel.plot(shown, [y, y], color="#8A9199", lw=0.8, zorder=1)
-        _marker(panel, places[0], y, BASELINE, "o")
-        _marker(panel, places[1], y, FINAL if row.inside or not row.constraint else WORSE, "D")
+        _marker(panel, places[0], y, style.BASELINE_COLOUR, "o")
+        met = row.inside or not row.constraint
+        _marker(panel, places[1], y, style.FINAL_COLOUR if met else WORSE_COLOUR, "D")
     _texts(panel, y, row)
 
 
@@ -146,12 +147,12 @@ def note(row: CharacteristicRow) -> str:
 def _legend(page: Sheet) -> None:
     line: dict[str, Any] = {"ls": "", "ms": 4.4}
     handles: list[Line2D | Patch] = [
-        Line2D([], [], marker="o", color=BASELINE, mfc="white", label="baseline", **line),
-        Line2D([], [], marker="D", color=FINAL, label="final", **line),
-        Line2D([], [], marker="D", color=WORSE, label="final, constraint violated", **line),
+        Line2D([], [], marker="o", color=style.BASELINE_COLOUR, mfc="white", label="baseline", **line),
+        Line2D([], [], marker="D", color=style.FINAL_COLOUR, label="final", **line),
+        Line2D([], [], marker="D", color=WORSE_COLOUR, label="final, constraint violated", **line),
         Line2D([], [], color="black", ls="--", lw=1, label="target"),
-        Patch(color=BAND, label="constraint interval"),
-        Patch(fc="none", ec=BAND, ls=":", label="interval, not a constraint"),
+        Patch(color=BAND_COLOUR, label="constraint interval"),
+        Patch(fc="none", ec=BAND_COLOUR, ls=":", label="interval, not a constraint"),
         Line2D([], [], marker=">", color="#555555", label="beyond the axis", **line),
     ]
     page.add_legend(handles, 7, 6.5, handletextpad=0.4, columnspacing=1.2)

@@ -9,13 +9,23 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.report.correlation_terms import TermRow, term_rows
-from doe_kc.report.workbook_cells import A3, HEADER_FILL, MUTED, CellFill, frame, page, put, title, widths
+from doe_kc.report.workbook_cells import (
+    HEADER_FILL,
+    MUTED,
+    PAPER_A3,
+    CellFill,
+    frame,
+    page,
+    put,
+    title,
+    widths,
+)
 
 HEADS = (
     "Kind", "Term", "Id", "Unit", "Goal", "Target", "Low", "High", "LinWt", "QuadWt", "S", "Norm",
     "Baseline", "Baseline Obj / ConViol", "Baseline term", "Final", "Final Obj / ConViol", "Final term",
 )  # fmt: skip
-HEAD, FIRST = 7, 8
+RATING_HEAD_ROW, RATING_FIRST_ROW = 7, 8
 FINAL_RATING = "R5"
 INPUT = CellFill("solid", fgColor="FFF7D6")
 EDITED = "FGHIJL"
@@ -33,18 +43,18 @@ def rating_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
         "(equation 2.2). Edit the yellow cells; the true solver is not run again.",
     )
     rows = term_rows(correlation)
-    last = FIRST + len(rows) - 1
+    last = RATING_FIRST_ROW + len(rows) - 1
     for c, text in enumerate(HEADS, start=1):
-        put(ws, HEAD, c, text, bold=True, fill=HEADER_FILL, wrap=True, vertical="bottom")
-    for r, row in enumerate(rows, start=FIRST):
+        put(ws, RATING_HEAD_ROW, c, text, bold=True, fill=HEADER_FILL, wrap=True, vertical="bottom")
+    for r, row in enumerate(rows, start=RATING_FIRST_ROW):
         _row(ws, r, row)
     _sums(ws, correlation, last)
-    frame(ws, range(HEAD, last + 1), range(1, len(HEADS) + 1))
-    ws.auto_filter.ref = f"A{HEAD}:R{last}"
-    ws.freeze_panes = ws.cell(FIRST, 4)
-    ws.row_dimensions[HEAD].height = 30
+    frame(ws, range(RATING_HEAD_ROW, last + 1), range(1, len(HEADS) + 1))
+    ws.auto_filter.ref = f"A{RATING_HEAD_ROW}:R{last}"
+    ws.freeze_panes = ws.cell(RATING_FIRST_ROW, 4)
+    ws.row_dimensions[RATING_HEAD_ROW].height = 30
     widths(ws, [11, 50, 32, 9, 10, *[11.0] * 13])
-    page(ws, study, paper=A3, repeat=f"{HEAD}:{HEAD}")
+    page(ws, study, paper=PAPER_A3, repeat=f"{RATING_HEAD_ROW}:{RATING_HEAD_ROW}")
 
 
 def _sums(ws: Worksheet, correlation: Correlation, last: int) -> None:
@@ -55,7 +65,7 @@ def _sums(ws: Worksheet, correlation: Correlation, last: int) -> None:
         at = ord(column) - ord("A") + 1
         put(ws, 4, at, name, bold=True, horizontal="right")
         cell = put(ws, 5, at, None, bold=True, number="0.000000")
-        cell.value = f"=SUM({column}{FIRST}:{column}{last})"
+        cell.value = f"=SUM({column}{RATING_FIRST_ROW}:{column}{last})"
         put(ws, 6, at, value, color=MUTED, number="0.000000")
     put(ws, 5, 2, "Rating with the cells below", bold=True)
     put(ws, 6, 2, "Rating of the correlation", color=MUTED)

@@ -15,17 +15,17 @@ from doe_kc.report.correlation_parameters import parameter_rows
 from doe_kc.report.correlation_terms import curve_rows
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import (
-    A3,
     FLAGGED,
     MUTED,
-    NEGATIVE,
-    POSITIVE,
+    NEGATIVE_FILL,
+    PAPER_A3,
+    POSITIVE_FILL,
     page,
     put,
     title,
     widths,
 )
-from doe_kc.report.workbook_table import FIRST, Value, table
+from doe_kc.report.workbook_table import TABLE_FIRST_ROW, Value, table
 
 COLUMNS_PER_PAGE = 24
 INSIDE = PatternFill("solid", bgColor="D6E9F8")
@@ -52,15 +52,15 @@ def characteristics_sheet(book: Workbook, correlation: Correlation, study: str) 
     ]  # fmt: skip
     formats = ["", "", "", "", *["0.0000"] * 6, "", "", "0.0", "", "0.0", "0.0", "0.000", "0.000"]
     last = table(ws, heads, rows, formats=formats)
-    final, improvement = f"H{FIRST}:H{last}", f"M{FIRST}:M{last}"
-    inside = f"AND($H{FIRST}>=$I{FIRST},$H{FIRST}<=$J{FIRST})"
+    final, improvement = f"H{TABLE_FIRST_ROW}:H{last}", f"M{TABLE_FIRST_ROW}:M{last}"
+    inside = f"AND($H{TABLE_FIRST_ROW}>=$I{TABLE_FIRST_ROW},$H{TABLE_FIRST_ROW}<=$J{TABLE_FIRST_ROW})"
     ws.conditional_formatting.add(final, FormulaRule([inside], fill=INSIDE))
     ws.conditional_formatting.add(final, FormulaRule([f"NOT({inside})"], fill=OUTSIDE))
-    bar = DataBarRule("num", 0, "num", 100, color=NEGATIVE, showValue=True)
+    bar = DataBarRule("num", 0, "num", 100, color=NEGATIVE_FILL, showValue=True)
     ws.conditional_formatting.add(improvement, bar)
-    ws.freeze_panes = ws.cell(FIRST, 3)
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 3)
     widths(ws, [25, 28, 32, 9, *[11.0] * 6, 8, 22, 13, 9, 11, 11, 12, 12])
-    page(ws, study, paper=A3, single=True)
+    page(ws, study, paper=PAPER_A3, single=True)
 
 
 def parameters_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
@@ -85,13 +85,13 @@ def parameters_sheet(book: Workbook, correlation: Correlation, study: str) -> No
     ]  # fmt: skip
     grey = [r.visible is False or r.role != "variable" for r in rows]
     table(ws, heads, values, formats=["", "", "", "", "", *["0.0000"] * 6], muted=grey)
-    for r, row in enumerate(rows, start=FIRST):
+    for r, row in enumerate(rows, start=TABLE_FIRST_ROW):
         for c in range(1, len(heads) + 1):
             if row.at_bound:
                 ws.cell(r, c).fill = FLAGGED
-    ws.freeze_panes = ws.cell(FIRST, 4)
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 4)
     widths(ws, [14, 46, 24, 8, 10, *[12.0] * 6, 10, 32])
-    page(ws, study, paper=A3, single=True)
+    page(ws, study, paper=PAPER_A3, single=True)
 
 
 def curves_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
@@ -112,10 +112,10 @@ def curves_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     ]  # fmt: skip
     last = table(ws, heads, rows, formats=["", "", "", "", *["0.00000"] * 3, "0.00", "0.0000", "0.00"])
     if rows:
-        bar = DataBarRule("num", 0, "max", None, color=POSITIVE, showValue=True)
-        ws.conditional_formatting.add(f"J{FIRST}:J{last}", bar)
+        bar = DataBarRule("num", 0, "max", None, color=POSITIVE_FILL, showValue=True)
+        ws.conditional_formatting.add(f"J{TABLE_FIRST_ROW}:J{last}", bar)
     else:
-        put(ws, FIRST, 1, "No curve is an objective of this study.", color=MUTED)
+        put(ws, TABLE_FIRST_ROW, 1, "No curve is an objective of this study.", color=MUTED)
     widths(ws, [28, 32, 24, 8, *[13.0] * 6])
     page(ws, study)
 
@@ -131,12 +131,12 @@ def evaluations_sheet(book: Workbook, correlation: Correlation, study: str) -> N
     formats = ["0", "", "0.0000", "0.0000", "", "", "", "0.0000", "0.0000", "0.00", *["0.0000"] * len(names)]
     table(ws, heads, rows, formats=formats)
     for c in range(1, len(heads) + 1):
-        ws.cell(FIRST + correlation.run.best, c).fill = FLAGGED
-    ws.freeze_panes = ws.cell(FIRST, 4)
+        ws.cell(TABLE_FIRST_ROW + correlation.run.best, c).fill = FLAGGED
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 4)
     # a head breaks at its blank only
     named = [max(11.0, 1.1 * len(head.split(",")[0]) + 1.0) for head in heads[len(heads) - len(names) :]]
     widths(ws, [11, 23, 13, 13, 9, 9, 34, 13, 12, 9, *named])
-    page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    page(ws, study, paper=PAPER_A3, repeat=f"{TABLE_FIRST_ROW - 1}:{TABLE_FIRST_ROW - 1}")
     ws.page_setup.fitToWidth = -(-len(heads) // COLUMNS_PER_PAGE)
     ws.print_title_cols = "A:C"
 

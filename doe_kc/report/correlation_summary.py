@@ -22,7 +22,8 @@ def summary(correlation: Correlation, assessment: Assessment | None = None) -> d
     ]
     lines = {
         "Status": verdict.line,
-        "Rating": f"{correlation.rating:.6g} (baseline {correlation.baseline_rating:.6g}; 0 = every target met exactly)",
+        "Rating": f"{correlation.rating:.6g} (baseline {correlation.baseline_rating:.6g}; "
+        "0 = every target met exactly)",
         "Constraints": "all met" if correlation.feasible else f"violated: {', '.join(violated)}",
         "Mean improvement": f"{mean:.1f} % over {counted} characteristics"
         if math.isfinite(mean)

@@ -15,11 +15,11 @@ from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report import style
-from doe_kc.report.correlation_curves import BAND
+from doe_kc.report.correlation_curves import BAND_SDS
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
 from doe_kc.report.discovery_views import ModelView, model_views, view_gaps
 from doe_kc.report.names import case_label, response_name
-from doe_kc.report.panel import Box, Dash, Panel
+from doe_kc.report.panel import Dash, PageBox, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.words import POINTS
@@ -27,9 +27,9 @@ from doe_kc.report.words import POINTS
 CURVES_SHOWN = 6
 PER_CASE = 2
 COLUMNS = 3
-HEAD, FOOT, PAIR = 0.45, 0.5, 3.65
+PAGE_HEAD, PAGE_FOOT, PAIR_HEIGHT = 0.45, 0.5, 3.65
 """Inches of the title of all, of the legend, and of a curve with its deviation."""
-TITLE, CURVE, GAP, DEVIATION = 0.42, 1.72, 0.13, 0.8
+TITLE_HEIGHT, CURVE_HEIGHT, PAIR_GAP, DEVIATION_HEIGHT = 0.42, 1.72, 0.13, 0.8
 """Inches of the parts of a pair from above; numbers and name of the input have the rest."""
 DASHES: Mapping[str, Dash] = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
 WORDS = {
@@ -94,7 +94,7 @@ def worst_views(discovery: Discovery) -> list[WorstView]:
 def curve_figure(worst: Sequence[WorstView], study: str) -> Sheet:
     """Two rows of three curves, each with its deviation from the measured one below."""
     rows = max(1, -(-len(worst) // COLUMNS))
-    height = HEAD + PAIR * rows + FOOT
+    height = PAGE_HEAD + PAIR_HEIGHT * rows + PAGE_FOOT
     margins = {"left": 0.065, "right": 0.985, "wspace": 0.3}
     page, panels = sheet(2 * rows, COLUMNS, size=(11.69, height), share_x=False, margins=margins)
     _place(panels, height)
@@ -114,16 +114,22 @@ def _place(panels: NDArray[Any], height: float) -> None:
     the pairs; height: of the page, inches."""
     for row, members in enumerate(panels):
         pair, below = divmod(row, 2)
-        tall, low = (DEVIATION, CURVE + GAP + DEVIATION) if below else (CURVE, CURVE)
-        bottom = height - HEAD - PAIR * pair - TITLE - low
+        tall, low = (
+            (DEVIATION_HEIGHT, CURVE_HEIGHT + PAIR_GAP + DEVIATION_HEIGHT)
+            if below
+            else (CURVE_HEIGHT, CURVE_HEIGHT)
+        )
+        bottom = height - PAGE_HEAD - PAIR_HEIGHT * pair - TITLE_HEIGHT - low
         for panel in members:
-            panel.box = Box(panel.box.left, bottom * POINTS, panel.box.width, tall * POINTS)
+            panel.box = PageBox(panel.box.left, bottom * POINTS, panel.box.width, tall * POINTS)
 
 
 def _curve(panel: Panel, worst: WorstView) -> None:
     view, side = worst.view, worst.side
     mean, sd = view.measured[side], view.sd[side]
-    panel.fill_between(view.input, mean - BAND * sd, mean + BAND * sd, color="#BBBBBB", alpha=0.7, lw=0)
+    panel.fill_between(
+        view.input, mean - BAND_SDS * sd, mean + BAND_SDS * sd, color="#BBBBBB", alpha=0.7, lw=0
+    )
     if worst.half is not None:
         for sign in (-1.0, 1.0):
             panel.plot(view.input, mean + sign * worst.half, color=style.PALETTE["grey"], lw=0.6)
@@ -141,7 +147,7 @@ def _curve(panel: Panel, worst: WorstView) -> None:
 
 def _deviation(panel: Panel, worst: WorstView) -> None:
     view = worst.view
-    panel.hspan(-BAND, BAND, color="#DDDDDD", zorder=0)
+    panel.hspan(-BAND_SDS, BAND_SDS, color="#DDDDDD", zorder=0)
     panel.hline(0.0, color="black", lw=0.6)
     for name, dash in DASHES.items():
         if name in view.models:
@@ -156,7 +162,7 @@ def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:
     out: list[Line2D | Patch] = [
         Line2D([], [], color="black", ls="", marker="o", ms=3, label="measured"),
         Line2D([], [], color=style.PALETTE["grey"], lw=0.8, label="its branches, input rising and falling"),
-        Patch(color="#BBBBBB", label=f"±{BAND:g} sd of the noise"),
+        Patch(color="#BBBBBB", label=f"±{BAND_SDS:g} sd of the noise"),
     ]
     out += [
         Line2D([], [], color=MODEL_COLOURS[m], ls=dash, lw=1.4, label=WORDS[m])

@@ -14,7 +14,7 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.search import Step, threshold
 from doe_kc.report import style
 from doe_kc.report.discovery_words import hypothesis_label
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import PanelAxis
 from doe_kc.report.sheet import Sheet
 from doe_kc.report.words import POINTS, text_width
@@ -22,9 +22,16 @@ from doe_kc.report.words import POINTS, text_width
 CANDIDATES_SHOWN = 9
 """Candidates of a step, best first."""
 REFITTED, SCREENED, CHOSEN = style.PALETTE["orange"], "#DDE1E5", style.PALETTE["blue"]
-EVIDENCE_ROW, HEAD, LINE, TOP, FOOT, WIDTH = 0.2, 0.24, 0.145, 0.22, 0.75, 8.27
+EVIDENCE_ROW, EVIDENCE_HEAD, EVIDENCE_LINE, EVIDENCE_TOP, EVIDENCE_FOOT, EVIDENCE_WIDTH = (
+    0.2,
+    0.24,
+    0.145,
+    0.22,
+    0.75,
+    8.27,
+)
 """Inches: a candidate; above a panel, and a line of its title; title and foot of the page; its width."""
-EDGE, END = 9.0, 20.0
+EVIDENCE_EDGE, EVIDENCE_END = 9.0, 20.0
 """Points beside the names, and beside the panels, where half a number needs room."""
 LETTER = 6.0
 """Points of a letter of a panel's title, not less than most."""
@@ -78,17 +85,17 @@ def _candidates(step: Step) -> tuple[EvidenceBar, ...]:
 def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
     """One panel a step; the axis is linear about zero and logarithmic beyond."""
     widest = max((text_width(c.label, 7.0) for s in steps for c in s.candidates), default=0.0)
-    left = widest + EDGE
-    titles = [fill(s.title, int((WIDTH * POINTS - left - END) / LETTER)) for s in steps]
-    heads = [HEAD + LINE * (t.count("\n") + 1) for t in titles]
+    left = widest + EVIDENCE_EDGE
+    titles = [fill(s.title, int((EVIDENCE_WIDTH * POINTS - left - EVIDENCE_END) / LETTER)) for s in steps]
+    heads = [EVIDENCE_HEAD + EVIDENCE_LINE * (t.count("\n") + 1) for t in titles]
     deep = [EVIDENCE_ROW * max(len(s.candidates), 1) for s in steps]
-    height = TOP + sum(heads) + sum(deep) + FOOT
-    page = Sheet((WIDTH, height))
+    height = EVIDENCE_TOP + sum(heads) + sum(deep) + EVIDENCE_FOOT
+    page = Sheet((EVIDENCE_WIDTH, height))
     largest = max((c.gain for s in steps for c in s.candidates if np.isfinite(c.gain)), default=1.0)
-    axis, top = PanelAxis(), height - TOP
+    axis, top = PanelAxis(), height - EVIDENCE_TOP
     for step, title, head, tall in zip(steps, titles, heads, deep, strict=True):
         top -= head + tall
-        box = Box(left, top * POINTS, page.width - left - END, tall * POINTS)
+        box = PageBox(left, top * POINTS, page.width - left - EVIDENCE_END, tall * POINTS)
         _panel(page.add_panel(box, axis), step, title, largest)
     for panel in page.panels[:-1]:
         panel.numbers["x"] = False

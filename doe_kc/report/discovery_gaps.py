@@ -97,8 +97,8 @@ def _row(panel: Panel, y: float, gap: Gap) -> None:
     for model, value in known.items():
         face = "white" if model == "tuned" else MODEL_COLOURS[model]
         panel.plot(
-            max(value, LOWEST), y, "", marker=MARKS[model], color=MODEL_COLOURS[model], mfc=face, ms=4.2, mew=1.2,
-            zorder=3 + list(MODEL_LABELS).index(model) % 3,
+            max(value, LOWEST), y, "", marker=MARKS[model], color=MODEL_COLOURS[model], mfc=face,
+            ms=4.2, mew=1.2, zorder=3 + list(MODEL_LABELS).index(model) % 3,
         )  # fmt: skip
 
 

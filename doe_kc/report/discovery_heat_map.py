@@ -12,7 +12,7 @@ from matplotlib.typing import ColorType
 from doe_kc.report.color_scale import STRIPS, draw_color_scale, outline
 from doe_kc.report.discovery_grid import GridCell, MapGrid
 from doe_kc.report.names import case_label, response_name
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.words import POINTS
 
@@ -24,7 +24,7 @@ QUIET_COLOUR = "#EEF1F3"
 ABSORBED_COLOUR = "white"
 CELL = (0.92, 0.36)
 """Width and height, inches."""
-LEFT, RIGHT, TOP, BOTTOM, BETWEEN = 1.75, 0.3, 0.75, 1.45, 0.62
+MAP_LEFT, MAP_RIGHT, MAP_TOP, MAP_BOTTOM, MAP_GAP = 1.75, 0.3, 0.75, 1.45, 0.62
 COLUMN_WORDS = {"static": "angle"}
 DISAGREEMENT_TICKS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 NOTE = (
@@ -38,10 +38,10 @@ def heat_map_figure(grids: Sequence[MapGrid], study: str) -> Sheet:
     cases = max((g.cases for g in grids), key=len)
     responses = max((g.responses for g in grids), key=len)
     deep = CELL[1] * len(cases)
-    width = LEFT + CELL[0] * len(responses) + RIGHT
-    height = TOP + len(grids) * deep + (len(grids) - 1) * BETWEEN + BOTTOM
-    margins = {"left": LEFT / width, "right": 1 - RIGHT / width, "top": 1 - TOP / height}
-    margins |= {"bottom": BOTTOM / height, "hspace": BETWEEN / deep}
+    width = MAP_LEFT + CELL[0] * len(responses) + MAP_RIGHT
+    height = MAP_TOP + len(grids) * deep + (len(grids) - 1) * MAP_GAP + MAP_BOTTOM
+    margins = {"left": MAP_LEFT / width, "right": 1 - MAP_RIGHT / width, "top": 1 - MAP_TOP / height}
+    margins |= {"bottom": MAP_BOTTOM / height, "hspace": MAP_GAP / deep}
     page, panels = sheet(len(grids), 1, size=(width, height), margins=margins)
     norm = LogNorm(min(g.threshold for g in grids), max(_largest(grids), 10.0 * grids[0].threshold))
     for panel, grid in zip(panels[:, 0], grids, strict=True):
@@ -106,7 +106,9 @@ def shape_words(cell: GridCell) -> str:
 
 def _scale(page: Sheet, norm: LogNorm) -> None:
     low, high = float(norm.vmin or 1.0), float(norm.vmax or 10.0)
-    box = Box(LEFT * POINTS, 0.95 * POINTS, page.width - (LEFT + RIGHT) * POINTS, 0.13 * POINTS)
+    box = PageBox(
+        MAP_LEFT * POINTS, 0.95 * POINTS, page.width - (MAP_LEFT + MAP_RIGHT) * POINTS, 0.13 * POINTS
+    )
     panel = page.add_panel(box)
     panel.x.set_logarithmic()
     draw_color_scale(

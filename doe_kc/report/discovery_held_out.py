@@ -58,6 +58,7 @@ def _handles() -> list[Line2D]:
     return [
         Line2D([], [], color=MODEL_COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.3,
                label="re-tuned without an effect"),
-        Line2D([], [], color=MODEL_COLOURS["with_effect"], ls="", marker="D", ms=4.5, label="with the effect"),
+        Line2D([], [], color=MODEL_COLOURS["with_effect"], ls="", marker="D", ms=4.5,
+               label="with the effect"),
         Line2D([], [], color="black", ls="--", lw=0.9, label="as good as predicted"),
     ]  # fmt: skip

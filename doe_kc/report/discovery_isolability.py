@@ -18,7 +18,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.report import style
 from doe_kc.report.color_scale import draw_color_scale, outline
 from doe_kc.report.discovery_words import hypothesis_label
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.words import POINTS
 
@@ -37,7 +37,7 @@ BAR_COLOURS: dict[Status, str] = {
     "no solution": style.PALETTE["grey"],
 }
 ISOLABILITY_ROW = 0.148
-SMALLEST, LARGEST = 1e-3, 100.0
+SMALLEST_MULTIPLE, LARGEST_MULTIPLE = 1e-3, 100.0
 
 
 @dataclass(frozen=True)
@@ -121,16 +121,18 @@ def _matrix(panel: Panel, table: Isolability) -> None:
 
 def _sizes(panel: Panel, table: Isolability) -> None:
     panel.x.set_logarithmic()
-    panel.x.set_limits(SMALLEST, LARGEST)
+    panel.x.set_limits(SMALLEST_MULTIPLE, LARGEST_MULTIPLE)
     panel.y.set_limits(len(table.labels), 0)
     panel.y.set_ticks([], [])
     ticks = (0.001, 0.01, 0.1, 1.0, 10.0, 100.0)
     panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
     places = np.arange(len(table.labels)) + 0.5
-    shown = np.clip(table.detectable, SMALLEST, LARGEST)
-    panel.bars(places, SMALLEST, shown, 0.7, [BAR_COLOURS[s] for s in table.statuses], zorder=2)
-    beyond = places[table.detectable > LARGEST]
-    panel.plot(np.full(beyond.size, LARGEST * 0.8), beyond, "", marker=">", color="white", ms=2.6, zorder=3)
+    shown = np.clip(table.detectable, SMALLEST_MULTIPLE, LARGEST_MULTIPLE)
+    panel.bars(places, SMALLEST_MULTIPLE, shown, 0.7, [BAR_COLOURS[s] for s in table.statuses], zorder=2)
+    beyond = places[table.detectable > LARGEST_MULTIPLE]
+    panel.plot(
+        np.full(beyond.size, LARGEST_MULTIPLE * 0.8), beyond, "", marker=">", color="white", ms=2.6, zorder=3
+    )
     panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=4)
     panel.set_labels("smallest size that would be found,\nas a multiple of the typical one", None)
     panel.set_title("Detectable size", size=8.5)
@@ -138,7 +140,7 @@ def _sizes(panel: Panel, table: Isolability) -> None:
 
 def _scale(page: Sheet) -> None:
     """Every level is as wide as the next."""
-    panel = page.add_panel(Box(3.0 * POINTS, 0.95 * POINTS, 2.6 * POINTS, 0.12 * POINTS))
+    panel = page.add_panel(PageBox(3.0 * POINTS, 0.95 * POINTS, 2.6 * POINTS, 0.12 * POINTS))
     edges = np.arange(float(len(LEVELS)))
     draw_color_scale(panel, edges, CORRELATION_MAP(np.arange(CORRELATION_MAP.N)))
     outline(panel)

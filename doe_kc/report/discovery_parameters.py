@@ -18,7 +18,7 @@ from doe_kc.report.sheet import Sheet, sheet
 
 PARAMETERS_SHOWN = 40
 BIAS_ROW = 0.17
-RETURNS, LEAVES, STILL = style.PALETTE["blue"], style.PALETTE["vermillion"], "#8A9199"
+RETURNS, LEAVES, STILL_COLOUR = style.PALETTE["blue"], style.PALETTE["vermillion"], "#8A9199"
 NEITHER = 0.1
 """Standard deviations of the prior by which a parameter must move for its arrow to have a colour."""
 
@@ -86,7 +86,7 @@ def values_words(p: TunedParameter) -> str:
 def arrow_colour(p: TunedParameter) -> str:
     """Blue where the effect brings it back, red where further off."""
     change = _away(p)
-    return STILL if abs(change) < NEITHER else RETURNS if change < 0 else LEAVES
+    return STILL_COLOUR if abs(change) < NEITHER else RETURNS if change < 0 else LEAVES
 
 
 def _handles(rows: Sequence[TunedParameter]) -> list[Line2D | Patch]:

@@ -26,18 +26,18 @@ from doe_kc.report.discovery_tables import (
 from doe_kc.report.discovery_words import STATUS_WORDS
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import (
-    A3,
     MUTED,
-    NEGATIVE,
-    NEUTRAL,
-    POSITIVE,
+    NEGATIVE_FILL,
+    NEUTRAL_FILL,
+    PAPER_A3,
+    POSITIVE_FILL,
     cell_alignment,
     page,
     put,
     title,
     widths,
 )
-from doe_kc.report.workbook_table import FIRST, Value, table
+from doe_kc.report.workbook_table import TABLE_FIRST_ROW, Value, table
 
 ODDS = '[>=6]"> 6";0.0'
 """log10 odds; 6 stands for 6 or more."""
@@ -51,7 +51,8 @@ def disagreement_sheet(book: Workbook, discovery: Discovery, study: str) -> None
     """Every contrast of the records with the model, what re-tuning explains worst first."""
     ws = book.create_sheet("Disagreement")
     below = (
-        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} (nominal ±{discovery.raw.threshold:.1f}) "
+        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} "
+        f"(nominal ±{discovery.raw.threshold:.1f}) "
         "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
         "Empty: absorbed by re-tuning."
     )
@@ -71,11 +72,11 @@ def disagreement_sheet(book: Workbook, discovery: Discovery, study: str) -> None
         "Beyond noise",
     )  # fmt: skip
     last = table(ws, heads, rows, formats=["", "", "", "", "0.0", "0.0", "0.0"])
-    _diverging(ws, f"E{FIRST}:G{last}", FULL_COLOUR_LEVEL)
-    ws.freeze_panes = ws.cell(FIRST, 5)
+    _diverging(ws, f"E{TABLE_FIRST_ROW}:G{last}", FULL_COLOUR_LEVEL)
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 5)
     widths(ws, [28, 32, 14, 18, 12, 12, 12, 30])
-    page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
-    ws.print_area = f"A1:H{FIRST - 1 + max(beyond, min(len(rows), PRINTED))}"
+    page(ws, study, repeat=f"{TABLE_FIRST_ROW - 1}:{TABLE_FIRST_ROW - 1}")
+    ws.print_area = f"A1:H{TABLE_FIRST_ROW - 1 + max(beyond, min(len(rows), PRINTED))}"
 
 
 def _wheels(wheels: str) -> str:
@@ -103,14 +104,14 @@ def effects_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     ]  # fmt: skip
     table(ws, heads, _rows(frame), formats=formats)
     if frame.empty:
-        put(ws, FIRST, 1, "No effect is asked for.", color=MUTED)
-    for row, sd in enumerate(frame["sd"], start=FIRST):
+        put(ws, TABLE_FIRST_ROW, 1, "No effect is asked for.", color=MUTED)
+    for row, sd in enumerate(frame["sd"], start=TABLE_FIRST_ROW):
         ws.cell(row, 9).number_format = ws.cell(row, 10).number_format = sd_format(float(sd))
     wide = [24, 30, 16, 9, 11, 8, 22, 16, 13, 11, 9, 10, 10, 34, 12, 13, 12, 34, 44, 44, 34]
-    wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
-    ws.freeze_panes = ws.cell(FIRST, 4)
-    page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
-    ws.print_area = f"A1:R{FIRST - 1 + max(1, len(frame))}"  # the rest is the same of every car
+    wrapped(ws, wide, range(TABLE_FIRST_ROW, TABLE_FIRST_ROW + len(frame)))
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 4)
+    page(ws, study, paper=PAPER_A3, repeat=f"{TABLE_FIRST_ROW - 1}:{TABLE_FIRST_ROW - 1}")
+    ws.print_area = f"A1:R{TABLE_FIRST_ROW - 1 + max(1, len(frame))}"  # the rest is the same of every car
 
 
 def library_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
@@ -130,10 +131,10 @@ def library_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     )  # fmt: skip
     table(ws, heads, _rows(frame), formats=["", "", "", "", "", "0.000", "", "0.0"])
     wide = [24, 30, 20, 13, 34, 10, 30, 11, 34, 34, 40, 40, 50, 44]
-    wrapped(ws, wide, range(FIRST, FIRST + len(frame)))
-    ws.freeze_panes = ws.cell(FIRST, 4)
-    page(ws, study, paper=A3, repeat=f"{FIRST - 1}:{FIRST - 1}")
-    ws.print_area = f"A1:K{FIRST - 1 + len(frame)}"  # the rest is the same of every car
+    wrapped(ws, wide, range(TABLE_FIRST_ROW, TABLE_FIRST_ROW + len(frame)))
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 4)
+    page(ws, study, paper=PAPER_A3, repeat=f"{TABLE_FIRST_ROW - 1}:{TABLE_FIRST_ROW - 1}")
+    ws.print_area = f"A1:K{TABLE_FIRST_ROW - 1 + len(frame)}"  # the rest is the same of every car
 
 
 def gap_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
@@ -149,9 +150,9 @@ def gap_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     ]  # fmt: skip
     heads = ("Load case", "Response", "Nominal", "Re-tuned", "With effect", "Best decoy", "Noise floor")
     last = table(ws, heads, rows, formats=["", "", *["0.00"] * 5])
-    scale = ColorScaleRule("num", 1, NEUTRAL, "num", 3, "FCE0BC", "num", 10, POSITIVE)
-    ws.conditional_formatting.add(f"C{FIRST}:F{last}", scale)
-    ws.freeze_panes = ws.cell(FIRST, 3)
+    scale = ColorScaleRule("num", 1, NEUTRAL_FILL, "num", 3, "FCE0BC", "num", 10, POSITIVE_FILL)
+    ws.conditional_formatting.add(f"C{TABLE_FIRST_ROW}:F{last}", scale)
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 3)
     widths(ws, [28, 34, *[13.0] * 5])
     page(ws, study, single=True)
 
@@ -168,7 +169,9 @@ def held_out_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
     heads = ("Load case", "RMS re-tuned", "RMS with effect", "RMS, law granted", "Gain, ln density")
     table(ws, heads, rows, formats=["", "0.00", "0.00", "0.00", "0.0"])
     if not rows:
-        put(ws, FIRST, 1, "No effect was found, so there is nothing to predict better.", color=MUTED)
+        put(
+            ws, TABLE_FIRST_ROW, 1, "No effect was found, so there is nothing to predict better.", color=MUTED
+        )
     widths(ws, [30, 15, 15, 17, 17])
     page(ws, study)
 
@@ -187,10 +190,10 @@ def parameters_sheet(book: Workbook, discovery: Discovery, study: str) -> None:
         "Distance re-tuned, sd", "Distance with effect, sd", "Bounds",
     )  # fmt: skip
     last = table(ws, heads, _rows(frame), formats=["", "", "", "", *["0.0000"] * 4, "0.00", "0.00", ""])
-    _diverging(ws, f"I{FIRST}:J{last}", 2.0)
-    ws.freeze_panes = ws.cell(FIRST, 2)
+    _diverging(ws, f"I{TABLE_FIRST_ROW}:J{last}", 2.0)
+    ws.freeze_panes = ws.cell(TABLE_FIRST_ROW, 2)
     widths(ws, [24, 44, 15, 8, *[12.0] * 4, 14, 14, 10])
-    page(ws, study, repeat=f"{FIRST - 1}:{FIRST - 1}")
+    page(ws, study, repeat=f"{TABLE_FIRST_ROW - 1}:{TABLE_FIRST_ROW - 1}")
 
 
 def wrapped(ws: Worksheet, wide: Sequence[float], rows: range) -> None:
@@ -219,7 +222,7 @@ def _value(value: Any) -> Value:
 
 def _diverging(ws: Worksheet, cells: str, full: float) -> None:
     """Blue below, white at, orange above zero."""
-    ends = {"start_type": "num", "start_value": -full, "start_color": NEGATIVE}
-    ends |= {"mid_type": "num", "mid_value": 0, "mid_color": NEUTRAL}
-    ends |= {"end_type": "num", "end_value": full, "end_color": POSITIVE}
+    ends = {"start_type": "num", "start_value": -full, "start_color": NEGATIVE_FILL}
+    ends |= {"mid_type": "num", "mid_value": 0, "mid_color": NEUTRAL_FILL}
+    ends |= {"end_type": "num", "end_value": full, "end_color": POSITIVE_FILL}
     ws.conditional_formatting.add(cells, ColorScaleRule(**ends))

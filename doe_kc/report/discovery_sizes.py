@@ -7,13 +7,12 @@ from dataclasses import dataclass
 
 from doe_kc.discovery.amplitudes import amplitudes
 from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate
+from doe_kc.discovery.thresholds import ONE_SIDED
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.numbers import number, unit_words, with_sd
 
 SIZE_LEVEL = 2.0
 """Standard deviations above zero from which a size that cannot be negative is told from none."""
-ONE_SIDED = 1.645
-"""Standard deviations of a one-sided 95 % limit."""
 
 
 @dataclass(frozen=True)

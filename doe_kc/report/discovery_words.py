@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from doe_kc.curves import RESPONSE_UNITS
+from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.exclusion import Standing, Status, said_limit
 from doe_kc.discovery.result import Discovery, VerdictKind
@@ -29,7 +29,6 @@ STATUS_WORDS: dict[Status, str] = {
     "not testable": "not testable",
     "no solution": "has no equilibrium in this axle",
 }
-SIDE_WORDS = {"L": "left", "R": "right"}
 MODEL_LABELS = {
     "nominal": "nominal",
     "tuned": "re-tuned",

@@ -16,12 +16,12 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.result import Influence
 from doe_kc.report.color_scale import STRIPS, draw_color_scale
 from doe_kc.report.names import case_label
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.style import PALETTE
 from doe_kc.report.words import POINTS, text_width
-from doe_kc.report.workbook_cells import NEGATIVE, NEUTRAL, POSITIVE
+from doe_kc.report.workbook_cells import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
 from doe_kc.report.workbook_matrix import Layout, layout
 
 ANNOTATE = 5.0
@@ -29,20 +29,20 @@ ANNOTATE = 5.0
 STRONGEST_COUNT = 10
 INFLUENCE_PANELS = 3
 """Columns of small multiples."""
-ROW, COLUMN = 0.165, 0.36
+CELL_HEIGHT, CELL_WIDTH = 0.165, 0.36
 """Inches of a cell of the heat map."""
 LINE_COLOUR = PALETTE["black"]
-GAP = 6.0
+INFLUENCE_GAP = 6.0
 """Points between the heat map and what is beside it."""
-HEAD = 0.72 * POINTS
+INFLUENCE_HEAD = 0.72 * POINTS
 """Of the heat map: the title of the page and the names of the load cases."""
-KEY = (0.18 * POINTS, 48.0)
+INFLUENCE_KEY = (0.18 * POINTS, 48.0)
 """Width of the colour scale, and of its numbers and name, points."""
 
 
 def diverging() -> Colormap:
     """Blue, white, orange: the colours of the workbook."""
-    colors = [f"#{c}" for c in (NEGATIVE, NEUTRAL, POSITIVE)]
+    colors = [f"#{c}" for c in (NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL)]
     return LinearSegmentedColormap.from_list("influence", colors)
 
 
@@ -51,21 +51,28 @@ def influence_heat_map(influence: Influence, *, study: str) -> Sheet:
     at = layout(influence)
     values = np.where(np.isfinite(influence.absolute), influence.percent, np.nan)
     values = values[np.ix_(at.rows, at.columns)]
-    size = (max(8.0, 3.2 + COLUMN * len(at.columns)), max(5.0, 3.0 + ROW * len(at.rows)))
+    size = (max(8.0, 3.2 + CELL_WIDTH * len(at.columns)), max(5.0, 3.0 + CELL_HEIGHT * len(at.rows)))
     columns = [_name(influence.characteristics[j]) for j in at.columns]
     rows = [influence.parameters[i].path for i in at.rows]
     page = Sheet(size)
-    left = max(text_width(name, 7.0) for name in rows) + 2.0 * GAP
-    bottom = max(text_width(name, 7.0) for name in columns) + 2.0 * GAP
-    wide, tall = page.width - left - 2.0 * GAP - sum(KEY), page.height - bottom - HEAD
-    panel = page.add_panel(Box(left, bottom, wide, tall))
+    left = max(text_width(name, 7.0) for name in rows) + 2.0 * INFLUENCE_GAP
+    bottom = max(text_width(name, 7.0) for name in columns) + 2.0 * INFLUENCE_GAP
+    wide, tall = (
+        page.width - left - 2.0 * INFLUENCE_GAP - sum(INFLUENCE_KEY),
+        page.height - bottom - INFLUENCE_HEAD,
+    )
+    panel = page.add_panel(PageBox(left, bottom, wide, tall))
     _matrix(panel, values)
     panel.x.set_ticks(np.arange(len(columns)) + 0.5, columns)
     panel.y.set_ticks(np.arange(len(rows)) + 0.5, rows)
     panel.number_angle["x"] = 90.0
     _case_names(panel, influence, at)
     _lines(panel, influence, at)
-    _scale(page.add_panel(Box(left + wide + GAP, bottom + 0.3 * tall, KEY[0], 0.4 * tall)))
+    _scale(
+        page.add_panel(
+            PageBox(left + wide + INFLUENCE_GAP, bottom + 0.3 * tall, INFLUENCE_KEY[0], 0.4 * tall)
+        )
+    )
     page.set_heading(
         f"Parameter influence, percent of each column's largest entry: {study}", 1 - 3 / page.height
     )
@@ -119,7 +126,15 @@ def _case_names(panel: Panel, influence: Influence, at: Layout) -> None:
     for case, members in groupby(cases):
         count = len(list(members))
         words = case_label(case).replace(" ", "\n") if count < 3 else case_label(case).replace(", ", ",\n")
-        panel.text(start + count / 2, 0.0, words, shift=(0.0, GAP), size=7.0, across="center", along="bottom")
+        panel.text(
+            start + count / 2,
+            0.0,
+            words,
+            shift=(0.0, INFLUENCE_GAP),
+            size=7.0,
+            across="center",
+            along="bottom",
+        )
         start += count
 
 
@@ -160,7 +175,9 @@ def _bars(panel: Panel, influence: Influence, j: int) -> None:
     values = column[strongest]
     places = np.arange(values.size)
     if values.size:
-        panel.bars(places, 0.0, values, 0.75, [f"#{POSITIVE if v > 0 else NEGATIVE}" for v in values])
+        panel.bars(
+            places, 0.0, values, 0.75, [f"#{POSITIVE_FILL if v > 0 else NEGATIVE_FILL}" for v in values]
+        )
     for y, v in zip(places, values, strict=True):
         panel.text(
             v, float(y), f"{v:+.0f}", shift=(2.0 if v > 0 else -2.0, 0.0), size=5.5, along="center",

@@ -18,9 +18,9 @@ SPACES: Mapping[str, float] = {
     "borderpad": 0.4, "borderaxespad": 0.5,
 }  # fmt: skip
 """In sizes of the text (Matplotlib's own)."""
-LINE = 1.0
+LEGEND_LINE = 1.0
 """Height of a row, in sizes of the text."""
-ORDER = 5.0
+LEGEND_ORDER = 5.0
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Legend:
         parts = _split(list(self.handles), self.columns)
         widths = [max(text_width(str(h.get_label()), self.size) for h in part) for part in parts]
         widths = [w + space["handlelength"] + space["handletextpad"] for w in widths]
-        step = LINE * self.size + space["labelspacing"]
+        step = LEGEND_LINE * self.size + space["labelspacing"]
         wide = sum(widths) + space["columnspacing"] * (len(parts) - 1)
         tall = step * max(map(len, parts)) - space["labelspacing"]
         left, top = self._corner(
@@ -55,7 +55,7 @@ class Legend:
         words: list[Word] = []
         for part, width in zip(parts, widths, strict=True):
             for k, handle in enumerate(part):
-                middle = top - k * step - LINE * self.size / 2.0
+                middle = top - k * step - LEGEND_LINE * self.size / 2.0
                 artists.append(_key(handle, left, middle, space))
                 start = left + space["handlelength"] + space["handletextpad"]
                 base = middle - 0.35 * self.size
@@ -91,7 +91,7 @@ def _key(handle: Line2D | Patch, left: float, middle: float, space: Mapping[str,
     if isinstance(handle, Patch):
         box = Rectangle((left, middle - height / 2.0), length, height)
         box.update_from(handle)
-        box.set_zorder(ORDER)
+        box.set_zorder(LEGEND_ORDER)
         return box
     line = Line2D([], [])
     line.update_from(handle)
@@ -103,5 +103,5 @@ def _key(handle: Line2D | Patch, left: float, middle: float, space: Mapping[str,
         line.set_data([left, left + length / 2.0, left + length], [middle] * 3)
         line.set_markevery([1] if marked else None)
     line.set_clip_box(None)  # of the panel, where the handle is one of its lines
-    line.set_zorder(ORDER)
+    line.set_zorder(LEGEND_ORDER)
     return line

@@ -33,14 +33,14 @@ Scale = Literal["data", "panel"]
 """In what a coordinate is: units of the axis, or shares of the panel's width or height."""
 Dash = Literal["-", "--", ":", ""] | tuple[float, Sequence[float]]
 """Of a line, as Matplotlib's `linestyle`; "" for markers alone."""
-LINE = 1.5
+PANEL_LINE = 1.5
 """Points of a line's width where nobody says another."""
 TITLE_PAD = 6.0
 """Points between a panel and its title (Matplotlib's own)."""
 
 
 @dataclass(frozen=True)
-class Box:
+class PageBox:
     """Rectangle of the page, points from its lower left corner."""
 
     left: float
@@ -84,7 +84,7 @@ class PanelText:
 class Panel:
     """Draws over `x` and `y`; panels may share an axis."""
 
-    def __init__(self, box: Box, x: PanelAxis, y: PanelAxis) -> None:
+    def __init__(self, box: PageBox, x: PanelAxis, y: PanelAxis) -> None:
         self.box, self.x, self.y = box, x, y
         self.lines: list[Line2D] = []
         self.areas: list[Patch | Collection] = []
@@ -119,7 +119,7 @@ class Panel:
         scales: tuple[Scale, Scale] = ("data", "data"), **look: Any,
     ) -> Line2D:  # fmt: skip
         """A line or markers; dash: as Matplotlib's `linestyle`, "" for markers alone. clip: at the edges."""
-        look.setdefault("lw", LINE)
+        look.setdefault("lw", PANEL_LINE)
         line = Line2D(np.atleast_1d(np.asarray(x, dtype=float)), np.atleast_1d(np.asarray(y, dtype=float)),
                       linestyle=dash, **look)  # fmt: skip
         self.lines.append(line)

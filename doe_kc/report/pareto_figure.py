@@ -20,8 +20,8 @@ from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.style import PALETTE
 
-SIZE = (11.69, 5.4)
-MARGINS = {"left": 0.065, "right": 0.985, "top": 0.86, "bottom": 0.2, "wspace": 0.14}
+PARETO_SIZE = (11.69, 5.4)
+PARETO_MARGINS = {"left": 0.065, "right": 0.985, "top": 0.86, "bottom": 0.2, "wspace": 0.14}
 DESIGNS_DRAWN = 300
 """Designs drawn, best ratings first: more lines hide each other."""
 NARROW = 0.05
@@ -36,7 +36,9 @@ def pareto_figure(front: Front, *, study: str) -> Sheet:
     """
     if not len(front.indices):
         raise InputError(f"{study}: the front is empty, no design has an answer; nothing to draw.")
-    page, panels = sheet(1, 2, size=SIZE, width_ratios=(2.1, 1.0), share_x=False, margins=MARGINS)
+    page, panels = sheet(
+        1, 2, size=PARETO_SIZE, width_ratios=(2.1, 1.0), share_x=False, margins=PARETO_MARGINS
+    )
     left, right = panels[0]
     handles = _parallel(left, front)
     page.add_legend(handles, 3, 8.0, ("left", "bottom"), (left.box.left, left.box.top))

@@ -16,7 +16,7 @@ from doe_kc import __version__
 
 RUN_TIMES = frozenset({"seconds"})
 """Fields that differ between equal results; no picture shows them."""
-HEAD, TAIL = 8192, 32
+FILE_HEAD, FILE_TAIL = 8192, 32
 """Bytes of a file in which the digest, and the mark of a whole file, are looked for."""
 ENDS = {".png": b"IEND", ".svg": b"</svg>"}
 SCALARS = (type(None), bool, int, float, complex, str, bytes, Path)
@@ -84,8 +84,8 @@ def shows(path: Path, digest: str) -> bool:
     """Whether `path` is a whole picture with this digest in its head."""
     try:
         with path.open("rb") as file:
-            head = file.read(HEAD)
-            file.seek(-TAIL, 2)
+            head = file.read(FILE_HEAD)
+            file.seek(-FILE_TAIL, 2)
             tail = file.read()
     except OSError:
         return False

@@ -16,7 +16,7 @@ from matplotlib.transforms import Affine2D, Transform
 from numpy.typing import NDArray
 
 from doe_kc.report.legend import Corner, Legend
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import PanelAxis
 from doe_kc.report.panel_frame import Frame
 from doe_kc.report.style import A4, DPI
@@ -25,7 +25,7 @@ from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent
 FRAME, FRAME_WIDTH, MINOR_WIDTH = "#000000", 0.8, 0.6
 GRID, GRID_WIDTH = "#DDDDDD", 0.5
 BACK_ORDER, GRID_ORDER, FRAME_ORDER = -1.0, 0.5, 2.5
-MARGINS = {"left": 0.125, "right": 0.9, "top": 0.88, "bottom": 0.11, "wspace": 0.2, "hspace": 0.2}
+SHEET_MARGINS = {"left": 0.125, "right": 0.9, "top": 0.88, "bottom": 0.11, "wspace": 0.2, "hspace": 0.2}
 
 
 class Sheet(Figure):
@@ -41,7 +41,7 @@ class Sheet(Figure):
         self._words = Words()
         self._completed = False
 
-    def add_panel(self, box: Box, x: PanelAxis | None = None, y: PanelAxis | None = None) -> Panel:
+    def add_panel(self, box: PageBox, x: PanelAxis | None = None, y: PanelAxis | None = None) -> Panel:
         """A panel in a rectangle of the page; x, y: axes that it shares."""
         panel = Panel(box, x or PanelAxis(), y or PanelAxis())
         self.panels.append(panel)
@@ -140,7 +140,7 @@ def sheet(
         right, top, bottom in shares of the page; wspace, hspace between panels in shares of their mean size.
     """
     page = Sheet(size)
-    room = {**MARGINS, **margins}
+    room = {**SHEET_MARGINS, **margins}
     lefts, widths = _cells(room["left"], room["right"], room["wspace"], width_ratios or (1.0,) * columns)
     downs, heights = _cells(
         1 - room["top"], 1 - room["bottom"], room["hspace"], height_ratios or (1.0,) * rows
@@ -150,7 +150,7 @@ def sheet(
     for i in range(rows):
         for j in range(columns):
             bottom = (1.0 - downs[i] - heights[i]) * page.height
-            box = Box(lefts[j] * page.width, bottom, widths[j] * page.width, heights[i] * page.height)
+            box = PageBox(lefts[j] * page.width, bottom, widths[j] * page.width, heights[i] * page.height)
             panels[i, j] = page.add_panel(box, shared)
             panels[i, j].numbers["x"] = not share_x or i == rows - 1
     return page, panels

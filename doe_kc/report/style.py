@@ -16,6 +16,8 @@ from doe_kc.ground.output import write_whole
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.report.png import write_png
 
+MARKERS = "osD^vPX"
+
 A4 = (8.27, 11.69)
 """Portrait, inches."""
 A4_LANDSCAPE = (11.69, 8.27)
@@ -34,6 +36,8 @@ PALETTE: Mapping[str, str] = {
 }
 """Okabe & Ito (2008), distinguishable with the common kinds of colour blindness."""
 
+BASELINE_COLOUR, FINAL_COLOUR = PALETTE["orange"], PALETTE["blue"]
+"""Of an axle before and after a correlation, in every picture."""
 COLOUR_CYCLE = tuple(PALETTE[k] for k in ("blue", "vermillion", "green", "orange", "purple", "sky", "black"))
 
 RC: Mapping[str, object] = {"svg.fonttype": "none", "svg.hashsalt": "doe_kc"}

@@ -15,7 +15,7 @@ from doe_kc.report.panel import Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
-from doe_kc.report.style import COLOUR_CYCLE, PALETTE
+from doe_kc.report.style import COLOUR_CYCLE, MARKERS, PALETTE
 from doe_kc.report.surrogate_tables import left_out_predictions, left_out_sd
 from doe_kc.report.words import POINTS
 from doe_kc.surrogates.models import SURROGATES
@@ -24,7 +24,6 @@ from doe_kc.surrogates.validation import NOMINAL, NOMINAL_WIDTH
 
 SURROGATE_PANELS = 5
 """Columns of small multiples."""
-MARKERS = "osD^vPX"
 QUALITY_AXIS_END = 1e-5
 """1 - Q2 at which the axis of the quality ends."""
 

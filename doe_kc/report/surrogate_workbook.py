@@ -15,7 +15,7 @@ from doe_kc.influence.result import percent_of_column
 from doe_kc.report.names import case_label
 from doe_kc.report.surrogate_tables import judged_document
 from doe_kc.report.workbook_cells import (
-    A3,
+    PAPER_A3,
     cell_alignment,
     colour_scale,
     page,
@@ -25,7 +25,7 @@ from doe_kc.report.workbook_cells import (
     widths,
 )
 from doe_kc.report.workbook_file import new_book, write_book
-from doe_kc.report.workbook_table import FIRST, Value, table
+from doe_kc.report.workbook_table import TABLE_FIRST_ROW, Value, table
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
 from doe_kc.surrogates.selection import ERROR_MARGIN, EXACT
@@ -35,8 +35,8 @@ SURROGATE_LEGEND = (
     ("RMSE", "Root mean square left-out error, in the characteristic's unit."),
     ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration."),
     ("Sharpness", "Half width of the 95 % interval over the characteristic's standard deviation."),
-    ("Chosen", f"The simplest model whose left-out squared error is within {ERROR_MARGIN:.0%} of the best one's, "
-     f"or whose 1 - Q2 is at most {EXACT:g}."),
+    ("Chosen", f"The simplest model whose left-out squared error is within {ERROR_MARGIN:.0%} of the "
+     f"best one's, or whose 1 - Q2 is at most {EXACT:g}."),
     ("Left out", "Models with many hyper-parameters are refitted to each fold; linear and radial ones leave "
      "one design out in closed form; the quadratic one chooses its terms anew in each fold."),
     ("Influence", "Gradient of the chosen model at the unchanged axle times the parameter's step, percent of "
@@ -82,11 +82,11 @@ def _quality(book: Workbook, report: SurrogateReport, study: str) -> None:
         rows.append([*own, *(float(documents[m][entry.id]["q2"]) for m in models)])
     table(ws, [*heads, *(f"Q2 {m}" for m in models)], rows, formats="0.0000")
     rmse = heads.index("RMSE") + 1
-    for r, values in enumerate(rows, start=FIRST):
+    for r, values in enumerate(rows, start=TABLE_FIRST_ROW):
         ws.cell(r, rmse).number_format = three_digits(float(values[rmse - 1] or 0.0))
     widths(ws, [24, 34, 9, 22, *[12.0] * (5 + len(models))])
     ws.freeze_panes = "C5"
-    page(ws, study, paper=A3, single=True)
+    page(ws, study, paper=PAPER_A3, single=True)
 
 
 def _matrix(
@@ -103,16 +103,16 @@ def _matrix(
         rows.append([variable.path, step, *(_finite(v) for v in values[i])])
     last = table(ws, heads, rows, formats="0", filtered=False)
     for c in range(3, len(heads) + 1):
-        ws.cell(FIRST - 1, c).alignment = cell_alignment(
+        ws.cell(TABLE_FIRST_ROW - 1, c).alignment = cell_alignment(
             textRotation=90, horizontal="center", vertical="bottom"
         )
-    ws.row_dimensions[FIRST - 1].height = 6.0 * max(map(len, heads))
-    colour_scale(ws, f"C{FIRST}:{get_column_letter(2 + len(entries))}{last}")
+    ws.row_dimensions[TABLE_FIRST_ROW - 1].height = 6.0 * max(map(len, heads))
+    colour_scale(ws, f"C{TABLE_FIRST_ROW}:{get_column_letter(2 + len(entries))}{last}")
     if agreement:
         _agreement(ws, last + 2, report)
     ws.freeze_panes = "C5"
     widths(ws, [36, 12, *[7.0] * len(entries)])
-    page(ws, study, paper=A3, single=True)
+    page(ws, study, paper=PAPER_A3, single=True)
 
 
 def _agreement(ws: Worksheet, row: int, report: SurrogateReport) -> None:

@@ -31,9 +31,9 @@ POINTS = 72.0
 """Points an inch."""
 LINE_SPACING = 1.2
 """Heights of a line from one baseline to the next (Matplotlib's own)."""
-EDGE = 2
+WORD_EDGE = 2
 """Pixels about the image of a line, as letters reach beyond their measured size."""
-ORDER = 3.0
+WORD_ORDER = 3.0
 """Above lines and areas, as Matplotlib's texts."""
 
 Across = Literal["left", "center", "right"]
@@ -96,8 +96,8 @@ def _image(
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     corners = [(x, y) for x in (0.0, width) for y in (-descent, height - descent)]
     xs, ys = [c * x - s * y for x, y in corners], [s * x + c * y for x, y in corners]
-    left, below = math.ceil(-min(xs)) + EDGE, math.ceil(-min(ys)) + EDGE
-    wide, tall = left + math.ceil(max(xs)) + EDGE, below + math.ceil(max(ys)) + EDGE
+    left, below = math.ceil(-min(xs)) + WORD_EDGE, math.ceil(-min(ys)) + WORD_EDGE
+    wide, tall = left + math.ceil(max(xs)) + WORD_EDGE, below + math.ceil(max(ys)) + WORD_EDGE
     renderer = RendererAgg(wide, tall, DPI)  # type: ignore[no-untyped-call]
     gc = renderer.new_gc()
     gc.set_foreground(to_rgba(color), isRGBA=True)
@@ -147,7 +147,7 @@ class Words(Artist):
     def __init__(self) -> None:
         super().__init__()
         self.entries: list[Word] = []
-        self.set_zorder(ORDER)
+        self.set_zorder(WORD_ORDER)
         self.set_transform(IdentityTransform())
 
     def draw(self, renderer: RendererBase) -> None:

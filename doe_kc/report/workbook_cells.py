@@ -15,7 +15,7 @@ from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
-NEGATIVE, NEUTRAL, POSITIVE = "5AA5DC", "FFFFFF", "F2A23C"
+NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL = "5AA5DC", "FFFFFF", "F2A23C"
 """Blue, white, orange: told apart by the colour-blind, black text readable on each."""
 
 
@@ -62,7 +62,7 @@ HEADER_FILL = CellFill("solid", fgColor="E4E8EC")
 FLAGGED = CellFill("solid", fgColor="FBE3F0")
 MUTED = "8A9199"
 THIN, THICK = Side(style="thin", color="C3C9CF"), Side(style="medium", color="3C4650")
-A3, A4 = 8, 9
+PAPER_A3, PAPER_A4 = 8, 9
 """Paper sizes as the file format numbers them."""
 LONGEST_TEXT = 32_000
 _FORBIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
@@ -145,13 +145,13 @@ def colour_scale(ws: Worksheet, cells: str) -> None:
         ColorScaleRule(
             start_type="num",
             start_value=-100,
-            start_color=NEGATIVE,
+            start_color=NEGATIVE_FILL,
             mid_type="num",
             mid_value=0,
-            mid_color=NEUTRAL,
+            mid_color=NEUTRAL_FILL,
             end_type="num",
             end_value=100,
-            end_color=POSITIVE,
+            end_color=POSITIVE_FILL,
         ),
     )
 
@@ -185,7 +185,7 @@ def frame(
 
 
 def page(
-    ws: Worksheet, study: str, *, paper: int = A4, repeat: str | None = None, single: bool = False
+    ws: Worksheet, study: str, *, paper: int = PAPER_A4, repeat: str | None = None, single: bool = False
 ) -> None:
     """Landscape, as wide as the paper (or on one page), study and sheet on top, page numbers below."""
     ws.page_setup.orientation = "landscape"

@@ -17,10 +17,10 @@ from doe_kc.influence.result import Influence
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import (
-    A3,
     FLAGGED,
     HEADER_FILL,
     MUTED,
+    PAPER_A3,
     colour_scale,
     frame,
     page,
@@ -35,7 +35,7 @@ from doe_kc.sampling.one_at_a_time import is_one_sided
 KINEMATICS = ("static", "vertical", "roll", "steer")
 COMPLIANCES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")
 GROUPS = ("HARDPOINTS", "BUSHINGS", "OTHER")
-SECTION, CASE, NAME, BASELINE, UNIT, FIRST = 4, 5, 6, 7, 8, 9
+SECTION_ROW, CASE_ROW, NAME_ROW, BASELINE_ROW, UNIT_ROW, FIRST_MATRIX_ROW = 4, 5, 6, 7, 8, 9
 """Rows: section, load case, characteristic, nominal value, unit (with the filter), first parameter."""
 REMARK = "Description, remark"
 LABELS = 4
@@ -56,7 +56,7 @@ class Layout:
     @property
     def last_row(self) -> int:
         """Sheet row of the last parameter."""
-        return FIRST + len(self.rows) - 1
+        return FIRST_MATRIX_ROW + len(self.rows) - 1
 
     @property
     def last_column(self) -> int:
@@ -67,7 +67,7 @@ class Layout:
     def area(self) -> str:
         """Sheet range of the matrix."""
         first, last = get_column_letter(LABELS + 1), get_column_letter(self.last_column)
-        return f"{first}{FIRST}:{last}{self.last_row}"
+        return f"{first}{FIRST_MATRIX_ROW}:{last}{self.last_row}"
 
 
 def section(entry: Characteristic) -> str:
@@ -85,7 +85,7 @@ def layout(influence: Influence) -> Layout:
     return Layout(
         rows=tuple(rows),
         columns=tuple(columns),
-        row_breaks=tuple(FIRST + k for k in _breaks([groups[i] for i in rows])),
+        row_breaks=tuple(FIRST_MATRIX_ROW + k for k in _breaks([groups[i] for i in rows])),
         column_breaks=tuple(LABELS + 1 + k for k in _breaks([cases[j] for j in columns])),
     )
 
@@ -106,7 +106,7 @@ def influence_sheet(book: Workbook, influence: Influence, study: str) -> None:
     _heads(ws, influence, at, study, sums=True)
     _labels(ws, influence, at)
     percent = np.where(np.isfinite(influence.absolute), influence.percent, np.nan)
-    for r, i in enumerate(at.rows, start=FIRST):
+    for r, i in enumerate(at.rows, start=FIRST_MATRIX_ROW):
         for c, j in enumerate(at.columns, start=LABELS + 1):
             flagged = bool(influence.nonlinear[i, j])
             value = round(float(percent[i, j])) if math.isfinite(percent[i, j]) else None
@@ -153,29 +153,38 @@ def exact_sheet(book: Workbook, influence: Influence, study: str) -> None:
 
 def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums: bool = False) -> None:
     entries = [influence.characteristics[j] for j in at.columns]
-    _merged(ws, SECTION, [section(e) for e in entries])
-    _merged(ws, CASE, [case_label(e.load_case) for e in entries])
+    _merged(ws, SECTION_ROW, [section(e) for e in entries])
+    _merged(ws, CASE_ROW, [case_label(e.load_case) for e in entries])
     decimals = _formats(influence.baseline[list(at.columns)][None, :])
     for c, (entry, j) in enumerate(zip(entries, at.columns, strict=True), start=LABELS + 1):
-        put(ws, NAME, c, entry.label, rotation=90, horizontal="center", vertical="bottom", fill=HEADER_FILL)
+        put(
+            ws,
+            NAME_ROW,
+            c,
+            entry.label,
+            rotation=90,
+            horizontal="center",
+            vertical="bottom",
+            fill=HEADER_FILL,
+        )
         value = float(influence.baseline[j])
         number = decimals[c - LABELS - 1]
-        put(ws, BASELINE, c, value, number=number, horizontal="center", fill=HEADER_FILL, color=MUTED)
-        put(ws, UNIT, c, entry.unit, horizontal="center", vertical="top", fill=HEADER_FILL)
+        put(ws, BASELINE_ROW, c, value, number=number, horizontal="center", fill=HEADER_FILL, color=MUTED)
+        put(ws, UNIT_ROW, c, entry.unit, horizontal="center", vertical="top", fill=HEADER_FILL)
     for c, text in enumerate(("Group", "Parameter", "Path", "Step"), start=1):
-        put(ws, UNIT, c, text, bold=True, vertical="top", fill=HEADER_FILL)
-    put(ws, BASELINE, 1, "Nominal value of the characteristic", fill=HEADER_FILL, color=MUTED)
-    put(ws, NAME, 1, "Characteristic", bold=True, vertical="bottom", fill=HEADER_FILL)
-    put(ws, CASE, 1, "Load case", bold=True, fill=HEADER_FILL)
-    for row in (SECTION, CASE, NAME, BASELINE):
+        put(ws, UNIT_ROW, c, text, bold=True, vertical="top", fill=HEADER_FILL)
+    put(ws, BASELINE_ROW, 1, "Nominal value of the characteristic", fill=HEADER_FILL, color=MUTED)
+    put(ws, NAME_ROW, 1, "Characteristic", bold=True, vertical="bottom", fill=HEADER_FILL)
+    put(ws, CASE_ROW, 1, "Load case", bold=True, fill=HEADER_FILL)
+    for row in (SECTION_ROW, CASE_ROW, NAME_ROW, BASELINE_ROW):
         ws.merge_cells(start_row=row, end_row=row, start_column=1, end_column=LABELS)
     extra = 3 if sums else 1
     _tail_heads(ws, at, sums=sums)
-    ws.row_dimensions[NAME].height = 168
-    ws.row_dimensions[UNIT].height = 30
-    ws.freeze_panes = ws.cell(FIRST, LABELS + 1)
+    ws.row_dimensions[NAME_ROW].height = 168
+    ws.row_dimensions[UNIT_ROW].height = 30
+    ws.freeze_panes = ws.cell(FIRST_MATRIX_ROW, LABELS + 1)
     end = get_column_letter(at.last_column + extra)
-    ws.auto_filter.ref = f"A{UNIT}:{end}{at.last_row}"
+    ws.auto_filter.ref = f"A{UNIT_ROW}:{end}{at.last_row}"
     widths(
         ws,
         [
@@ -190,12 +199,12 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
     )
     frame(
         ws,
-        range(SECTION, at.last_row + 1),
+        range(SECTION_ROW, at.last_row + 1),
         range(1, at.last_column + extra + 1),
-        thick_above=(SECTION, *at.row_breaks, at.last_row + 1),
+        thick_above=(SECTION_ROW, *at.row_breaks, at.last_row + 1),
         thick_left=(1, *at.column_breaks, at.last_column + 1),
     )
-    page(ws, study, paper=A3, repeat=f"{SECTION}:{UNIT}", single=True)
+    page(ws, study, paper=PAPER_A3, repeat=f"{SECTION_ROW}:{UNIT_ROW}", single=True)
 
 
 def _tail_heads(ws: Worksheet, at: Layout, *, sums: bool) -> None:
@@ -203,8 +212,8 @@ def _tail_heads(ws: Worksheet, at: Layout, *, sums: bool) -> None:
     for k, text in enumerate(names, start=1):
         rotation = 0 if text == REMARK else 90
         c = at.last_column + k
-        put(ws, NAME, c, text, bold=True, rotation=rotation, horizontal="center", vertical="bottom")
-        for row in (SECTION, CASE, NAME, BASELINE, UNIT):
+        put(ws, NAME_ROW, c, text, bold=True, rotation=rotation, horizontal="center", vertical="bottom")
+        for row in (SECTION_ROW, CASE_ROW, NAME_ROW, BASELINE_ROW, UNIT_ROW):
             ws.cell(row, c).fill = HEADER_FILL
 
 
@@ -215,12 +224,12 @@ def _merged(ws: Worksheet, row: int, names: list[str]) -> None:
         put(ws, row, column, name, bold=True, horizontal="center", fill=HEADER_FILL, wrap=True)
         ws.merge_cells(start_row=row, end_row=row, start_column=column, end_column=column + count - 1)
         column += count
-    ws.row_dimensions[row].height = 30 if row == CASE else 18
+    ws.row_dimensions[row].height = 30 if row == CASE_ROW else 18
 
 
 def _labels(ws: Worksheet, influence: Influence, at: Layout) -> None:
     last = max(at.last_column + 1, ws.max_column)
-    for r, i in enumerate(at.rows, start=FIRST):
+    for r, i in enumerate(at.rows, start=FIRST_MATRIX_ROW):
         parameter = influence.parameters[i]
         first = r in at.row_breaks
         # The group stands in every row, not in a merged cell, so that rows can be filtered and sorted.
@@ -262,8 +271,15 @@ def _sums(ws: Worksheet, percent: FloatArray, at: Layout) -> None:
     table = np.abs(percent[np.ix_(at.rows, at.columns)])
     total, ranks = table.sum(axis=1), _ranks(table.sum(axis=1))
     for k in range(len(at.rows)):
-        put(ws, FIRST + k, at.last_column + 1, round(float(total[k])), number="0", horizontal="center")
-        put(ws, FIRST + k, at.last_column + 2, int(ranks[k]), number="0", horizontal="center")
+        put(
+            ws,
+            FIRST_MATRIX_ROW + k,
+            at.last_column + 1,
+            round(float(total[k])),
+            number="0",
+            horizontal="center",
+        )
+        put(ws, FIRST_MATRIX_ROW + k, at.last_column + 2, int(ranks[k]), number="0", horizontal="center")
     below, order = table.sum(axis=0), _ranks(table.sum(axis=0))
     for row, name in ((at.last_row + 1, "Sum of magnitudes"), (at.last_row + 2, "Rank")):
         put(ws, row, 1, name, bold=True)
@@ -282,7 +298,7 @@ def _values(
     ws: Worksheet, influence: Influence, at: Layout, values: FloatArray, *, flag: bool = False
 ) -> None:
     formats = _formats(values[:, list(at.columns)])
-    for r, i in enumerate(at.rows, start=FIRST):
+    for r, i in enumerate(at.rows, start=FIRST_MATRIX_ROW):
         for c, j in enumerate(at.columns, start=LABELS + 1):
             flagged = flag and bool(influence.nonlinear[i, j])
             fill = FLAGGED if flagged else None

@@ -9,7 +9,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.report.workbook_cells import HEADER_FILL, MUTED, cell_alignment, frame, put
 
-FIRST = 5
+TABLE_FIRST_ROW = 5
 """Row of the first entry below title, remark, gap and heads."""
 Value = str | float | int | None
 
@@ -20,7 +20,7 @@ def table(
     rows: Sequence[Sequence[Value]],
     *,
     formats: Sequence[str] | str = "0.00",
-    start: int = FIRST - 1,
+    start: int = TABLE_FIRST_ROW - 1,
     filtered: bool = True,
     muted: Sequence[bool] = (),
 ) -> int:

@@ -10,14 +10,14 @@ from doe_kc.influence.relations import STRONG_PERCENT, Link, Relations
 from doe_kc.influence.selection_result import Selection, VariableAdvice
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import (
-    A3,
     FLAGGED,
+    PAPER_A3,
     page,
     put,
     title,
     widths,
 )
-from doe_kc.report.workbook_table import FIRST, Value, table
+from doe_kc.report.workbook_table import TABLE_FIRST_ROW, Value, table
 
 VARIABLE_HEADS = (
     "Order",
@@ -94,7 +94,7 @@ def relations_sheet(book: Workbook, relations: Relations, study: str) -> None:
     table(ws, ("Path", "Parameter", "Unit", *numbers), moved, start=last + 3, filtered=False)
     widths(ws, [25, 40, 9, *[40.0] * relations.longest])
     ws.freeze_panes = "D5"
-    page(ws, study, paper=A3)
+    page(ws, study, paper=PAPER_A3)
 
 
 def _member(name: str, sign: int) -> str:
@@ -115,7 +115,7 @@ def selection_sheet(book: Workbook, selection: Selection | None, study: str) -> 
         return
     title(ws, f"Selection of variables: {study}", _summary(selection))
     last = table(ws, VARIABLE_HEADS, [_variable(v) for v in selection.variables], formats="0.000")
-    for k, variable in enumerate(selection.variables, start=FIRST):
+    for k, variable in enumerate(selection.variables, start=TABLE_FIRST_ROW):
         if variable.at_bound:
             for c in range(1, len(VARIABLE_HEADS) + 1):
                 ws.cell(k, c).fill = FLAGGED
@@ -127,7 +127,7 @@ def selection_sheet(book: Workbook, selection: Selection | None, study: str) -> 
     table(ws, OUTCOME_HEADS, outcomes, formats="0.0000", start=last + 3, filtered=False)
     widths(ws, [7, 32, 34, 13, 32, 13, 18, 16, 11, 11, 15, 15, 11, 11, 44])
     ws.freeze_panes = "C5"
-    page(ws, study, paper=A3, single=True)
+    page(ws, study, paper=PAPER_A3, single=True)
 
 
 def _summary(selection: Selection) -> str:

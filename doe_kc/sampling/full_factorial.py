@@ -35,8 +35,8 @@ class FullFactorial(Sampler):
         if count > DESIGNS_MOST:
             raise InputError(
                 f"sampling: a full factorial of {space.dimension} variables with {request.levels} levels "
-                f"has {count:.6g} designs, more than {DESIGNS_MOST}; take fewer variables or levels, or another "
-                "method such as lhs."
+                f"has {count:.6g} designs, more than {DESIGNS_MOST}; take fewer variables or levels, or "
+                "another method such as lhs."
             )
         points = np.array(list(product(*columns)))
         return design_of(self.id, space, points, numbered(len(points)))

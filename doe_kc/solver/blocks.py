@@ -23,7 +23,7 @@ from doe_kc.solver.kernel import Buffered, Kernel, kernel
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""
-FLAGS = "-O0"
+BLOCK_FLAGS = "-O0"
 """Long functions: at -O1 they take three times as long to compile and no less to run."""
 
 
@@ -42,7 +42,7 @@ def blocks(topology: Topology) -> Mapping[str, ca.Function]:
         return {_function(name): generate(functions[name]) for name in names}
 
     try:
-        own = str(library_of(topology, "blocks", sources, {_function(name): FLAGS for name in names}))
+        own = str(library_of(topology, "blocks", sources, {_function(name): BLOCK_FLAGS for name in names}))
         jacobian = str(compiled_kernel(topology).path)
     except CompileError:
         return interpreted_blocks(topology)

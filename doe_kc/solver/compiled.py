@@ -31,7 +31,7 @@ from doe_kc.solver.newton import NewtonSettings
 CACHE_VARIABLE = "DOE_KC_CACHE"
 COMPILE_VARIABLE = "DOE_KC_COMPILE"
 """Set to 0 to stay interpreted."""
-FLAGS = {"driver": "-O3", "jacobian": "-O0"}
+COMPILER_FLAGS = {"driver": "-O3", "jacobian": "-O0"}
 """By part; the rest -O1. The Jacobian is long and rarely called: at -O1 it takes 8 s to compile instead of
 2 s, and a design of 370 equilibria would gain 2 ms."""
 DEFAULT_FLAGS = "-O1"
@@ -159,7 +159,7 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
         generated = {name: generate(kernel(topology).functions[name]) for name in MARCHED}
         return generated | {"driver": DRIVER.read_text()}
 
-    path = library_of(topology, "kernel", sources, FLAGS)
+    path = library_of(topology, "kernel", sources, COMPILER_FLAGS)
     functions = [ca.external(name, str(path)) for name in MARCHED]
     return CompiledKernel(
         path,
@@ -219,7 +219,7 @@ def _unusable(folder: Path, error: OSError) -> CompileError:
     return CompileError(f"the cache folder {folder} cannot be used ({error.strerror})")
 
 
-def build(sources: dict[str, str], flags: Mapping[str, str] = FLAGS) -> Path:
+def build(sources: dict[str, str], flags: Mapping[str, str] = COMPILER_FLAGS) -> Path:
     """Shared library of C sources by part name; from the cache when it has it."""
     compiler = _compiler()
     name = _digest(compiler, flags, *sources.values())

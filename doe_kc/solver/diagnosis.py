@@ -17,7 +17,7 @@ RUNAWAY = 3.0
 """Growth of the travel per input since the branch began that announces a fold, where it is infinite."""
 TANGENT_SHARE = 1e-3
 """Part of the way on which a tangent is measured."""
-SOFT = 20.0
+SOFT_STIFFNESS = 20.0
 """mm that a sub-frame gives way on its bushings; sound ones do by less than 3 mm."""
 SUBFRAME = "sub-frame"
 TWIST = "strut twist"
@@ -113,7 +113,7 @@ def cause(k: Kernel, c: FloatArray, start: Start, halt: Halt, s: float, u: Float
         far = f"; the next equilibrium is a snap of {halt.snap:.3g} mm away" if halt.snap else ""
         return f"over-centre: {joint} moves ever faster and would fold over{far}"
     subframe = float(np.linalg.norm(halt.x[_rows(k, SUBFRAME, FORCE_SCALE)]))
-    if subframe > SOFT:
+    if subframe > SOFT_STIFFNESS:
         return f"too soft: the sub-frame gives way by {subframe:.3g} mm on its bushings"
     return f"the joints lock: Newton's method finds no equilibrium beyond it, most moves {joint}"
 

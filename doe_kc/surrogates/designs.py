@@ -17,7 +17,7 @@ from doe_kc.variables import Space
 
 EQUAL_TOLERANCE = 1e-9
 """Relative difference below which two parameter values are the same."""
-EDGE = 1e-6
+BOUND_EDGE = 1e-6
 """Of the unit cube, within which a design counts as inside."""
 
 
@@ -65,7 +65,7 @@ def place(parameters: Mapping[str, float], space: Space, axle: Axle) -> FloatArr
     if any(v.logarithmic and values[v.path] <= 0.0 for v in space.variables):
         return None
     point = space.unit(values)
-    if not ((point >= -EDGE) & (point <= 1.0 + EDGE)).all():
+    if not ((point >= -BOUND_EDGE) & (point <= 1.0 + BOUND_EDGE)).all():
         return None
     expected = space.values(point)
     every = set(parameters) | set(expected)

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-TAIL = 4096
+OUTPUT_TAIL = 4096
 LONGEST_LINE = 300
 
 
@@ -60,7 +60,7 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def last_line(file: Path) -> str:
     """Last line of a text file that is not blank, of at most 300 characters; empty when there is none."""
     with file.open("rb") as stream:
-        stream.seek(max(0, file.stat().st_size - TAIL))
+        stream.seek(max(0, file.stat().st_size - OUTPUT_TAIL))
         text = stream.read().decode("utf-8", "replace")
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     return "".join(c if c.isprintable() else "?" for c in lines[-1][:LONGEST_LINE]) if lines else ""

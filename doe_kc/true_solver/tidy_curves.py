@@ -8,13 +8,12 @@ import numpy as np
 import pandas as pd
 
 from doe_kc.axle.model import Axle
-from doe_kc.characteristics.reduction import default_window
+from doe_kc.characteristics.reduction import FEWEST_POINTS, default_window
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 
 ROW_KEYS = ("load_case", "branch", "input", "input_unit", "side")
-FEWEST_POINTS = 3
 NEARLY = 1e-9
 
 

@@ -14,9 +14,8 @@ from doe_kc.measurement import Measurement
 from doe_kc.report.page.answer import write_answer_page
 from doe_kc.study import Study
 from doe_kc.workflow.answer import answer_lines, summary_document
-from doe_kc.workflow.write_correlation import axle_note
+from doe_kc.workflow.write_correlation import AXLE, axle_note
 
-AXLE = "axle.toml"
 SUMMARY = "summary.json"
 PAGE = "index.html"
 

@@ -84,7 +84,8 @@ def _write_figures(
 def axle_note(correlation: Correlation, assessment: Assessment) -> str:
     """First line of the axle file: status, effects, rating."""
     effects = ", ".join(correlation.axle.effects) or "none"
-    return f"{assessment.line} Effects: {effects}. Rating {correlation.rating:.6g}, correlated by {correlation.method}."
+    rating = f"Rating {correlation.rating:.6g}, correlated by {correlation.method}."
+    return f"{assessment.line} Effects: {effects}. {rating}"
 
 
 def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[Path]:

@@ -23,6 +23,7 @@ from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
 from doe_kc.study import Study
+from doe_kc.workflow.write_correlation import AXLE
 
 DISCOVERY_TABLES = {
     "disagreement.csv": disagreement_frame,
@@ -32,7 +33,6 @@ DISCOVERY_TABLES = {
     "held_out.csv": held_out_frame,
     "parameters.csv": parameter_frame,
 }
-AXLE = "axle.toml"
 EFFECTS_ONLY = "axle_effects_only.toml"
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.correlation.ego.archive import build_archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
-from doe_kc.correlation.ego.proposal import Box, gauss_newton
+from doe_kc.correlation.ego.proposal import TrustBox, gauss_newton
 from doe_kc.correlation.ego.strategy import EGO_PATIENCE, PROPOSAL_CYCLE, RESTARTS, Strategy
 from doe_kc.correlation.ego.trust import Trust
 from doe_kc.correlation.linearization import Linearization
@@ -50,7 +50,7 @@ def test_gauss_newton_raises_the_expected_rating_and_stays_in_its_box() -> None:
     archive = build_archive(case.targets, designs())
     model = GaussianProcess().fit(archive.points, archive.outputs)
     start = archive.best.point
-    box = Box.around(start, 0.05)
+    box = TrustBox.around(start, 0.05)
     found = gauss_newton(model, archive.composite, box, start, Prior.of(start, case.space.prior_sd))
 
     def expected(x: np.ndarray) -> float:

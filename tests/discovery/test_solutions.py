@@ -11,7 +11,7 @@ import pytest
 
 from doe_kc.axle.model import Axle
 from doe_kc.discovery import solutions
-from doe_kc.discovery.solutions import AXLES, Solutions
+from doe_kc.discovery.solutions import AXLE_CACHE, Solutions
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from tests.discovery.cases import LOAD_CASES, nominal
@@ -75,7 +75,7 @@ def test_another_value_solves_everything(solved: list[str]) -> None:
 
 def test_old_solutions_are_given_up(solved: list[str]) -> None:
     kept, load = Solutions(), nominal().values["tyre.static_load"]
-    for k in range(AXLES + 1):
+    for k in range(AXLE_CACHE + 1):
         kept(nominal().changed({"tyre.static_load": load + k}))
     solved.clear()
     kept(nominal())

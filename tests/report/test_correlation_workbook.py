@@ -13,7 +13,7 @@ from openpyxl import load_workbook
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
-from doe_kc.report.correlation_rating_sheet import FINAL_RATING, FIRST, HEADS
+from doe_kc.report.correlation_rating_sheet import FINAL_RATING, HEADS, RATING_FIRST_ROW
 from doe_kc.report.correlation_workbook import write_correlation_workbook
 from doe_kc.targets import Targets
 from tests.report.correlations import EVIL, all_three, odd, real
@@ -88,7 +88,7 @@ def heavier(targets: Targets) -> Targets:
 
 
 def type_in(ws: Worksheet, targets: Targets) -> None:
-    at = {(ws.cell(r, 1).value, ws.cell(r, 3).value): r for r in range(FIRST, ws.max_row + 1)}
+    at = {(ws.cell(r, 1).value, ws.cell(r, 3).value): r for r in range(RATING_FIRST_ROW, ws.max_row + 1)}
     first = targets.characteristics[0]
     assert first.objective is not None
     row = at["objective", first.entry.id]

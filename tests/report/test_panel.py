@@ -10,14 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from doe_kc.report.panel import Box, Panel
+from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import STEPS, PanelAxis, ticks
 from doe_kc.report.sheet import sheet
 from doe_kc.report.style import save
 
 
 def panel() -> Panel:
-    return Panel(Box(100.0, 50.0, 200.0, 80.0), PanelAxis(), PanelAxis())
+    return Panel(PageBox(100.0, 50.0, 200.0, 80.0), PanelAxis(), PanelAxis())
 
 
 def test_data_are_mapped_linearly_with_a_margin_of_5_percent() -> None:

@@ -25,7 +25,7 @@ from doe_kc.influence.selection import select_variables
 from doe_kc.influence.selection_result import Selection
 from doe_kc.report.workbook import write_influence_workbook
 from doe_kc.report.workbook_cells import clean
-from doe_kc.report.workbook_matrix import FIRST, LABELS, layout, step_text
+from doe_kc.report.workbook_matrix import FIRST_MATRIX_ROW, LABELS, layout, step_text
 from tests.influence.studies import parameter, real_study, study
 
 EVIL = ("=1+1", "+1+1", "-1+1", "@SUM(A1)", '=HYPERLINK("x")', "\t=1+1")
@@ -70,14 +70,14 @@ def test_cells_hold_the_matrix_as_numbers(book: Workbook) -> None:
         ("Absolute", real.absolute, 1e-12),
         ("Exact", real.exact, 1e-12),
     ):
-        for r, i in enumerate(at.rows, start=FIRST):
+        for r, i in enumerate(at.rows, start=FIRST_MATRIX_ROW):
             assert book[sheet].cell(r, 3).value == real.parameters[i].path
             for c, j in enumerate(at.columns, start=LABELS + 1):
                 assert book[sheet].cell(r, c).value == pytest.approx(values[i, j], abs=tolerance)
 
 
 def test_percent_is_a_whole_number_with_its_sign(book: Workbook) -> None:
-    cell = book["Influence"].cell(FIRST, LABELS + 1)
+    cell = book["Influence"].cell(FIRST_MATRIX_ROW, LABELS + 1)
     assert isinstance(cell.value, int)
     assert cell.number_format == '0"%"'
 
@@ -109,17 +109,17 @@ def test_heads_are_those_of_appendix_c(tmp_path: Path) -> None:
 
 def test_sums_and_ranks(tmp_path: Path) -> None:
     ws = write(tmp_path / "s.xlsx", study([[10.0, 1.0], [-5.0, 4.0], [0.0, 0.0]]))["Influence"]
-    assert [ws.cell(r, 7).value for r in range(FIRST, FIRST + 3)] == [125, 150, 0]
-    assert [ws.cell(r, 8).value for r in range(FIRST, FIRST + 3)] == [2, 1, 3]
-    assert [ws.cell(FIRST + 3, c).value for c in (5, 6)] == [150, 125]
-    assert [ws.cell(FIRST + 4, c).value for c in (5, 6)] == [1, 2]
+    assert [ws.cell(r, 7).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 3)] == [125, 150, 0]
+    assert [ws.cell(r, 8).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 3)] == [2, 1, 3]
+    assert [ws.cell(FIRST_MATRIX_ROW + 3, c).value for c in (5, 6)] == [150, 125]
+    assert [ws.cell(FIRST_MATRIX_ROW + 4, c).value for c in (5, 6)] == [1, 2]
 
 
 def test_groups_stand_in_every_row_for_the_filter(book: Workbook) -> None:
     ws = book["Influence"]
-    groups = [ws.cell(r, 1).value for r in range(FIRST, FIRST + 10)]
+    groups = [ws.cell(r, 1).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 10)]
     assert groups == ["HARDPOINTS"] * 5 + ["BUSHINGS"] * 3 + ["OTHER"] * 2
-    assert ws.auto_filter.ref.startswith("A8:") and ws.auto_filter.ref.endswith(str(FIRST + 9))
+    assert ws.auto_filter.ref.startswith("A8:") and ws.auto_filter.ref.endswith(str(FIRST_MATRIX_ROW + 9))
 
 
 def test_view_and_print_setup(book: Workbook) -> None:
@@ -147,18 +147,21 @@ def test_colour_scale_is_fixed(book: Workbook) -> None:
 
 def test_nonlinear_cells_are_marked(tmp_path: Path) -> None:
     book = write(tmp_path / "n.xlsx", study([[10.0, 4.0], [5.0, 8.0]], exact=[[10.0, 4.0], [4.0, 8.0]]))
-    marked, plain = book["Influence"].cell(FIRST + 1, 5), book["Influence"].cell(FIRST, 5)
+    marked, plain = (
+        book["Influence"].cell(FIRST_MATRIX_ROW + 1, 5),
+        book["Influence"].cell(FIRST_MATRIX_ROW, 5),
+    )
     assert marked.font.italic and "exact 40.0 %" in marked.comment.text
     assert not plain.font.italic and plain.comment is None
-    assert book["Exact"].cell(FIRST + 1, 5).fill.fgColor.rgb.endswith("FBE3F0")
+    assert book["Exact"].cell(FIRST_MATRIX_ROW + 1, 5).fill.fgColor.rgb.endswith("FBE3F0")
     assert "(1 cells)" in book["Exact"]["A2"].value
 
 
 def test_failed_axle_leaves_empty_cells_and_its_reason(tmp_path: Path) -> None:
     failed = study([[np.nan], [1.0]], failures={"P0.x": "no equilibrium: load case roll"})
     ws = write(tmp_path / "f.xlsx", failed)["Influence"]
-    assert ws.cell(FIRST, 5).value is None
-    assert "no equilibrium: load case roll" in ws.cell(FIRST, 8).value
+    assert ws.cell(FIRST_MATRIX_ROW, 5).value is None
+    assert "no equilibrium: load case roll" in ws.cell(FIRST_MATRIX_ROW, 8).value
 
 
 @pytest.mark.parametrize(
@@ -207,7 +210,7 @@ def test_libreoffice_calculates_nothing(tmp_path: Path) -> None:
     if not (tmp_path / "evil.csv").exists():
         pytest.skip(f"LibreOffice does not run here: {done.stderr.decode()[:80]}")
     read = list(csv.reader(io.StringIO((tmp_path / "evil.csv").read_text(encoding="utf-8"))))
-    assert [line[2] for line in read[FIRST - 1 : FIRST + 3]] == list(EVIL[:4])
+    assert [line[2] for line in read[FIRST_MATRIX_ROW - 1 : FIRST_MATRIX_ROW + 3]] == list(EVIL[:4])
 
 
 def test_control_characters_are_replaced(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study, expected_steps
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
 from doe_kc.workflow.measure import study_measurement
-from doe_kc.workflow.write_discovery import AXLE, write_discovery
+from doe_kc.workflow.write_correlation import AXLE
+from doe_kc.workflow.write_discovery import write_discovery
 
 DISCOVERED_AXLE = (
     "{axle}: refitted to the records with what was found, not yet correlated to the targets; doe-kc run does "

@@ -11,8 +11,8 @@ from doe_kc.workflow.answer import answer_lines
 from doe_kc.workflow.compare import compare_model, write_comparison
 from doe_kc.workflow.measure import study_records
 from doe_kc.workflow.reload_correlation import recall
-from doe_kc.workflow.write_answer import AXLE, write_answer
-from doe_kc.workflow.write_correlation import correlation_document, correlation_lines, write_correlation
+from doe_kc.workflow.write_answer import write_answer
+from doe_kc.workflow.write_correlation import AXLE, correlation_document, correlation_lines, write_correlation
 
 NO_RUN = (
     "No run is stored, only a correlation: axle.toml, index.html and summary.json in {out} were not rebuilt; "

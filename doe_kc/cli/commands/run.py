@@ -30,8 +30,8 @@ from doe_kc.workflow.discovery_document import discovery_document, discovery_lin
 from doe_kc.workflow.influence import influence_document, influence_runs, study_influence, write_influence
 from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document, write_reduced
 from doe_kc.workflow.reload_correlation import write_chain
-from doe_kc.workflow.write_answer import AXLE, write_answer
-from doe_kc.workflow.write_correlation import correlation_document, correlation_lines, write_correlation
+from doe_kc.workflow.write_answer import write_answer
+from doe_kc.workflow.write_correlation import AXLE, correlation_document, correlation_lines, write_correlation
 from doe_kc.workflow.write_discovery import write_discovery
 
 

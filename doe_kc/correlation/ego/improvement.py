@@ -16,7 +16,7 @@ from scipy.special import expit, logsumexp
 from scipy.stats import norm, qmc
 
 from doe_kc.correlation.composite import Composite
-from doe_kc.correlation.ego.proposal import Box
+from doe_kc.correlation.ego.proposal import TrustBox
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 
@@ -66,7 +66,7 @@ class ExpectedImprovement:
         penalty, pull = _nearness(point, self._failed)
         return value + penalty, gradient + pull
 
-    def maximum(self, box: Box, starts: Sequence[FloatArray]) -> FloatArray:
+    def maximum(self, box: TrustBox, starts: Sequence[FloatArray]) -> FloatArray:
         """(d,) best point found from the starts, by L-BFGS-B inside the box."""
         bounds = list(zip(box.lower, box.upper, strict=True))
         found = [

@@ -21,14 +21,14 @@ ROUGH = 10
 
 
 @dataclass(frozen=True)
-class Box:
+class TrustBox:
     """Where a proposal may lie. lower, upper: (d,) in [0, 1]."""
 
     lower: FloatArray
     upper: FloatArray
 
     @classmethod
-    def around(cls, centre: FloatArray, radius: float) -> Box:
+    def around(cls, centre: FloatArray, radius: float) -> TrustBox:
         """The trust region: `radius` either way, within the bounds."""
         return cls(np.maximum(centre - radius, 0.0), np.minimum(centre + radius, 1.0))
 
@@ -38,7 +38,7 @@ class Box:
 
 
 def gauss_newton(
-    model: Fitted, composite: Composite, box: Box, first: FloatArray, prior: Prior, *, doubt: float = 1.0
+    model: Fitted, composite: Composite, box: TrustBox, first: FloatArray, prior: Prior, *, doubt: float = 1.0
 ) -> FloatArray:
     """(d,) maximizer of the expected rating by majorized Gauss-Newton steps from `first`.
 

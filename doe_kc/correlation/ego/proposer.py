@@ -10,7 +10,7 @@ import numpy as np
 from doe_kc.correlation.ego.archive import Archive
 from doe_kc.correlation.ego.improvement import ExpectedImprovement
 from doe_kc.correlation.ego.levels import on_levels
-from doe_kc.correlation.ego.proposal import Box, gauss_newton
+from doe_kc.correlation.ego.proposal import TrustBox, gauss_newton
 from doe_kc.correlation.ego.strategy import AVERSION, Kind, Strategy
 from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.problem import Candidate, RatingForecast
@@ -64,7 +64,7 @@ class Proposer:
                 return Candidate(point, origin, self.predict(point))
         if not anywhere:
             return None
-        box = Box.around(self.archive.best.point, HALF_WIDTH)
+        box = TrustBox.around(self.archive.best.point, HALF_WIDTH)
         point = self.space.snapped(rng.uniform(box.lower, box.upper))
         return Candidate(point, "random", self.predict(point))
 
@@ -98,14 +98,14 @@ class Proposer:
 
     def _exploited(self, centre: FloatArray, half_width: float, aversion: float) -> FloatArray:
         doubt = aversion * self.trust
-        box = Box.around(centre, half_width)
+        box = TrustBox.around(centre, half_width)
         return self._levelled(
             gauss_newton(self.model, self.archive.composite, box, centre, self.prior, doubt=doubt), doubt
         )
 
     def _explored(self, rng: np.random.Generator) -> FloatArray:
         best, composite = self.archive.best, self.archive.composite
-        box = Box.around(best.point, HALF_WIDTH)
+        box = TrustBox.around(best.point, HALF_WIDTH)
         search = ExpectedImprovement(
             self.model,
             composite,

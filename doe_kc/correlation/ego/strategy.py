@@ -20,7 +20,7 @@ RESTARTS = 3
 DARE, FEAR = 0.3, 3.0
 """Factors of the risk aversion after a worthwhile Gauss-Newton proposal and after another."""
 AVERSION = (1e-3, 1.0)
-GROW, SHRINK = 1.6, 0.7
+EGO_GROWTH, EGO_SHRINKAGE = 1.6, 0.7
 """Factors of the trust region's half-width after a worthwhile bold step and after another."""
 TRUST_RADII = (0.02, 0.3)
 
@@ -48,7 +48,7 @@ class Strategy:
         if self.kind == "Gauss-Newton":
             aversion = float(np.clip(aversion * (DARE if won else FEAR), *AVERSION))
         if self.kind == "trust region":
-            reach = float(np.clip(reach * (GROW if won else SHRINK), *TRUST_RADII))
+            reach = float(np.clip(reach * (EGO_GROWTH if won else EGO_SHRINKAGE), *TRUST_RADII))
         new = replace(self, aversion=aversion, reach=reach, idle=0 if won else self.idle + 1)
         if new.idle >= self.patience and self.restarts:
             return Strategy(kind="restart", restarts=self.restarts - 1, patience=self.patience)

@@ -13,7 +13,7 @@ from doe_kc.ground.typing import FloatArray
 
 LEAST_CREDIT = 0.05
 """Probability that every search keeps."""
-RATE = 0.4
+CREDIT_RATE = 0.4
 """Weight of the last reward in the running mean."""
 FULL = 0.03
 """Gain, share of the best rating's size, that earns the full reward."""
@@ -36,7 +36,7 @@ class Credit:
 
     def reward(self, search: int, trial: SearchTrial) -> None:
         """Move a search's quality towards the reward of a trial."""
-        self._quality[search] += RATE * (reward(trial) - self._quality[search])
+        self._quality[search] += CREDIT_RATE * (reward(trial) - self._quality[search])
 
 
 def reward(trial: SearchTrial) -> float:

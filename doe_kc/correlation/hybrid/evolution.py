@@ -17,7 +17,7 @@ TOP_SHARE = 0.2
 PROPOSAL_DRAWS = 5
 """Proposals among which the first is taken whose nearest evaluation did not fail."""
 FIRST_SIGMA, SMALLEST_SIGMA, LARGEST_SIGMA = 0.05, 0.005, 0.3
-GROW, SHRINK = 1.5, 1.5**-0.25
+SIGMA_GROWTH, SIGMA_SHRINKAGE = 1.5, 1.5**-0.25
 """Of the mutation's size after success and failure: constant at one success in five."""
 
 
@@ -78,5 +78,5 @@ class Mutation(CandidateSearch):
 
     def learn(self, trial: SearchTrial) -> None:
         """Larger moves after a success."""
-        factor = GROW if trial.gain > 0.0 else SHRINK
+        factor = SIGMA_GROWTH if trial.gain > 0.0 else SIGMA_SHRINKAGE
         self._sigma = float(np.clip(self._sigma * factor, SMALLEST_SIGMA, LARGEST_SIGMA))

@@ -7,7 +7,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.ego.proposal import Box
+from doe_kc.correlation.ego.proposal import TrustBox
 from doe_kc.correlation.hybrid.linear_model import linear_model
 from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
 from doe_kc.correlation.hybrid.record import SearchHistory
@@ -17,9 +17,9 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.surrogates.training import constant_outputs
 
-FIRST_RADIUS, LARGEST, SMALLEST = 0.2, 0.5, 0.01
-SHRINK, GROW = 0.5, 1.6
-POOR, GOOD = 0.1, 0.7
+HYBRID_FIRST_RADIUS, HYBRID_LARGEST_RADIUS, HYBRID_SMALLEST_RADIUS = 0.2, 0.5, 0.01
+HYBRID_SHRINKAGE, HYBRID_GROWTH = 0.5, 1.6
+HYBRID_POOR_RATIO, HYBRID_GOOD_RATIO = 0.1, 0.7
 """Actual over predicted gain below which the region shrinks, above which it grows."""
 MODEL_DESIGNS = 5
 """Sound designs below which nothing is modelled."""
@@ -31,7 +31,9 @@ def can_model(record: SearchHistory) -> bool:
     return len(record.sound) >= MODEL_DESIGNS and not constant_outputs(record.archive.outputs).all()
 
 
-def proposed(record: SearchHistory, model: Fitted, box: Box, first: FloatArray, origin: str) -> Candidate:
+def proposed(
+    record: SearchHistory, model: Fitted, box: TrustBox, first: FloatArray, origin: str
+) -> Candidate:
     """The best rating that a model predicts in the box."""
     point = best_predicted(record.problem, model, record.archive.composite, box, first)
     return Candidate(point, origin, prediction(record.problem, record.archive, model, point))
@@ -41,14 +43,16 @@ class TrustRegion(CandidateSearch):
     """The best rating that a model predicts within a box about the best design."""
 
     def __init__(self) -> None:
-        self._radius, self._asked = FIRST_RADIUS, 0
+        self._radius, self._asked = HYBRID_FIRST_RADIUS, 0
 
     def propose(self, record: SearchHistory, rng: np.random.Generator) -> Candidate | None:
         """A second one of the same round stays in half the box."""
         if not can_model(record):
             return None
         centre = record.best.point
-        box = Box.around(centre, max(self._radius * SHRINK**self._asked, SMALLEST))
+        box = TrustBox.around(
+            centre, max(self._radius * HYBRID_SHRINKAGE**self._asked, HYBRID_SMALLEST_RADIUS)
+        )
         self._asked += 1
         return proposed(record, self._model(record), box, centre, self.id)
 
@@ -58,12 +62,12 @@ class TrustRegion(CandidateSearch):
         predicted = trial.answer.candidate.predicted
         promised = predicted.rating - trial.before if predicted is not None else 0.0
         ratio = trial.gain / promised if promised > 0.0 else 0.0
-        if ratio < POOR:
-            self._radius *= SHRINK
-        elif ratio > GOOD:
-            self._radius = min(LARGEST, self._radius * GROW)
-        if self._radius < SMALLEST:
-            self._radius = FIRST_RADIUS
+        if ratio < HYBRID_POOR_RATIO:
+            self._radius *= HYBRID_SHRINKAGE
+        elif ratio > HYBRID_GOOD_RATIO:
+            self._radius = min(HYBRID_LARGEST_RADIUS, self._radius * HYBRID_GROWTH)
+        if self._radius < HYBRID_SMALLEST_RADIUS:
+            self._radius = HYBRID_FIRST_RADIUS
 
     @abstractmethod
     def _model(self, record: SearchHistory) -> Fitted: ...
@@ -104,4 +108,4 @@ class Restart(CandidateSearch):
         far = drawn[int(np.argmax(apart))]
         if not can_model(record):
             return Candidate(far, self.id)
-        return proposed(record, record.model, Box.around(far, FIRST_RADIUS), far, self.id)
+        return proposed(record, record.model, TrustBox.around(far, HYBRID_FIRST_RADIUS), far, self.id)

@@ -7,7 +7,7 @@ import numpy as np
 from doe_kc.correlation.composite import Composite
 from doe_kc.correlation.ego.archive import Archive
 from doe_kc.correlation.ego.levels import on_levels
-from doe_kc.correlation.ego.proposal import Box, gauss_newton
+from doe_kc.correlation.ego.proposal import TrustBox, gauss_newton
 from doe_kc.correlation.problem import Problem, RatingForecast
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
@@ -32,7 +32,7 @@ def best_predicted(
     problem: Problem,
     model: Fitted,
     composite: Composite,
-    box: Box,
+    box: TrustBox,
     first: FloatArray,
     *,
     doubt: float = 1.0,

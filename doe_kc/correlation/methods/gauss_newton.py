@@ -27,7 +27,7 @@ LEAST_DECREASE = 0.01
 """Predicted decrease of the sum of squares below which the fit stands: a tenth of a standard deviation."""
 LEAST_RADIUS = 1e-4
 """Radius, share of the bounds, below which the search gives up."""
-POOR, GOOD = 0.25, 0.75
+STEP_POOR_RATIO, STEP_GOOD_RATIO = 0.25, 0.75
 """Actual over predicted decrease below which the region shrinks, above which it grows."""
 INNER_STEPS = 50
 """Newton steps within one step's linearized problem."""
@@ -82,9 +82,9 @@ class GaussNewton(Method):
         answer = evaluated[-1]
         cost = self._cost_of(answer)
         ratio = (self._cost - cost) / max(self._predicted, 1e-300)
-        if ratio < POOR:
+        if ratio < STEP_POOR_RATIO:
             self._radius = min(self._radius, float(np.abs(answer.point - self._incumbent.point).max())) / 4.0
-        elif ratio > GOOD:
+        elif ratio > STEP_GOOD_RATIO:
             self._radius = min(1.0, 2.0 * self._radius)
         if cost < self._cost:
             self._accept(answer)

@@ -14,7 +14,7 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.ego.proposal import Box
+from doe_kc.correlation.ego.proposal import TrustBox
 from doe_kc.correlation.hybrid.model_searches import can_model
 from doe_kc.correlation.hybrid.output_model import best_predicted, prediction
 from doe_kc.correlation.hybrid.record import SearchHistory
@@ -30,8 +30,8 @@ from doe_kc.ground.typing import FloatArray
 
 ROUND = 5
 """Designs of a round at least: one search for the front is dearer than a fit."""
-FIRST_RADIUS, LARGEST, SMALLEST = 0.3, 0.5, 0.02
-SHRINK, GROW = 0.7, 1.6
+PARETO_FIRST_RADIUS, PARETO_LARGEST_RADIUS, PARETO_SMALLEST_RADIUS = 0.3, 0.5, 0.02
+PARETO_SHRINKAGE, PARETO_GROWTH = 0.7, 1.6
 PARETO_PROGRESS = 0.01
 """Gain, share of the best rating's or of an objective's range on the front, that counts as progress."""
 PARETO_PATIENCE = 6
@@ -54,7 +54,7 @@ class Pareto(SurrogateMethod):
         check_installed()
         super().__init__(problem, settings)
         self._objectives = objectives(problem.search)
-        self._radius, self._idle = FIRST_RADIUS, 0
+        self._radius, self._idle = PARETO_FIRST_RADIUS, 0
         self._infill = False
         self._stopped = ""
 
@@ -76,14 +76,18 @@ class Pareto(SurrogateMethod):
             return
         after = self.front
         gained = after.ratings[0] - before.ratings[0]
-        self._radius = self._radius * SHRINK if gained <= 0.0 else min(LARGEST, self._radius * GROW)
-        if self._radius < SMALLEST:
-            self._radius = FIRST_RADIUS
+        self._radius = (
+            self._radius * PARETO_SHRINKAGE
+            if gained <= 0.0
+            else min(PARETO_LARGEST_RADIUS, self._radius * PARETO_GROWTH)
+        )
+        if self._radius < PARETO_SMALLEST_RADIUS:
+            self._radius = PARETO_FIRST_RADIUS
         self._idle = 0 if _progress(before, after) else self._idle + 1
         if self._idle >= PARETO_PATIENCE:
             self._stopped = (
-                f"neither the best rating nor an objective's best value gained {100 * PARETO_PROGRESS:g} % in "
-                f"{PARETO_PATIENCE} rounds"
+                f"neither the best rating nor an objective's best value gained "
+                f"{100 * PARETO_PROGRESS:g} % in {PARETO_PATIENCE} rounds"
             )
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
@@ -107,7 +111,7 @@ class Pareto(SurrogateMethod):
             out.append(Candidate(new, origin, prediction(self._problem, record.archive, record.model, new)))
         return out
 
-    def _region(self, record: SearchHistory) -> Box:
+    def _region(self, record: SearchHistory) -> TrustBox:
         """The box that holds the front of feasible designs, wider by the radius: its ends may lie apart."""
         front = self.front
         known = {e.index: e.point for e in record.evaluated}
@@ -115,15 +119,15 @@ class Pareto(SurrogateMethod):
             np.array([known[int(i)] for i in front.indices]) if front.feasible else record.best.point[None]
         )
         lower, upper = points.min(axis=0) - self._radius, points.max(axis=0) + self._radius
-        return Box(np.maximum(lower, 0.0), np.minimum(upper, 1.0))
+        return TrustBox(np.maximum(lower, 0.0), np.minimum(upper, 1.0))
 
     def _best_rating(self, record: SearchHistory) -> FloatArray:
-        composite, box = record.archive.composite, Box.around(record.best.point, self._radius)
+        composite, box = record.archive.composite, TrustBox.around(record.best.point, self._radius)
         return best_predicted(self._problem, record.model, composite, box, record.best.point)
 
     def _random(self, record: SearchHistory, rng: np.random.Generator) -> list[Candidate]:
         """Random designs near the best one while too few have an answer."""
-        box = Box.around(record.best.point, self._radius)
+        box = TrustBox.around(record.best.point, self._radius)
         drawn = rng.uniform(box.lower, box.upper, (max(ROUND, self._settings.batch), box.lower.size))
         return [Candidate(record.fresh(p, [], rng), "random") for p in drawn]
 

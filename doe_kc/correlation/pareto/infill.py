@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.correlation.ego.proposal import Box
+from doe_kc.correlation.ego.proposal import TrustBox
 from doe_kc.correlation.hybrid.output_model import best_predicted
 from doe_kc.correlation.hybrid.record import SearchHistory
 from doe_kc.correlation.pareto.front import bearable, non_dominated
@@ -21,7 +21,7 @@ CORNER_SPREAD = 0.05
 
 
 def predicted_front(
-    record: SearchHistory, modelled: ModelledObjectives, box: Box, count: int, rng: np.random.Generator
+    record: SearchHistory, modelled: ModelledObjectives, box: TrustBox, count: int, rng: np.random.Generator
 ) -> FloatArray:
     """(p, d) non-dominated designs on levels that the surrogates expect, of `count` objectives."""
     judge = _judge(record, modelled)
@@ -52,7 +52,7 @@ def _judge(record: SearchHistory, modelled: ModelledObjectives) -> Judge:
 def _first_population(
     record: SearchHistory,
     modelled: ModelledObjectives,
-    box: Box,
+    box: TrustBox,
     directions: FloatArray,
     rng: np.random.Generator,
 ) -> FloatArray:
@@ -67,7 +67,9 @@ def _first_population(
     return box.clip(np.vstack([np.array(seeds), near]))
 
 
-def corners(record: SearchHistory, modelled: ModelledObjectives, box: Box, count: int) -> list[FloatArray]:
+def corners(
+    record: SearchHistory, modelled: ModelledObjectives, box: TrustBox, count: int
+) -> list[FloatArray]:
     """Best predicted rating with equal weights, and with each objective stressed in turn."""
     weights = [np.ones(count), *(1.0 + (STRESS - 1.0) * np.eye(count))]
     composites = [modelled.weighted(w) for w in weights]

@@ -12,7 +12,7 @@ from markupsafe import Markup
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
 from doe_kc.measurement import Measurement
-from doe_kc.report.correlation_curves import BAND, CaseView, case_views
+from doe_kc.report.correlation_curves import BAND_SDS, CaseView, case_views
 from doe_kc.report.names import case_label, response_axis
 from doe_kc.report.page.section import Section, embedded, render
 from doe_kc.targets.comparison.deviation import rms_deviation
@@ -61,7 +61,7 @@ def curves_html(
     response, the case's own where a set has none. responses: id -> label, axis, unit.
     """
     shown = [vars(m) for m in models]
-    data = {"cases": cases, "responses": responses, "models": shown, "band": BAND}
+    data = {"cases": cases, "responses": responses, "models": shown, "band": BAND_SDS}
     return render(
         "curves.html", prefix=prefix, data=embedded(data), cases=cases, responses=responses, models=models
     )

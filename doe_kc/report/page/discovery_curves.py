@@ -21,7 +21,7 @@ DISCOVERY_CURVES_LEAD = (
     "Angles and wheel centre are changes from static; the half-width of a loop is (falling − rising) / 2. "
     "The band is ±2 sd of the noise. Drag in the chart to zoom, double-click to see all."
 )
-GAP = (
+GAP_WORDS = (
     "RMS of model minus measured in units of the records' noise; 1 is noise. A decoy is the best other "
     "effect, refitted alike: a gap that it closes as well is no evidence for a name."
 )
@@ -109,7 +109,7 @@ def gap_section(discovery: Discovery) -> Section:
         }
         for r in gap_rows(discovery)
     ]
-    return Section("Gap", render("discovery_gap.html", rows=rows), GAP)
+    return Section("Gap", render("discovery_gap.html", rows=rows), GAP_WORDS)
 
 
 def _gap(value: float) -> dict[str, Any]:

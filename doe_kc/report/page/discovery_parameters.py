@@ -17,7 +17,7 @@ BIAS_LEAD = (
     "distance from nominal after re-tuning without an effect, in standard deviations of the prior; "
     "arrows lead to the place with the effect."
 )
-REACH, WIDTH = 2.5, 200.0
+BIAS_REACH, BIAS_WIDTH = 2.5, 200.0
 """Distance at the ends of the drawing, and its width in units."""
 
 
@@ -28,7 +28,7 @@ def parameters_section(discovery: Discovery) -> Section:
     html = render(
         "discovery_parameters.html",
         rows=rows,
-        width=WIDTH,
+        width=BIAS_WIDTH,
         has_effect=has_effect,
         colour=MODEL_COLOURS["tuned"],
     )
@@ -50,5 +50,5 @@ def _row(p: TunedParameter) -> dict[str, Any]:
 
 def _place(distance: float) -> float:
     """Unit across the drawing, cut off at its ends."""
-    share = min(max(distance / REACH, -1.0), 1.0)
-    return round(0.5 * WIDTH * (1.0 + 0.94 * share), 1)
+    share = min(max(distance / BIAS_REACH, -1.0), 1.0)
+    return round(0.5 * BIAS_WIDTH * (1.0 + 0.94 * share), 1)

@@ -9,11 +9,10 @@ import casadi as ca
 
 from doe_kc.solver.builder import Builder
 
+DEG = 180 / ca.pi
+
 Stage = Literal["body", "force", "output"]
 STAGES: tuple[Stage, ...] = ("body", "force", "output")
-SIDES = ("L", "R")
-NM_PER_DEG = 1000.0 * 180.0 / ca.pi
-"""1 Nm/deg in N mm/rad."""
 
 
 class Element(ABC):

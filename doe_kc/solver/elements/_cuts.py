@@ -8,12 +8,11 @@ import casadi as ca
 
 from doe_kc.solver import rotation
 from doe_kc.solver.builder import Body, Builder, Response
-from doe_kc.solver.elements._base import hardpoint, reflection
+from doe_kc.solver.elements._base import DEG, hardpoint, reflection
 from doe_kc.solver.probe import Probe
 
 SHIFTS = ("x", "y", "z")
 ROTATION_AXES = ("rx", "ry", "rz")
-DEG = 180 / ca.pi
 NM = 1000.0
 """N mm in a Nm."""
 

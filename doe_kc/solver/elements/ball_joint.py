@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Body, Builder
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint
+from doe_kc.solver.elements._base import Element, Stage, element, hardpoint
 from doe_kc.solver.elements._cuts import SHIFTS, cut
 from doe_kc.solver.elements._sprung import sprung_ball
 

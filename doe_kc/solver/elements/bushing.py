@@ -13,12 +13,11 @@ from __future__ import annotations
 
 import casadi as ca
 
+from doe_kc.axle.model import FORCE_AXES, NM_PER_DEG
 from doe_kc.solver import curve, rotation
 from doe_kc.solver.builder import Body, Builder, Response
-from doe_kc.solver.elements._base import NM_PER_DEG
 from doe_kc.solver.elements._cuts import ROTATION_AXES, SHIFTS, push_pair, stretch, turn_pair, turn_sign
 
-FORCE_AXES = ("Fx", "Fy", "Fz")
 TORQUE_AXES = ("Tx", "Ty", "Tz")
 
 

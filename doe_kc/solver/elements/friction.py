@@ -15,8 +15,9 @@ import numpy as np
 from scipy.special import gammaincinv
 
 from doe_kc.axle.topology import FrictionLaw
+from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element
+from doe_kc.solver.elements._base import Element, Stage, element
 
 IWAN_ELEMENTS = 8
 

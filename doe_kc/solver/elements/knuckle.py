@@ -7,17 +7,11 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.axle.model import NM_PER_DEG
+from doe_kc.curves import SIDES
 from doe_kc.solver import rotation
 from doe_kc.solver.builder import Body, Builder, body
-from doe_kc.solver.elements._base import (
-    NM_PER_DEG,
-    SIDES,
-    Element,
-    Stage,
-    element,
-    hardpoint,
-    reflection,
-)
+from doe_kc.solver.elements._base import Element, Stage, element, hardpoint, reflection
 from doe_kc.solver.elements._cuts import ROTATION_AXES, cut, side_axes, turn_pair
 from doe_kc.solver.freedoms import rotations
 

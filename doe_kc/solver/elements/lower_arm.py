@@ -6,9 +6,10 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder, body
 from doe_kc.solver.elements import bushing
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint, reflection
+from doe_kc.solver.elements._base import Element, Stage, element, hardpoint, reflection
 from doe_kc.solver.freedoms import rotations, translations
 
 ARM_AXES = ca.SX([[0, 1, 0], [-1, 0, 0], [0, 0, 1]])

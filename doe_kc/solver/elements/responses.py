@@ -6,11 +6,9 @@ from typing import ClassVar
 
 import casadi as ca
 
-from doe_kc.curves import RESPONSE_UNITS
+from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.solver.builder import Builder
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint, mirror
-
-DEG = 180 / ca.pi
+from doe_kc.solver.elements._base import DEG, Element, Stage, element, hardpoint, mirror
 
 OUTPUT_UNITS = {
     **RESPONSE_UNITS,

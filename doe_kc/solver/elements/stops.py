@@ -6,9 +6,10 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.curves import SIDES
 from doe_kc.solver import curve
 from doe_kc.solver.builder import Builder
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element
+from doe_kc.solver.elements._base import Element, Stage, element
 
 
 @element

@@ -6,10 +6,11 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.curves import SIDES
 from doe_kc.solver import rotation
 from doe_kc.solver.builder import Builder, body
 from doe_kc.solver.elements import bushing
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element, hardpoint, reflection
+from doe_kc.solver.elements._base import Element, Stage, element, hardpoint, reflection
 from doe_kc.solver.elements._cuts import cut, push_pair, turn_pair
 from doe_kc.solver.elements.knuckle import strut_axes, strut_axis
 from doe_kc.solver.freedoms import slide, twist

@@ -11,8 +11,9 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.curves import SIDES
 from doe_kc.solver.builder import LENGTH_SCALE, Builder
-from doe_kc.solver.elements._base import SIDES, Element, Stage, element, mirror
+from doe_kc.solver.elements._base import Element, Stage, element, mirror
 from doe_kc.solver.elements._cuts import stretch
 
 

@@ -82,8 +82,8 @@ def _path(basis: FloatArray, y: FloatArray, least: float) -> PenaltyPath:
 
 
 def _errors(
-    paths: list[PenaltyPath], basis: FloatArray, y: FloatArray, folds: list[np.ndarray], kept: list[np.ndarray],
-    penalties: FloatArray,
+    paths: list[PenaltyPath], basis: FloatArray, y: FloatArray, folds: list[np.ndarray],
+    kept: list[np.ndarray], penalties: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """(k,) squared errors of the lasso itself over all folds at each penalty."""
     total = np.zeros(len(penalties))
