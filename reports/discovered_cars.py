@@ -17,7 +17,7 @@ from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import reduce_measurement
 from doe_kc.variables import VariableOptions
@@ -85,7 +85,7 @@ def _analysed(car: str) -> Discovery:
     space = discovery_space(axle, VariableOptions(), "report")
     model = EffectModel(axle, space, record_likelihood(axle, records))
     with processes(WORKERS) as executor:
-        return discover(model, effect_library(axle), Bench(executor, workers=WORKERS))
+        return discover(model, effect_library(axle), DiscoveryWorkers(executor, workers=WORKERS))
 
 
 def _key(car: str) -> dict[str, dict[str, float]]:

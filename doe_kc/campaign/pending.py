@@ -20,7 +20,7 @@ MOST_LOSSES = 3
 Landed = tuple[str, Packed]
 
 
-class Flight:
+class PendingRuns:
     """key -> design of `designs`, each run once. Twice as many as there are workers are under way."""
 
     def __init__(
@@ -32,7 +32,7 @@ class Flight:
         self._designs = designs
         self._flying: dict[Future[Packed], str] = {}
         self._interrupts = interrupts
-        self._accused: list[str] = []
+        self._suspects: list[str] = []
 
     def results(self) -> Iterator[Landed]:
         """Key and result of every design as it lands.
@@ -117,7 +117,7 @@ class Flight:
                 yield from self._sentences()
                 yield key, packed
             else:
-                self._accuse(key)
+                self._mark_crashed(key)
 
     def _alone(self, key: str) -> Packed | None:
         with self._interrupts.allowed():
@@ -128,17 +128,17 @@ class Flight:
         del self._flying[future]
         return packed
 
-    def _accuse(self, key: str) -> None:
+    def _mark_crashed(self, key: str) -> None:
         """A design that ended its worker; a failure once another design shows that workers can live."""
-        self._accused.append(key)
-        if len(self._accused) >= MOST_LOSSES:
+        self._suspects.append(key)
+        if len(self._suspects) >= MOST_LOSSES:
             raise RunError(f"{LOST} time and again, {REMEDY}.")
         self._renew()
 
     def _sentences(self) -> Iterator[Landed]:
-        for key in self._accused:
+        for key in self._suspects:
             yield key, _lost()
-        self._accused.clear()
+        self._suspects.clear()
 
     def _renew(self) -> None:
         renew = getattr(self._executor, "renew", None)

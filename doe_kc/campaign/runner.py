@@ -15,7 +15,7 @@ from doe_kc import __version__
 from doe_kc.campaign.executors import executor_for, in_process
 from doe_kc.campaign.interrupts import Interrupts
 from doe_kc.campaign.key import design_key
-from doe_kc.campaign.pending import Flight
+from doe_kc.campaign.pending import PendingRuns
 from doe_kc.campaign.record import Packed, StoredEvaluation
 from doe_kc.campaign.store import Store, open_store
 from doe_kc.campaign.task import task_for
@@ -99,7 +99,7 @@ class Campaign:
         few = self.solver.quick and len(missing) <= IN_PROCESS_DESIGNS
         executor = self._here if few else self.executor
         interrupts = Interrupts()
-        flight = Flight(executor, task_for(self.solver), missing, interrupts)
+        flight = PendingRuns(executor, task_for(self.solver), missing, interrupts)
         try:
             with interrupts:
                 for key, packed in flight.results():

@@ -55,11 +55,11 @@ def apply_effects(axle: Axle, effects: Iterable[str]) -> Axle:
     return axle
 
 
-def _options(text: str, whole: str) -> Iterator[tuple[str, Any]]:
+def _options(text: str, argument: str) -> Iterator[tuple[str, Any]]:
     for part in _split(text):
         key, equals, value = part.partition("=")
         if not equals or not key.strip():
-            raise InputError(f"--effect {whole}: {part!r}, expected key=value.")
+            raise InputError(f"--effect {argument}: {part!r}, expected key=value.")
         yield key.strip(), _value(value.strip())
 
 

@@ -23,7 +23,7 @@ P = ParamSpec("P")
 
 
 @dataclass(frozen=True)
-class Given:
+class StudyOptions:
     """measurement, out, seed, pictures: in place of the study's own. json: file for the figures."""
 
     study: StudyArgument
@@ -45,14 +45,14 @@ class Given:
         )
 
 
-def takes_study(command: Callable[Concatenate[Given, P], None]) -> Callable[..., None]:
-    """The command with the fields of `Given`, its first argument, as arguments and options beside its own."""
-    first, *common = _parameters(Given)
+def takes_study(command: Callable[Concatenate[StudyOptions, P], None]) -> Callable[..., None]:
+    """The command with the fields of `StudyOptions`, its first argument, beside its own options."""
+    first, *common = _parameters(StudyOptions)
     own = _parameters(command)[1:]
 
     @functools.wraps(command)
     def told(**options: Any) -> None:
-        given = Given(**{p.name: options.pop(p.name) for p in (first, *common)})
+        given = StudyOptions(**{p.name: options.pop(p.name) for p in (first, *common)})
         command(given, **options)  # type: ignore[call-arg]
 
     # Typer reads signature and annotations, of what it is given as of what that wraps.

@@ -17,7 +17,7 @@ deviations hard, still meets the constraint."""
 
 
 @dataclass(frozen=True)
-class Walls:
+class ConstraintPenalty:
     """rows: (c,) places of the constrained characteristics in the registry. low, high, sd: (c,)."""
 
     rows: np.ndarray
@@ -26,7 +26,7 @@ class Walls:
     sd: FloatArray
 
     @classmethod
-    def of(cls, targets: Targets) -> Walls:
+    def of(cls, targets: Targets) -> ConstraintPenalty:
         """One for every constraint, and one for every limit."""
         pairs = list(zip(targets.rows, targets.characteristics, strict=True))
         limits = [(r, t.constraint.low, t.constraint.high) for r, t in pairs if t.constraint is not None]

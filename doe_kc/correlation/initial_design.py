@@ -12,7 +12,7 @@ from doe_kc.variables import Space
 
 
 @dataclass(frozen=True, kw_only=True)
-class Opening:
+class InitialDesign:
     """How a method opens.
 
     variables_each: one design for so many variables, `fewest` at least; None: `fewest` always. half_width:

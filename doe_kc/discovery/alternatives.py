@@ -18,7 +18,7 @@ from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.search import EffectSearch, Step, accepted_at, threshold
 from doe_kc.discovery.trials import HypothesisFit, log_odds, plausible, tried
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -55,7 +55,7 @@ class Alternatives:
         return remaining_map(fitted.model.contrasts, fitted.residual, fitted.projection)
 
 
-def alternatives(search: EffectSearch, temper: float, bench: Bench) -> tuple[Alternatives, ...]:
+def alternatives(search: EffectSearch, temper: float, bench: DiscoveryWorkers) -> tuple[Alternatives, ...]:
     """Of every member of the final set, in its order."""
     members = search.final.model.members
     bases = [_without_own_law(search, h) for h in members]
@@ -95,7 +95,7 @@ def _same_set(search: EffectSearch, base: Fit) -> Step | None:
     return step if same and all(a is b for a, b in errors) else None
 
 
-def _from_step(base: Fit, step: Step, temper: float, bench: Bench) -> Alternatives:
+def _from_step(base: Fit, step: Step, temper: float, bench: DiscoveryWorkers) -> Alternatives:
     """From refits of the search; what has friction is driven by as many loops as the final set."""
     own = _own(base, step.before)
     kept = [t for t in step.trials if plausible(t) and _may_replace(base, t.hypothesis)]
@@ -116,7 +116,9 @@ def _from_step(base: Fit, step: Step, temper: float, bench: Bench) -> Alternativ
     return Alternatives(step.before, (first, *others), (own, *rivals), temper)
 
 
-def _at_final_set(search: EffectSearch, base: Fit, without: Fit, temper: float, bench: Bench) -> Alternatives:
+def _at_final_set(
+    search: EffectSearch, base: Fit, without: Fit, temper: float, bench: DiscoveryWorkers
+) -> Alternatives:
     """From refits of the final set without the member and with each rival in its place."""
     own, project = _own(base, without), without.projection
     known = {s.hypothesis.name: s for s in _screened(search, without)}
@@ -130,7 +132,7 @@ def _at_final_set(search: EffectSearch, base: Fit, without: Fit, temper: float, 
 
 
 def _near(
-    screened: Sequence[Screened], project: Projection, least: float, without: Fit, bench: Bench
+    screened: Sequence[Screened], project: Projection, least: float, without: Fit, bench: DiscoveryWorkers
 ) -> list[Screened]:
     """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
     chosen = [s.hypothesis for s in leaders(screened, project, least / 2.0)[1:]]

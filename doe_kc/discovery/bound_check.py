@@ -16,13 +16,15 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search import EffectSearch, search
 from doe_kc.discovery.thresholds import AT, BOUND_EVIDENCE, FACTORS, HELD
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import Space
 
 
-def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> tuple[EffectSearch, float]:
+def search_within_bounds(
+    model: EffectModel, library: Sequence[Hypothesis], bench: DiscoveryWorkers
+) -> tuple[EffectSearch, float]:
     """The search, and by how much all ranges are wider in it than the model's: 1 where that is not asked for.
 
     Wider ranges are tried only where what re-tuning could not absorb agrees with noise, so that they
@@ -30,14 +32,14 @@ def searched(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) ->
     NotConverged when the nominal axle has no equilibrium.
     """
     found = search(model, library, bench)
-    factor = asked(found.final, bench)
+    factor = bound_evidence(found.final, bench)
     if factor == 1.0:
         return found, factor
     again = search(replace(model, space=model.space.widened(factor)), library, bench)
     return (again, factor) if again.plain.evidence > found.plain.evidence + BOUND_EVIDENCE else (found, 1.0)
 
 
-def asked(final: Fit, bench: Bench) -> float:
+def bound_evidence(final: Fit, bench: DiscoveryWorkers) -> float:
     """By how much wider the ranges are with the largest evidence, 1 unless it is clear."""
     shapes = final.model.contrasts
     few = np.mean(at_bounds(final)) < HELD
@@ -45,7 +47,7 @@ def asked(final: Fit, bench: Bench) -> float:
         return 1.0
     best, most = 1.0, final.evidence + BOUND_EVIDENCE
     for factor in FACTORS:
-        model, z = widened(final, factor)
+        model, z = with_wider_bounds(final, factor)
         (wider,) = bench.fitted([(model, z)], "wider bounds", final.jacobian * _stretch(final, model, z))
         if wider is None or wider.evidence < most:
             break
@@ -60,7 +62,7 @@ def at_bounds(fit: Fit) -> NDArray[np.bool_]:
     return np.asarray((u <= low) | (u >= high))
 
 
-def widened(fit: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
+def with_wider_bounds(fit: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
     """The model with wider ranges, and the fit's point in it."""
     model = fit.model
     space, count = model.space.widened(factor), model.parameters

@@ -9,9 +9,9 @@ import numpy as np
 
 from doe_kc.discovery.adequacy import Adequacy, adequacy
 from doe_kc.discovery.alternatives import Alternatives, alternatives
-from doe_kc.discovery.bound_check import beyond, searched
+from doe_kc.discovery.bound_check import beyond, search_within_bounds
 from doe_kc.discovery.disagreement import raw_map, remaining_map
-from doe_kc.discovery.exclusion import Standing, Status, standings
+from doe_kc.discovery.exclusion import HypothesisStatus, Status, hypothesis_statuses
 from doe_kc.discovery.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.findings import findings
 from doe_kc.discovery.gaps import gaps, returned
@@ -24,18 +24,20 @@ from doe_kc.discovery.sentences import next_tests, sentences
 from doe_kc.discovery.thresholds import WORST
 from doe_kc.discovery.trials import HypothesisFit
 from doe_kc.discovery.verdict import classes, verdict
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.threads import one_thread
 
 
 @one_thread()
-def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | None = None) -> Discovery:
+def discover(
+    model: EffectModel, library: Sequence[Hypothesis], bench: DiscoveryWorkers | None = None
+) -> Discovery:
     """model: the axle without any effect, its tunable parameters and its records."""
     started = time.perf_counter()
-    bench = bench or Bench()
-    found, widened = searched(model, library, bench)
+    bench = bench or DiscoveryWorkers()
+    found, widened = search_within_bounds(model, library, bench)
     nominal = model.residual(model.centre)
     final, tuned = found.final, found.tuned
     remaining = remaining_map(final.model.contrasts, final.residual, final.projection)
@@ -51,7 +53,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
     decoy = best_decoy(compared, relevant)
     whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
     traces = shown_traces(every, holds)
-    stands = _standings(found, (*relevant, *traces), len(library), resolved=resolved(found, holds))
+    statuses = _standings(found, (*relevant, *traces), len(library), resolved=resolved(found, holds))
     outside = beyond(model.space, found.plain)
     ambiguous = classes(relevant) if judged.kind == "class" else ()
     separating = _separating(compared, ambiguous)
@@ -61,7 +63,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         findings=relevant,
         traces=traces,
         classes=ambiguous,
-        standings=stands,
+        statuses=statuses,
         unexplained=tuple(remaining.worst(WORST)) if judged.kind == "unexplained" else (),
         adequacy=holds,
         search=found,
@@ -74,7 +76,7 @@ def discover(model: EffectModel, library: Sequence[Hypothesis], bench: Bench | N
         gaps=each,
         held_out=predicted,
         returned=returned(found.tuned, found.plain) if relevant else (),
-        next_tests=next_tests(judged, relevant, ambiguous, stands, separating),
+        next_tests=next_tests(judged, relevant, ambiguous, statuses, separating),
         seconds=time.perf_counter() - started,
         scan=somewhere,
         widened=widened,
@@ -126,7 +128,7 @@ def shown_traces(every: Sequence[Finding], holds: Adequacy) -> tuple[Finding, ..
 
 def _standings(
     search: EffectSearch, named: Sequence[Finding], count: int, *, resolved: bool
-) -> tuple[Standing, ...]:
+) -> tuple[HypothesisStatus, ...]:
     """named: findings and traces that are given."""
     critical, last = float(np.sqrt(2.0 * threshold(count))), search.steps[-1].before
     members: list[tuple[Screened, Status]] = []
@@ -138,4 +140,4 @@ def _standings(
         members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in search.steps[-1].screened if s.hypothesis.name not in names]
-    return standings(last, last.tuning_projection, others, members, critical, resolved=resolved)
+    return hypothesis_statuses(last, last.tuning_projection, others, members, critical, resolved=resolved)

@@ -22,7 +22,7 @@ Status = Literal["found", "trace", "excluded", "unresolved", "not testable", "no
 
 
 @dataclass(frozen=True)
-class Standing:
+class HypothesisStatus:
     """One hypothesis.
 
     status: excluded from its limits on where the model holds; unresolved where it does not.
@@ -45,7 +45,7 @@ class Standing:
     bench: ComponentTest | None = None
 
 
-def standings(
+def hypothesis_statuses(
     fit: Fit,
     project: Projection,
     screened: Sequence[Screened],
@@ -53,7 +53,7 @@ def standings(
     critical: float,
     *,
     resolved: bool,
-) -> tuple[Standing, ...]:
+) -> tuple[HypothesisStatus, ...]:
     """Of members (as screened before they were added) and of all others screened at the final model.
 
     critical: |z| that a hypothesis must reach among so many. resolved: whether the model holds, so that what
@@ -82,7 +82,9 @@ def standings(
             if j != i and abs(correlation[i, j]) >= ALIKE_CORRELATION and length[i] > 1.0 and length[j] > 1.0
         )
         hidden_by = _hiding(fit, moves[:, i], s)
-        stands = Standing(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
+        stands = HypothesisStatus(
+            s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits)
+        )
         out.append(stands)
     hidden = [i for i, s in enumerate(out) if s.status in ("not testable", "trace")]
     tests = component_tests(fit, [everything[i] for i in hidden], critical + POWER)
@@ -91,13 +93,13 @@ def standings(
     return tuple(out)
 
 
-def said_limit(size: Size, amplitude: float) -> float | None:
+def exclusion_limit(size: Size, amplitude: float) -> float | None:
     """The option's number at an amplitude from which it is excluded; None beyond any believed size."""
     return size.value(amplitude) if amplitude <= size.most else None
 
 
 def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray:
-    """(m,) see `Standing`. by_bounds: see `_trusted`."""
+    """(m,) see `HypothesisStatus`. by_bounds: see `_trusted`."""
     sizes = screened.hypothesis.sizes
     if sum(not s.shape for s in sizes) == 1:
         seen = _trusted(screened.detectability, float(np.linalg.norm(screened.change)), by_bounds)
@@ -108,14 +110,14 @@ def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray
     )
 
 
-def _trusted(visible: float, whole: float, by_bounds: float) -> float:
+def _trusted(visible: float, before: float, by_bounds: float) -> float:
     """Standard deviations that are believed of those that re-tuning leaves of an effect.
 
-    whole: before re-tuning. by_bounds: the part that is left because parameters would have to move too far,
+    before: before re-tuning. by_bounds: the part that is left because parameters would have to move too far,
     which no bend of theirs undoes; the rest are deviations of the records.
     """
     left = visible**2 - by_bounds**2
-    return by_bounds if left <= UNSURE * whole**2 else visible
+    return by_bounds if left <= UNSURE * before**2 else visible
 
 
 def _limit(visible: float, critical: float) -> float:

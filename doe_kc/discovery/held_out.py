@@ -57,11 +57,11 @@ def held_out(tuned: Fit, plain: Fit, final: Fit, case: str) -> HeldOut:
     return HeldOut(case, _prediction(_without(tuned, case)), with_effect, law_granted)
 
 
-def _without(found: Fit, case: str) -> Fit:
+def _without(start: Fit, case: str) -> Fit:
     """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
-    model = replace(found.model, left_out=case)
-    near = followed(found, model)
-    gained = cost_of(model, found.z, found.residual) - near.cost
+    model = replace(start.model, left_out=case)
+    near = followed(start, model)
+    gained = cost_of(model, start.z, start.residual) - near.cost
     if near.converged and gained <= FOLLOW_DECREASE:
         return near
     return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)

@@ -23,7 +23,7 @@ from doe_kc.measurement.noise import smooth_correlation
 
 
 @dataclass(frozen=True)
-class Made:
+class EffectSignal:
     """What one member makes: change of every curve (n,), the largest of each response and branches, and the
     sum of squares in the records' errors.
 
@@ -31,26 +31,26 @@ class Made:
     too; an elastic law's scale is the same in every curve, which is what tells effects apart.
     """
 
-    changes: tuple[FloatArray, ...]
+    effect_signals: tuple[FloatArray, ...]
     largest: Mapping[tuple[str, Branches], float]
     sticks: bool
     square: float
 
 
-def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
+def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
     """The fit with the laws of its effects left open by as much as the records ask for, and by how much.
 
     exact: to the records' own errors. The share of each effect is the one of SHARES with the largest
     evidence, one effect after the other, largest first: the errors of the records grow by what its law may
     do to the curves, and with them their determinant, so that a law that fits is left as it is.
     """
-    made = changes(exact)
+    made = effect_signals(exact)
     shares = [0.0] * len(made)
     best, most = exact, marginal(exact)
     for i in sorted(range(len(made)), key=lambda i: -made[i].square):
         for share in DISCREPANCY_SHARES[1:]:
             tried = [share if k == i else s for k, s in enumerate(shares)]
-            wider = with_errors(exact, granted(exact.model, made, tried))
+            wider = with_errors(exact, with_discrepancy(exact.model, made, tried))
             evidence = marginal(wider)
             if evidence > most:
                 best, most, shares[i] = wider, evidence, share
@@ -59,13 +59,13 @@ def opened(exact: Fit) -> tuple[Fit, dict[str, float]]:
     return found, dict(zip(names, shares, strict=True))
 
 
-def closed(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
+def without_own_discrepancy(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
     """Of each member whose law was opened, the records' errors with all laws opened but its own."""
     if not any(shares.values()):
         return {}
-    made, names = changes(exact), [h.name for h in exact.model.members]
+    made, names = effect_signals(exact), [h.name for h in exact.model.members]
     return {
-        name: granted(exact.model, made, [shares[n] * (n != name) for n in names]).likelihood
+        name: with_discrepancy(exact.model, made, [shares[n] * (n != name) for n in names]).likelihood
         for name in names
         if shares[name]
     }
@@ -82,31 +82,35 @@ def marginal(fit: Fit) -> float:
     return fit.evidence + lower - roots
 
 
-def granted(model: EffectModel, signals: Sequence[Made], shares: Sequence[float]) -> EffectModel:
+def with_discrepancy(
+    model: EffectModel, signals: Sequence[EffectSignal], shares: Sequence[float]
+) -> EffectModel:
     """The model, its records' errors its own and those of the laws of its effects.
 
-    made: what each member makes, see `changes`. shares: one a member.
+    made: what each member makes, see `effect_signals`. shares: one a member.
     """
     likelihood = model.likelihood
     curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
     return model.with_errors(replace(likelihood, curves=tuple(curves)))
 
 
-def changes(exact: Fit) -> list[Made]:
+def effect_signals(exact: Fit) -> list[EffectSignal]:
     """What each member of a fit to the records' own errors makes of their curves."""
     model = exact.model
     return [_made(model, member, place, exact.residual, exact.z) for member, place in model.places()]
 
 
-def _made(model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray) -> Made:
+def _made(
+    model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray
+) -> EffectSignal:
     without = model.without(member)
     whitened = residual - without.residual(np.delete(z, np.r_[place]))
-    changes = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
+    effect_signals = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
     largest: dict[tuple[str, Branches], float] = {}
-    for curve, change in zip(model.likelihood.curves, changes, strict=True):
+    for curve, change in zip(model.likelihood.curves, effect_signals, strict=True):
         key = (curve.response, curve.branches)
         largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
-    return Made(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
+    return EffectSignal(effect_signals, largest, _frictional(model, member, z), float(whitened @ whitened))
 
 
 def sticks(fit: Fit, member: Hypothesis) -> bool:
@@ -120,7 +124,9 @@ def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
     return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
 
 
-def _widened(curve: CurveData, at: int, signals: Sequence[Made], shares: Sequence[float]) -> CurveData:
+def _widened(
+    curve: CurveData, at: int, signals: Sequence[EffectSignal], shares: Sequence[float]
+) -> CurveData:
     if not any(shares):
         return curve
     relative = curve.input / np.abs(curve.input).max()

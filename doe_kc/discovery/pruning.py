@@ -9,10 +9,10 @@ import numpy as np
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, to_errors
 from doe_kc.discovery.thresholds import DOUBTFUL
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 
 
-def pruned(fit: Fit, least: float, bench: Bench, without_law: Mapping[str, Likelihood]) -> Fit:
+def pruned(fit: Fit, least: float, bench: DiscoveryWorkers, without_law: Mapping[str, Likelihood]) -> Fit:
     """The fit without the members, but the latest, that cost more evidence than they bring.
 
     without_law: of a member whose law is open, errors that do not grant it, or what it makes would pass for

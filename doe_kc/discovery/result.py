@@ -9,7 +9,7 @@ from typing import Literal
 from doe_kc.discovery.adequacy import Adequacy
 from doe_kc.discovery.contrasts import Contrast
 from doe_kc.discovery.disagreement import Map
-from doe_kc.discovery.exclusion import Standing
+from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.held_out import HeldOut
@@ -124,7 +124,7 @@ class Discovery:
     findings: tuple[Finding, ...]
     traces: tuple[Finding, ...]
     classes: tuple[tuple[str, ...], ...]
-    standings: tuple[Standing, ...]
+    statuses: tuple[HypothesisStatus, ...]
     unexplained: tuple[tuple[Contrast, float], ...]
     adequacy: Adequacy
     search: EffectSearch

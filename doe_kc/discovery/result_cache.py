@@ -27,7 +27,7 @@ FORMAT = "2"
 numbers differ, or of what is packed. Results of another format are not taken up, and computed anew."""
 
 
-class Ledger:
+class ResultCache:
     """Arrays by key; a context manager, for one thread. Every `put` is on the disk when it returns.
 
     path: None keeps them in memory. RunError when the file is damaged or cannot be written.
@@ -61,7 +61,7 @@ class Ledger:
         """Give up the file."""
         self._connection.close()
 
-    def __enter__(self) -> Ledger:
+    def __enter__(self) -> ResultCache:
         return self
 
     def __exit__(self, *_: object) -> None:

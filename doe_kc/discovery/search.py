@@ -11,7 +11,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.disagreement import Map, remaining_map
 from doe_kc.discovery.fit import Fit, fit, to_errors
-from doe_kc.discovery.law_discrepancy import closed, opened
+from doe_kc.discovery.law_discrepancy import fit_discrepancy, without_own_discrepancy
 from doe_kc.discovery.leaders import compatible, leaders, overlooked
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.pruning import pruned
@@ -19,7 +19,7 @@ from doe_kc.discovery.screen import Screened, rescreened
 from doe_kc.discovery.sides import side_differences
 from doe_kc.discovery.thresholds import EFFECTS_MOST, FALSE_ALARM, LOOP_EVIDENCE, MOST_STEPS, PROMISING
 from doe_kc.discovery.trials import HypothesisFit, plausible, stiffer_first, tried
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -56,7 +56,7 @@ class EffectSearch:
     without_law: Mapping[str, Likelihood]
 
 
-def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> EffectSearch:
+def search(model: EffectModel, library: Sequence[Hypothesis], bench: DiscoveryWorkers) -> EffectSearch:
     """Tune, then add effects as long as the evidence asks for them.
 
     NotConverged when the nominal axle has no equilibrium.
@@ -74,15 +74,15 @@ def search(model: EffectModel, library: Sequence[Hypothesis], bench: Bench) -> E
             break
         current = pruned(step.trials[0].fit, threshold(len(library)), bench, without_law)
         exact = to_errors(with_conditioning(current, model.axle, bench), model.likelihood)
-        current, shares = opened(exact)
-        without_law = closed(exact, shares)
+        current, shares = fit_discrepancy(exact)
+        without_law = without_own_discrepancy(exact, shares)
         if current.model.likelihood is not step.trials[0].fit.model.likelihood:
             current = settled(current, bench)
     plain = to_errors(current, model.likelihood)
     return EffectSearch(tuned, tuple(steps), current, plain, shares, without_law)
 
 
-def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
+def with_conditioning(current: Fit, own: Axle, bench: DiscoveryWorkers) -> Fit:
     """The fit with one loop before the record or with none, as the records with friction ask for.
 
     A rig runs until loops close; a simulated record may begin right after the first rise. Nothing in the
@@ -100,7 +100,7 @@ def with_conditioning(current: Fit, own: Axle, bench: Bench) -> Fit:
     return found
 
 
-def settled(current: Fit, bench: Bench) -> Fit:
+def settled(current: Fit, bench: DiscoveryWorkers) -> Fit:
     """The fit at its own optimum, on derivatives taken there.
 
     What parameters hide almost wholly shows by what is left between two large columns, which derivatives of
@@ -137,7 +137,7 @@ def accepted_at(search: EffectSearch, hypothesis: Hypothesis) -> Step:
 def _step(
     current: Fit,
     library: Sequence[Hypothesis],
-    bench: Bench,
+    bench: DiscoveryWorkers,
     last: Step | None,
 ) -> Step:
     """last: the step before; its columns tell which hypotheses are worth a screening anew."""

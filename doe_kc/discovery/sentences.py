@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from doe_kc.discovery.adequacy import Adequacy
 from doe_kc.discovery.disagreement import Map
-from doe_kc.discovery.exclusion import Standing
+from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.scan import Scan
@@ -134,7 +134,7 @@ def next_tests(
     verdict: Verdict,
     findings: Sequence[Finding],
     ambiguous: Sequence[Sequence[str]],
-    standings: Sequence[Standing],
+    statuses: Sequence[HypothesisStatus],
     extra: Mapping[tuple[str, str], Sequence[ExtraTest]],
 ) -> tuple[str, ...]:
     """What would separate a class, confirm a name, or show what is not testable here.
@@ -149,17 +149,17 @@ def next_tests(
         for f in findings:
             ident = f.hypothesis.effect
             out.setdefault(ident, f"To confirm {_known(ident)}: {EFFECTS[ident].shown_by}.")
-    for effect, best in _hidden(standings):
+    for effect, best in _hidden(statuses):
         how = f"{EFFECTS[effect].shown_by}{_bench(best)}"
         out.setdefault(effect, f"Not testable here, {_known(effect)}: {how}.")
     return tuple(list(out.values())[:ADVISED])
 
 
-def _hidden(standings: Sequence[Standing]) -> list[tuple[str, Standing]]:
+def _hidden(statuses: Sequence[HypothesisStatus]) -> list[tuple[str, HypothesisStatus]]:
     """Effects that hardly show in any place, each with the place that measured parts show best; those that
     they show come first, by how many parts that takes."""
-    places: dict[str, list[Standing]] = {}
-    for s in standings:
+    places: dict[str, list[HypothesisStatus]] = {}
+    for s in statuses:
         places.setdefault(s.hypothesis.effect, []).append(s)
     best = [
         (effect, min(each, key=_effort))
@@ -169,12 +169,12 @@ def _hidden(standings: Sequence[Standing]) -> list[tuple[str, Standing]]:
     return sorted(best, key=lambda item: _effort(item[1]))
 
 
-def _effort(standing: Standing) -> tuple[float, float]:
+def _effort(standing: HypothesisStatus) -> tuple[float, float]:
     test = standing.bench
     return (float("inf"), 0.0) if test is None else (len(test.parts), -test.separation)
 
 
-def _bench(standing: Standing) -> str:
+def _bench(standing: HypothesisStatus) -> str:
     test = standing.bench
     if test is None:
         return ""

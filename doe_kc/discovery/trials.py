@@ -11,7 +11,7 @@ from doe_kc.discovery.belief import believed
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screen import Screened
 from doe_kc.discovery.thresholds import TIED
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
@@ -25,7 +25,7 @@ class HypothesisFit:
     gain: float
 
 
-def tried(current: Fit, screened: Sequence[Screened], bench: Bench) -> list[HypothesisFit]:
+def tried(current: Fit, screened: Sequence[Screened], bench: DiscoveryWorkers) -> list[HypothesisFit]:
     """The joint refits from the screened sizes, best first; those without a solution are left out."""
     starts = [
         (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened

@@ -12,7 +12,7 @@ from doe_kc.campaign.in_process import InProcess
 from doe_kc.discovery.fit import Fit, cost_of, fit
 from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.result_cache import Arrays, Ledger, fingerprint, key_of
+from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
 from doe_kc.discovery.scan import Scan, scan
 from doe_kc.discovery.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS
@@ -25,19 +25,19 @@ Watch = Callable[[str, int], None]
 T = TypeVar("T")
 
 
-class Bench:
+class DiscoveryWorkers:
     """executor: where tasks run, default this process. ledger: what is known already."""
 
     def __init__(
         self,
         executor: Executor | None = None,
-        ledger: Ledger | None = None,
+        ledger: ResultCache | None = None,
         watch: Watch = lambda *_: None,
         *,
         workers: int = 1,
     ) -> None:
         self._executor = executor or InProcess()
-        self._ledger = ledger or Ledger(None)
+        self._ledger = ledger or ResultCache(None)
         self.watch = watch
         self._workers = workers
 

@@ -129,8 +129,8 @@ def _texts(panel: Panel, y: float, row: CharacteristicRow) -> None:
     words = f"{entry.percent:.1f} %" if np.isfinite(entry.percent) else "on target"
     weight, colour = ("bold", muted) if entry.counts else ("normal", "#777777")
     panel.text(
-        _across(COLUMN_PLACES["improvement"]), y, words, size=6.5, across="right", along="center", color=colour,
-        weight=weight,
+        _across(COLUMN_PLACES["improvement"]), y, words, size=6.5, across="right", along="center",
+        color=colour, weight=weight,
     )  # fmt: skip
     panel.text(_across(0.88), y, note(row), size=6.0, along="center", color="#555555")
 

@@ -55,7 +55,7 @@ class Isolability:
 def isolability(discovery: Discovery) -> Isolability:
     """In the order of the library; the axle re-tuned about the final model, sizes of its effects known."""
     order = list(EFFECTS)
-    stands = sorted(discovery.standings, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
+    stands = sorted(discovery.statuses, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
     changes = _changes(discovery)
     remaining = discovery.fitted.tuning_projection(np.array([changes[s.hypothesis.name] for s in stands]).T)
     length = np.linalg.norm(remaining, axis=0)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from doe_kc.discovery.exclusion import Standing
+from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Discovery
 from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_words import (
@@ -60,18 +60,18 @@ def disagreement_frame(discovery: Discovery) -> pd.DataFrame:
 
 def library_frame(discovery: Discovery) -> pd.DataFrame:
     """One row a hypothesis, found ones first; detectable in words and as a multiple of the typical size."""
-    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.standings}
+    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.statuses}
     return pd.DataFrame([_library(s, labels) for s in ordered_standings(discovery)])
 
 
 STATUS_ORDER = tuple(STATUS_WORDS)
 
 
-def ordered_standings(discovery: Discovery) -> list[Standing]:
+def ordered_standings(discovery: Discovery) -> list[HypothesisStatus]:
     """By status, then in the order of the library."""
     order = list(EFFECTS)
     return sorted(
-        discovery.standings,
+        discovery.statuses,
         key=lambda s: (
             STATUS_ORDER.index(s.status),
             order.index(s.hypothesis.effect),
@@ -80,7 +80,7 @@ def ordered_standings(discovery: Discovery) -> list[Standing]:
     )
 
 
-def _library(standing: Standing, labels: Mapping[str, str]) -> dict[str, object]:
+def _library(standing: HypothesisStatus, labels: Mapping[str, str]) -> dict[str, object]:
     h = standing.hypothesis
     return {
         "effect": h.effect,
@@ -100,18 +100,18 @@ def _library(standing: Standing, labels: Mapping[str, str]) -> dict[str, object]
     }
 
 
-def hidden_words(standing: Standing) -> str:
+def hidden_words(standing: HypothesisStatus) -> str:
     """Parameters that take the effect's place, with their move in standard deviations of the prior."""
     return ", ".join(f"{path} ({move:+.1f} sd)" for path, move in standing.hidden_by)
 
 
-def bench_words(standing: Standing) -> str:
+def bench_words(standing: HypothesisStatus) -> str:
     """Parts that a bench has to measure for the effect to show, and by how much it then does."""
     test = standing.bench
     return "" if test is None else f"{', '.join(test.parts)} ({test.separation:.0f} sd)"
 
 
-def alike_words(standing: Standing, labels: Mapping[str, str]) -> str:
+def alike_words(standing: HypothesisStatus, labels: Mapping[str, str]) -> str:
     """Hypotheses whose remaining change is the same, with the correlation. labels: by their names."""
     return "; ".join(f"{labels.get(name, name)} ({r:+.2f})" for name, r in standing.alike)
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
 from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.exclusion import Standing, Status, said_limit
+from doe_kc.discovery.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.discovery.result import Discovery, VerdictKind
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -85,7 +85,7 @@ def wheels(contrast: Contrast) -> str:
     return "both wheels" if contrast.wheels == "both" else "left against right"
 
 
-def limit_words(standing: Standing) -> str:
+def limit_words(standing: HypothesisStatus) -> str:
     """From which size on the effect would have been seen, e.g. `k_N_mm below 9000 N/mm`.
 
     Of a list all components: `|LLR| above 370, 910, – N`.
@@ -106,7 +106,7 @@ def merged_sizes(hypothesis: Hypothesis) -> list[Size]:
 
 def _limit(size: Size, amplitudes: Sequence[float]) -> str:
     """Of one option; amplitudes: of each of its components."""
-    said = [a if said_limit(size, a) is not None else math.nan for a in amplitudes]
+    said = [a if exclusion_limit(size, a) is not None else math.nan for a in amplitudes]
     if size.shape:
         return ""
     if all(map(math.isnan, said)):

@@ -118,7 +118,7 @@ class Surrogate(ABC):
     id: name in studies and tables. label: name in figures. complexity: order among the models, 0 = simplest.
     costly: a fit of many outputs takes minutes, so it is used on request only. interpolates: passes through
     the training values. exact_folds: `cross_validate` is leave-one-out in closed form with the model's
-    hyper-parameters held. flatters: it learns so many of those that its left-out residuals come out too
+    hyper-parameters held. optimistic_loo: it learns so many of those that its left-out residuals come out too
     small, and only refitting tells how good it is.
     """
 
@@ -128,7 +128,7 @@ class Surrogate(ABC):
     costly: ClassVar[bool] = False
     interpolates: ClassVar[bool]
     exact_folds: ClassVar[bool]
-    flatters: ClassVar[bool] = False
+    optimistic_loo: ClassVar[bool] = False
 
     def fewest(self, variables: int) -> int:
         """Rows below which the model cannot be fitted."""

@@ -71,7 +71,9 @@ def default_models(designs: int, variables: int) -> list[str]:
 
 def number_of_tasks(names: Sequence[str], designs: int, folds: int) -> int:
     """Steps of the progress of `fit_study`."""
-    return sum(1 + (min(folds, designs) if SURROGATES[n].flatters else 0) for n in names if n in SURROGATES)
+    return sum(
+        1 + (min(folds, designs) if SURROGATES[n].optimistic_loo else 0) for n in names if n in SURROGATES
+    )
 
 
 @one_thread()
@@ -129,7 +131,7 @@ def _tasks(
     tasks: list[tuple[str, _Task]] = []
     for name in names:
         tasks.append((name, partial(_whole, name, x, y, seed)))
-        if SURROGATES[name].flatters:
+        if SURROGATES[name].optimistic_loo:
             rows = fold_rows(len(x), folds, seed)
             tasks += [(name, partial(_fold, name, x, y, left, seed)) for left in rows]
     return tasks

@@ -14,8 +14,8 @@ from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.result_cache import Ledger
-from doe_kc.discovery.workers import Bench, Watch
+from doe_kc.discovery.result_cache import ResultCache
+from doe_kc.discovery.workers import DiscoveryWorkers, Watch
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.errors import InputError, nearest
@@ -53,8 +53,8 @@ def discover_study(
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
     count = workers or available_cores()
-    with processes(count) as executor, Ledger(study.discovery_store) as ledger:
-        return discover(model, library, Bench(executor, ledger, watch, workers=count))
+    with processes(count) as executor, ResultCache(study.discovery_store) as ledger:
+        return discover(model, library, DiscoveryWorkers(executor, ledger, watch, workers=count))
 
 
 def recorded(axle: Axle, measurement: Measurement) -> Axle:
@@ -114,6 +114,6 @@ def discover_folder(
     library = effect_library(axle, exclude)
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
-    with processes(workers) as executor, Ledger(out / "discovery.sqlite") as ledger:
-        found = discover(model, library, Bench(executor, ledger, workers=workers))
+    with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as ledger:
+        found = discover(model, library, DiscoveryWorkers(executor, ledger, workers=workers))
     return dict(discovery_document(found, None))

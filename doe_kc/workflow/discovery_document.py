@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.discovery.adequacy import Adequacy
-from doe_kc.discovery.exclusion import Standing, said_limit
+from doe_kc.discovery.exclusion import HypothesisStatus, exclusion_limit
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.sentences import adequacy_words, odds_words
 from doe_kc.discovery.thresholds import CERTAIN
@@ -46,9 +46,9 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
         "traces": [effect_entry(f) for f in discovery.traces],
         "classes": [list(c) for c in discovery.classes],
         "adequacy": _adequacy(discovery.adequacy),
-        "excluded": [_excluded(s) for s in discovery.standings if s.status == "excluded"],
-        "unresolved": sorted({s.hypothesis.effect for s in discovery.standings if s.status == "unresolved"}),
-        "not_testable": not_testable(discovery.standings),
+        "excluded": [_excluded(s) for s in discovery.statuses if s.status == "excluded"],
+        "unresolved": sorted({s.hypothesis.effect for s in discovery.statuses if s.status == "unresolved"}),
+        "not_testable": not_testable(discovery.statuses),
         "unexplained_at": [
             {"load_case": c.load_case, "response": c.response, "shape": c.shape, "z": z}
             for c, z in discovery.unexplained
@@ -145,31 +145,31 @@ def further_tests(discovery: Discovery) -> list[dict[str, Any]]:
             "parts": list(s.bench.parts),
             "separation": s.bench.separation,
         }
-        for s in discovery.standings
+        for s in discovery.statuses
         if s.bench is not None
     ]
     return [*runs, *parts]
 
 
-def _excluded(standing: Standing) -> dict[str, Any]:
+def _excluded(standing: HypothesisStatus) -> dict[str, Any]:
     h = standing.hypothesis
     above = {s.key: {"value": _limit(s, standing), "unit": s.unit} for s in h.sizes if not s.shape}
     return {"id": h.effect, "location": h.location, "above": above}
 
 
-def _limit(size: Size, standing: Standing) -> float | list[float | None] | None:
+def _limit(size: Size, standing: HypothesisStatus) -> float | list[float | None] | None:
     """The option's number from which it is excluded, None where it is not; of a list all components."""
     sizes = standing.hypothesis.sizes
-    limits = {s.name: said_limit(s, a) for s, a in zip(sizes, standing.limits, strict=True)}
+    limits = {s.name: exclusion_limit(s, a) for s, a in zip(sizes, standing.limits, strict=True)}
     if size.index is None:
         return limits[size.name]
     return [limits[s.name] for s in sizes if s.key == size.key]
 
 
-def not_testable(standings: Iterable[Standing]) -> list[str]:
+def not_testable(statuses: Iterable[HypothesisStatus]) -> list[str]:
     """Ids of effects that cannot be tested in any place."""
     statuses: dict[str, list[str]] = {}
-    for s in standings:
+    for s in statuses:
         statuses.setdefault(s.hypothesis.effect, []).append(s.status)
     return [ident for ident, each in statuses.items() if all(status in HIDDEN for status in each)]
 

@@ -7,12 +7,12 @@ import pytest
 
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.correlation.constraint_penalty import WALL_MARGIN, WALL_STIFFNESS, Walls
+from doe_kc.correlation.constraint_penalty import WALL_MARGIN, WALL_STIFFNESS, ConstraintPenalty
 from doe_kc.targets import build_targets
 from doe_kc.targets.options import CharacteristicOptions
 from tests.correlation.cases import AXLE
 
-WALLS = Walls(np.array([3, 4]), np.array([-1.0, 2.0]), np.array([1.0, 6.0]), np.array([0.1, 0.5]))
+WALLS = ConstraintPenalty(np.array([3, 4]), np.array([-1.0, 2.0]), np.array([1.0, 6.0]), np.array([0.1, 0.5]))
 
 
 def test_inside_costs_nothing_and_outside_is_counted_in_sd() -> None:
@@ -32,7 +32,7 @@ def test_a_wall_stands_just_inside_every_constraint_of_the_targets() -> None:
         CharacteristicOptions(match="roll.roll_steer", target=-1.0, constraint=False),
     ]
     targets = build_targets(read_axle(AXLE), None, options, [], source="test")
-    walls = Walls.of(targets)
+    walls = ConstraintPenalty.of(targets)
     assert walls.rows.tolist() == [list(CHARACTERISTICS).index("vertical.bump_steer")]
     assert walls.sd == pytest.approx([WALL_STIFFNESS])
     assert (walls.low[0], walls.high[0]) == pytest.approx((-6.0 + WALL_MARGIN, -4.0 - WALL_MARGIN))
@@ -40,5 +40,5 @@ def test_a_wall_stands_just_inside_every_constraint_of_the_targets() -> None:
 
 def test_targets_without_a_constraint_have_no_wall() -> None:
     options = [CharacteristicOptions(match="vertical.bump_steer", target=-5.0, constraint=False)]
-    walls = Walls.of(build_targets(read_axle(AXLE), None, options, [], source="test"))
+    walls = ConstraintPenalty.of(build_targets(read_axle(AXLE), None, options, [], source="test"))
     assert walls.excess(np.zeros(0)).size == 0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import with_values
-from doe_kc.correlation.constraint_penalty import Walls
+from doe_kc.correlation.constraint_penalty import ConstraintPenalty
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.posterior import posterior
@@ -61,8 +61,8 @@ def test_meets_constraints_from_a_start_that_violates_most_of_them(seed: int) ->
     point = nominal.space.start + rng.uniform(-0.3, 0.3, nominal.space.dimension)
     values = {n: v for n, v in nominal.space.values(np.clip(point, 0.0, 1.0)).items() if "." in n}
     case = problem("car_b", axle=with_values(nominal.axle, values))
-    base = outcome(case.axle, {}).characteristics[Walls.of(case.targets).rows]
-    assert np.count_nonzero(Walls.of(case.targets).excess(base)) > 5
+    base = outcome(case.axle, {}).characteristics[ConstraintPenalty.of(case.targets).rows]
+    assert np.count_nonzero(ConstraintPenalty.of(case.targets).excess(base)) > 5
     best = _fitted(case)
     assert best.rating is not None and best.rating.feasible
 

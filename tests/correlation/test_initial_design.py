@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle_file import read_axle
-from doe_kc.correlation.initial_design import Opening
+from doe_kc.correlation.initial_design import InitialDesign
 from doe_kc.correlation.methods._sampled import BROAD
 from doe_kc.correlation.methods.ego import OPENING, WITH_SLOPES
 from doe_kc.ground.typing import FloatArray
@@ -16,12 +16,12 @@ from tests.correlation.cases import AXLE, problem
 EVERY = pytest.mark.parametrize("opening", [OPENING, WITH_SLOPES, BROAD], ids=["values", "slopes", "broad"])
 
 
-def points(opening: Opening, space: Space, n: int, seed: int = 1) -> FloatArray:
+def points(opening: InitialDesign, space: Space, n: int, seed: int = 1) -> FloatArray:
     return np.array([c.point for c in opening.sample(space, n, seed)])
 
 
 @EVERY
-def test_lies_near_the_start_on_the_levels(opening: Opening) -> None:
+def test_lies_near_the_start_on_the_levels(opening: InitialDesign) -> None:
     space = problem("car_b").space
     found = points(opening, space, 24)
     np.testing.assert_array_equal(found, space.snapped(found))
@@ -34,7 +34,7 @@ def test_lies_near_the_start_on_the_levels(opening: Opening) -> None:
 @pytest.mark.parametrize("distribution", ["uniform", "gaussian"])
 @pytest.mark.parametrize("start", [210.0, 214.0])
 def test_a_start_beside_its_bound_is_no_design_twice(
-    opening: Opening, distribution: str, start: float
+    opening: InitialDesign, distribution: str, start: float
 ) -> None:
     changes = [Change(match="LLF.z", range=[210.0, 214.0], start=start)]
     options = VariableOptions(use=["LLF.z"], levels="continuous", distribution=distribution, change=changes)  # type: ignore[arg-type]
@@ -45,7 +45,7 @@ def test_a_start_beside_its_bound_is_no_design_twice(
 
 @EVERY
 @pytest.mark.parametrize("levels", [2, 3, 5, 8])
-def test_coarse_levels_are_left_too(opening: Opening, levels: int) -> None:
+def test_coarse_levels_are_left_too(opening: InitialDesign, levels: int) -> None:
     space = problem("car_b", VariableOptions(levels=levels)).space
     found = points(opening, space, 8)
     np.testing.assert_array_equal(found, space.snapped(found))

@@ -12,7 +12,7 @@ from doe_kc.discovery.findings import findings
 from doe_kc.discovery.fit import last_member
 from doe_kc.discovery.search import EffectSearch
 from doe_kc.discovery.trials import HypothesisFit, plausible
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import discovery
 
 BOTH = {"hub_compliance", "steering_friction"}
@@ -25,7 +25,7 @@ def found() -> EffectSearch:
 
 @pytest.fixture(scope="module")
 def compared(found: EffectSearch) -> tuple[Alternatives, ...]:
-    return alternatives(found, 1.0, Bench())
+    return alternatives(found, 1.0, DiscoveryWorkers())
 
 
 def test_two_effects_are_named_and_are_no_class() -> None:
@@ -63,7 +63,7 @@ def test_the_order_of_two_effects_does_not_matter(
     swapped = replace(found, final=last_member(found.final, first), plain=last_member(found.plain, first))
     assert swapped.final.model.members == (second, first)
     there = findings(found, compared)
-    back = findings(swapped, alternatives(swapped, 1.0, Bench()))
+    back = findings(swapped, alternatives(swapped, 1.0, DiscoveryWorkers()))
     for one, other in zip(there, reversed(back), strict=True):
         assert one.hypothesis == other.hypothesis
         assert one.log10_odds == pytest.approx(other.log10_odds, rel=1e-3, abs=0.05)
@@ -82,7 +82,7 @@ def test_a_first_trial_at_its_bound_is_no_rival_of_the_effect_beside_it(
     covariance = np.hstack([found.tuned.jacobian, 100.0 * np.ones((fit.residual.size, 2)) * [[1.0, 0.3]]])
     absurd = HypothesisFit(hub.hypothesis, replace(fit, jacobian=covariance), 50_000.0)
     steps = tuple(replace(s, trials=(*s.trials, absurd)) for s in found.steps)
-    again = alternatives(replace(found, steps=steps), 1.0, Bench())
+    again = alternatives(replace(found, steps=steps), 1.0, DiscoveryWorkers())
     same = next(c for c in again if c.hypothesis == friction.hypothesis)
     assert "hub_compliance" not in {t.hypothesis.effect for t in same.trials}
     assert same.loss == pytest.approx(friction.loss)
@@ -91,6 +91,6 @@ def test_a_first_trial_at_its_bound_is_no_rival_of_the_effect_beside_it(
 def test_one_effect_alone_is_judged_by_the_refits_of_the_search() -> None:
     """No solution more: the set without it is the re-tuned axle."""
     search = discovery("named").search
-    (one,) = alternatives(search, 1.0, Bench())
+    (one,) = alternatives(search, 1.0, DiscoveryWorkers())
     assert one.without is search.tuned
     assert {id(t) for t in one.trials[1:]} <= {id(t) for t in search.steps[0].trials}

@@ -10,10 +10,10 @@ import pytest
 from doe_kc.campaign.executors import processes
 from doe_kc.discovery import result_cache as ledgers
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.result_cache import Ledger
+from doe_kc.discovery.result_cache import ResultCache
 from doe_kc.discovery.screen import effort
 from doe_kc.discovery.search import tune
-from doe_kc.discovery.workers import Bench, _packed_fit, _unpacked_fit
+from doe_kc.discovery.workers import DiscoveryWorkers, _packed_fit, _unpacked_fit
 from tests.discovery.cases import library, model
 
 
@@ -30,8 +30,8 @@ def start(tuned: Fit) -> tuple[object, np.ndarray]:
 def test_a_fit_of_a_worker_is_of_the_very_model_and_errors_of_its_start(tuned: Fit) -> None:
     extended, z = start(tuned)
     with processes(2) as executor:
-        (there,) = Bench(executor, workers=2).fitted([(extended, z)], "", tuned.jacobian)
-    (here,) = Bench().fitted([(extended, z)], "", tuned.jacobian)
+        (there,) = DiscoveryWorkers(executor, workers=2).fitted([(extended, z)], "", tuned.jacobian)
+    (here,) = DiscoveryWorkers().fitted([(extended, z)], "", tuned.jacobian)
     assert there is not None and here is not None
     assert there.model is extended and there.model.likelihood is tuned.model.likelihood
     assert np.array_equal(there.z, here.z) and np.array_equal(there.jacobian, here.jacobian)
@@ -41,8 +41,8 @@ def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
     begun, steps = [start(tuned)], []
     fits = []
     for _ in range(2):
-        with Ledger(tmp_path / "discovery.sqlite") as ledger:
-            bench = Bench(ledger=ledger, watch=lambda *step: steps.append(step))
+        with ResultCache(tmp_path / "discovery.sqlite") as ledger:
+            bench = DiscoveryWorkers(ledger=ledger, watch=lambda *step: steps.append(step))
             fits += bench.fitted(begun, "refitting", tuned.jacobian)
     computed, stored = fits
     for name in ("z", "residual", "jacobian", "cost", "evaluations", "converged", "evidence"):
@@ -67,28 +67,28 @@ def test_results_of_another_format_are_not_taken_up(
     stored: list[int] = []
     for tag in ("one", "one", "two"):
         monkeypatch.setattr(ledgers, "FORMAT", tag)
-        with Ledger(tmp_path / "discovery.sqlite") as ledger:
+        with ResultCache(tmp_path / "discovery.sqlite") as ledger:
             put = ledger.put
             monkeypatch.setattr(ledger, "put", lambda *a, put=put, tag=tag: (stored.append(tag), put(*a)))
-            Bench(ledger=ledger).screened(tuned, hypotheses)
+            DiscoveryWorkers(ledger=ledger).screened(tuned, hypotheses)
     assert stored == ["one", "two"]
 
 
 def test_the_longest_screenings_begin_first(tuned: Fit) -> None:
     begun: list[str] = []
 
-    class Order(Ledger):
+    class Order(ResultCache):
         def put(self, key: str, arrays: object) -> None:
             begun.append(key)
 
     hypotheses = library("rig_channel_gain", "steering_friction")
     efforts = [effort(h) for h in hypotheses]
     assert efforts[-1] > max(efforts[:-1])
-    bench = Bench(ledger=Order(None))
+    bench = DiscoveryWorkers(ledger=Order(None))
     found = bench.screened(tuned, hypotheses)
     assert [s.hypothesis for s in found] == hypotheses
     alone = Order(None)
     first = begun[0]
     begun.clear()
-    Bench(ledger=alone).screened(tuned, hypotheses[-1:])
+    DiscoveryWorkers(ledger=alone).screened(tuned, hypotheses[-1:])
     assert begun == [first]

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.bound_check import asked, at_bounds, beyond, widened
+from doe_kc.discovery.bound_check import at_bounds, beyond, bound_evidence, with_wider_bounds
 from doe_kc.discovery.fit import fit
 from doe_kc.discovery.search import search
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import OFF_NOMINAL, discovery, known_to, model, space
 
 CAR = "beyond"
@@ -29,7 +29,7 @@ def test_an_effect_is_named_in_a_series_that_is_off_nominal() -> None:
 
 
 def test_between_the_bounds_the_gap_would_stay() -> None:
-    narrow = search(model(CAR), known_to(CAR), Bench()).plain
+    narrow = search(model(CAR), known_to(CAR), DiscoveryWorkers()).plain
     wide = discovery(CAR).search.plain
     assert wide.rms < 1.0 < narrow.rms
     assert wide.evidence > narrow.evidence + 50.0
@@ -49,12 +49,12 @@ def test_bounds_are_not_widened_where_tuning_cannot_be_the_reason() -> None:
     z[: final.model.parameters] = 0.0
     held = replace(final, z=z)
     assert at_bounds(held).all()
-    assert asked(held, Bench()) == 1.0
+    assert bound_evidence(held, DiscoveryWorkers()) == 1.0
 
 
 def test_a_wider_model_says_the_same_at_the_same_point() -> None:
     found = discovery("none").search.tuned
-    wider, z = widened(found, 1.5)
+    wider, z = with_wider_bounds(found, 1.5)
     np.testing.assert_allclose(wider.residual(z), found.residual, atol=1e-6)
     assert (wider.space.prior_sd == found.model.space.prior_sd).all()
     again = fit(wider, z)

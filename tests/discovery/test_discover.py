@@ -11,8 +11,8 @@ from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.discovery.discover import discover, resolved, shown_traces
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.result_cache import Ledger
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.result_cache import ResultCache
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.measurement import reduce_measurement
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space
@@ -131,11 +131,13 @@ def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ign
     path = tmp_path / "discovery.sqlite"
     told: list[str] = []
     car, few = model("named", LATERAL), library("hub_compliance")
-    with Ledger(path) as ledger:
-        first = discover(car, few, Bench(ledger=ledger))
-    with Ledger(path) as ledger:
+    with ResultCache(path) as ledger:
+        first = discover(car, few, DiscoveryWorkers(ledger=ledger))
+    with ResultCache(path) as ledger:
         again = discover(
-            model("named", LATERAL), few, Bench(ledger=ledger, watch=lambda words, _: told.append(words))
+            model("named", LATERAL),
+            few,
+            DiscoveryWorkers(ledger=ledger, watch=lambda words, _: told.append(words)),
         )
     assert "screening effects" not in told
     assert again.sentences == first.sentences

@@ -14,8 +14,8 @@ import pytest
 
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.result_cache import TABLE, Ledger
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.result_cache import TABLE, ResultCache
+from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import LATERAL, library, model
 
 SEARCH = """
@@ -49,8 +49,8 @@ def results(store: Path) -> int:
 
 
 def searched(store: Path) -> Discovery:
-    with Ledger(store) as ledger:
-        return discover(model("named", LATERAL), library("hub_compliance"), Bench(ledger=ledger))
+    with ResultCache(store) as ledger:
+        return discover(model("named", LATERAL), library("hub_compliance"), DiscoveryWorkers(ledger=ledger))
 
 
 def test_killed_in_the_middle_it_goes_on_and_ends_the_same(
@@ -64,8 +64,10 @@ def test_killed_in_the_middle_it_goes_on_and_ends_the_same(
     assert killed.returncode == -signal.SIGKILL, killed.stderr
     assert results(second) == half
     fresh: list[str] = []
-    put = Ledger.put
-    monkeypatch.setattr(Ledger, "put", lambda self, key, arrays: (fresh.append(key), put(self, key, arrays)))
+    put = ResultCache.put
+    monkeypatch.setattr(
+        ResultCache, "put", lambda self, key, arrays: (fresh.append(key), put(self, key, arrays))
+    )
     again = searched(second)
     assert len(set(fresh)) == results(first) - half == results(second) - half
     assert again.verdict == whole.verdict == "named"

@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, cost_of, fit, with_errors
-from doe_kc.discovery.law_discrepancy import changes, granted, marginal, opened
+from doe_kc.discovery.law_discrepancy import effect_signals, fit_discrepancy, marginal, with_discrepancy
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import library, model
@@ -29,7 +29,7 @@ def test_only_what_the_effect_changes_is_widened() -> None:
     (friction,) = library("steering_friction")
     z = np.append(model("friction").centre, [0.8, 0.0])
     found = at("friction", friction, z)
-    wide = granted(found.model, changes(found), [SHARE])
+    wide = with_discrepancy(found.model, effect_signals(found), [SHARE])
     before = {(c.load_case, c.response, c.side, c.branches): c for c in found.model.likelihood.curves}
     for curve in wide.likelihood.curves:
         was = before[curve.load_case, curve.response, curve.side, curve.branches]
@@ -45,7 +45,7 @@ def test_a_change_of_scale_is_no_shape() -> None:
     z = np.append(model("named").centre, [1.0, 1.0])
     found = at("named", hub, z)
     made = found.residual - model("named").residual(z[:-2])
-    wide = granted(found.model, changes(found), [SHARE]).likelihood
+    wide = with_discrepancy(found.model, effect_signals(found), [SHARE]).likelihood
     for (curve, place), now in zip(found.model.likelihood.slices(), wide.curves, strict=True):
         if (curve.load_case, curve.response, curve.branches) == ("lateral", "camber", "mean"):
             change = curve.root @ made[place]
@@ -70,7 +70,7 @@ def fitted(car: str, ident: str, likelihood: Likelihood | None = None) -> Fit:
 @pytest.mark.parametrize(("car", "ident"), [("named", "hub_compliance"), ("friction", "steering_friction")])
 def test_a_law_that_fits_stays_closed(car: str, ident: str) -> None:
     exact = fitted(car, ident)
-    found, shares = opened(exact)
+    found, shares = fit_discrepancy(exact)
     assert shares == {ident: 0.0}
     assert found is exact
 
@@ -87,7 +87,7 @@ def test_a_law_of_another_shape_is_opened() -> None:
         curves.append(replace(curve, value=curve.value - 0.2 * relative * change))
     bent = replace(straight.model.likelihood, curves=tuple(curves))
     exact = fitted("named", "hub_compliance", bent)
-    found, shares = opened(exact)
+    found, shares = fit_discrepancy(exact)
     assert shares["hub_compliance"] >= 0.02
     assert marginal(found) > marginal(exact)
     assert np.diag(found.covariance)[-2] > np.diag(exact.covariance)[-2]
@@ -102,7 +102,7 @@ def test_other_errors_change_the_units_of_everything() -> None:
     z[sided.dimension - 2 :] = 0.7, -1.2, 1.0, 0.5
     residual = sided.residual(z)
     found = Fit(sided, z, residual, np.zeros((residual.size, z.size)), cost_of(sided, z, residual), 1, True)
-    wide = granted(sided, changes(found), [SHARE])
+    wide = with_discrepancy(sided, effect_signals(found), [SHARE])
     moved = with_errors(found, wide)
     np.testing.assert_allclose(wide.residual(z), moved.residual, rtol=0, atol=1e-8)
     assert np.abs(moved.residual - residual).max() > 0.1

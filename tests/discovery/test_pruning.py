@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.discovery.fit import Fit, fit, to_errors, with_errors
-from doe_kc.discovery.law_discrepancy import changes, closed, granted
+from doe_kc.discovery.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.pruning import pruned
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
 
@@ -22,14 +22,14 @@ def two_fitted() -> tuple[Fit, Hypothesis]:
 def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
     exact, hub = two_fitted()
-    wide = granted(exact.model, changes(exact), [0.5, 0.0])
+    wide = with_discrepancy(exact.model, effect_signals(exact), [0.5, 0.0])
     found = fit(wide, exact.z, tuning=with_errors(exact, wide).jacobian[:, : wide.dimension])
     fooled = _loss(found, hub)
     own = _loss(to_errors(found, exact.model.likelihood), hub)
     assert own > 1.5 * fooled
     between = float(np.sqrt(own * fooled))
-    assert hub not in pruned(found, between, Bench(), {}).model.members
-    judged = pruned(found, between, Bench(), {hub.name: exact.model.likelihood})
+    assert hub not in pruned(found, between, DiscoveryWorkers(), {}).model.members
+    judged = pruned(found, between, DiscoveryWorkers(), {hub.name: exact.model.likelihood})
     assert hub in judged.model.members
     assert judged.model.likelihood is wide.likelihood
 
@@ -43,10 +43,10 @@ def _loss(found: Fit, member: Hypothesis) -> float:
 def test_errors_without_one_law_hold_those_of_the_others() -> None:
     exact, _ = two_fitted()
     names = [h.name for h in exact.model.members]
-    assert closed(exact, dict.fromkeys(names, 0.0)) == {}
-    found = closed(exact, dict.fromkeys(names, 0.1))
-    made = changes(exact)
+    assert without_own_discrepancy(exact, dict.fromkeys(names, 0.0)) == {}
+    found = without_own_discrepancy(exact, dict.fromkeys(names, 0.1))
+    made = effect_signals(exact)
     for name, shares in zip(names, ([0.0, 0.1], [0.1, 0.0]), strict=True):
-        expected = granted(exact.model, made, shares).likelihood
+        expected = with_discrepancy(exact.model, made, shares).likelihood
         for one, other in zip(found[name].curves, expected.curves, strict=True):
             np.testing.assert_array_equal(one.root, other.root)

@@ -8,17 +8,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.discovery.result_cache import Ledger, fingerprint, key_of, packed, unpacked
+from doe_kc.discovery.result_cache import ResultCache, fingerprint, key_of, packed, unpacked
 from doe_kc.ground.errors import InputError
 from tests.discovery.cases import library, model
 
 
 def test_arrays_come_back_exactly(tmp_path: Path) -> None:
     arrays = {"a": np.array([np.pi, np.inf, -0.0]), "b": np.zeros((0, 3))}
-    with Ledger(tmp_path / "sub" / "discovery.sqlite") as ledger:
+    with ResultCache(tmp_path / "sub" / "discovery.sqlite") as ledger:
         assert ledger.get("k") is None
         ledger.put("k", arrays)
-    with Ledger(tmp_path / "sub" / "discovery.sqlite") as ledger:
+    with ResultCache(tmp_path / "sub" / "discovery.sqlite") as ledger:
         found = ledger.get("k")
     assert found is not None
     assert all(np.array_equal(found[k], v) and found[k].shape == v.shape for k, v in arrays.items())
@@ -39,7 +39,7 @@ def test_a_jacobian_takes_less_than_half_of_its_bytes() -> None:
 def test_a_file_that_is_none_is_refused_with_a_remedy(tmp_path: Path) -> None:
     path = tmp_path / "discovery.sqlite"
     path.write_bytes(b"not a database, surely not one at all" * 40)
-    with pytest.raises(InputError, match=r"discovery\.sqlite.*move it away"), Ledger(path) as ledger:
+    with pytest.raises(InputError, match=r"discovery\.sqlite.*move it away"), ResultCache(path) as ledger:
         ledger.get("k")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from doe_kc.discovery.exclusion import _trusted, standings, wrong_name_chance
+from doe_kc.discovery.exclusion import _trusted, hypothesis_statuses, wrong_name_chance
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.screen import follow, rescreened, screen
 from doe_kc.discovery.thresholds import PROBE, SMALLER
@@ -78,10 +78,10 @@ def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> N
     followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
     hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(project(followed))))
     assert hidden.detectability > 10.0
-    shown, unsure = standings(tuned, project, [clear, hidden], [], 4.0, resolved=True)
+    shown, unsure = hypothesis_statuses(tuned, project, [clear, hidden], [], 4.0, resolved=True)
     least = max(4.84 / clear.detectability, abs(clear.amplitudes[0]) + 1.645 * clear.sd[0])
     assert shown.status == "excluded" and shown.limits[0] == pytest.approx(least)
-    open_, _ = standings(tuned, project, [clear, hidden], [], 4.0, resolved=False)
+    open_, _ = hypothesis_statuses(tuned, project, [clear, hidden], [], 4.0, resolved=False)
     assert open_.status == "unresolved" and open_.limits[0] == shown.limits[0]
     assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
 

@@ -13,7 +13,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search import with_conditioning
 from doe_kc.discovery.trials import HypothesisFit, stiffer_first
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
@@ -51,7 +51,7 @@ def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
     assert matters([])
 
 
-class Asked(Bench):
+class Asked(DiscoveryWorkers):
     """Notes which axles are to be fitted, and fits none."""
 
     def __init__(self) -> None:

@@ -110,7 +110,7 @@ def test_maps_and_tables_are_filled(browser: Page, pages: dict[str, Path]) -> No
     found = discovery("named")
     assert page.run("document.querySelectorAll('table.heat').length") == 3
     assert page.run("document.querySelectorAll('table.heat')[0].tBodies[0].rows.length") == 5
-    assert len(column(page, "library-table", 0)) == len(found.standings)
+    assert len(column(page, "library-table", 0)) == len(found.statuses)
     assert len(column(page, "held-out-table", 0)) == len(LOAD_CASES)
     assert column(page, "effects-table", 0) == ["Hub and wheel-bearing compliance"]
     set_input(page, "[data-table=library-table] [data-only=excluded]", "true")

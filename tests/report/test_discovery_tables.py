@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.exclusion import Standing
+from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.report.discovery_effects import effect_frame, effect_rows
@@ -76,7 +76,7 @@ def test_views_hold_the_measured_curves_and_the_models_own() -> None:
 def test_library_names_every_hypothesis_once() -> None:
     found = discovery("named")
     frame = library_frame(found)
-    assert len(frame) == len(found.standings)
+    assert len(frame) == len(found.statuses)
     first = frame.iloc[0]
     assert (first["effect"], first["status"]) == ("hub_compliance", "found")
     excluded = frame[frame["status"] == "excluded"]
@@ -139,7 +139,7 @@ def test_steps_are_ranked_and_the_last_takes_nothing() -> None:
 def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
     found = discovery("two")
     table = isolability(found)
-    assert len(table.labels) == len(found.standings) == table.correlation.shape[0]
+    assert len(table.labels) == len(found.statuses) == table.correlation.shape[0]
     seen = ~np.isnan(np.diag(table.correlation))
     np.testing.assert_allclose(np.diag(table.correlation)[seen], 1.0)
     np.testing.assert_array_equal(table.correlation, table.correlation.T)
@@ -158,7 +158,7 @@ def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
 )
 def test_limits_say_which_way(size: Size, words: str) -> None:
     known = Hypothesis("hub_compliance", None, (size,))
-    standing = Standing(known, "excluded", 0.5, 0.0, (), (), (0.5,))
+    standing = HypothesisStatus(known, "excluded", 0.5, 0.0, (), (), (0.5,))
     assert limit_words(standing) == words
     assert limit_words(replace(standing, detectable=np.inf)) == "–"
 
@@ -166,10 +166,10 @@ def test_limits_say_which_way(size: Size, words: str) -> None:
 def test_a_component_that_the_records_do_not_show_has_no_limit() -> None:
     sizes = tuple(Size("LLR", 600.0, "N", index=i, signed=True) for i in range(3))
     preload = Hypothesis("bushing_preload", "LLR", sizes)
-    standing = Standing(preload, "excluded", 0.5, 0.0, (), (), (0.5, 1.5, 40.0))
+    standing = HypothesisStatus(preload, "excluded", 0.5, 0.0, (), (), (0.5, 1.5, 40.0))
     assert limit_words(standing) == "|LLR| above 300, 900, – N"
     hub = Hypothesis("hub_compliance", None, tuple(Size(k, 6000.0, "Nm/deg", "compliance") for k in "ab"))
-    assert limit_words(Standing(hub, "excluded", 0.5, 0.0, (), (), (0.5, 4.0))) == (
+    assert limit_words(HypothesisStatus(hub, "excluded", 0.5, 0.0, (), (), (0.5, 4.0))) == (
         "a below 12000 Nm/deg; b not shown"
     )
 

@@ -38,7 +38,7 @@ def test_sheets_and_rows(car: str, tmp_path: Path) -> None:
     assert book.sheetnames == SHEETS
     assert len(column(book["Disagreement"], "z re-tuned")) == len(found.raw.names)
     status = column(book["Library"], "Status")
-    assert len(status) == len(found.standings)
+    assert len(status) == len(found.statuses)
     assert set(status) <= set(STATUS_WORDS.values())
     assert len(column(book["Gap"], "Re-tuned")) == 1 + len(found.gaps)
     assert column(book["Parameters"], "Path") == list(found.fitted.model.space.paths)

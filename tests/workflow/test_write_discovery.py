@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from doe_kc.axle_file import read_axle
-from doe_kc.discovery.exclusion import Standing
+from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Finding, ParameterEstimate
 from doe_kc.discovery.sentences import odds_words
 from doe_kc.effects import EFFECTS
@@ -82,7 +82,7 @@ def test_tables_hold_the_numbers(written: list[Path]) -> None:
     found = discovery("two")
     tables = {p.name: pd.read_csv(p) for p in written if p.suffix == ".csv"}
     assert len(tables["disagreement.csv"]) == len(found.raw.names)
-    assert len(tables["library.csv"]) == len(found.standings)
+    assert len(tables["library.csv"]) == len(found.statuses)
     assert tables["gap.csv"]["tuned"][0] == pytest.approx(found.gap.tuned, rel=1e-9)
     assert list(tables["held_out.csv"]["load_case"]) == list(LOAD_CASES)
     assert len(tables["parameters.csv"]) == len(found.fitted.model.space.paths)
@@ -175,8 +175,8 @@ def test_an_index_alone_keeps_its_place() -> None:
 def test_what_is_excluded_has_a_limit_for_each_size() -> None:
     found = discovery("none")
     (preload,) = (h for h in EFFECTS["bushing_preload"].hypotheses() if h.location == "LLR")
-    standing = Standing(preload, "excluded", 0.5, 0.0, (), (), (0.5, float("inf"), 4.0))
-    (entry,) = discovery_document(replace(found, standings=(standing,)), None)["excluded"]
+    standing = HypothesisStatus(preload, "excluded", 0.5, 0.0, (), (), (0.5, float("inf"), 4.0))
+    (entry,) = discovery_document(replace(found, statuses=(standing,)), None)["excluded"]
     first = preload.sizes[0].value(0.5)
     assert entry["above"] == {"LLR": {"value": [first, None, None], "unit": "N"}}
 
@@ -194,7 +194,7 @@ def test_excluded_places_say_from_which_size_on() -> None:
 
 
 def test_an_effect_is_not_testable_where_no_place_is() -> None:
-    one, two = discovery("named").standings[:2]
+    one, two = discovery("named").statuses[:2]
     both = [replace(s, hypothesis=one.hypothesis) for s in (one, two)]
     assert not_testable([replace(s, status="not testable") for s in both]) == [one.hypothesis.effect]
     assert not_testable([both[0], replace(both[1], status="not testable")]) == []

@@ -9,7 +9,7 @@ import typer
 from doe_kc.cli._app import app
 from doe_kc.cli.live import live_rating
 from doe_kc.cli.options import SchedulerOption
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import RunError
@@ -31,7 +31,7 @@ CORRELATED_AXLE = (
 @app.command("correlate")
 @takes_study
 def correlate(
-    study_options: Given,
+    study_options: StudyOptions,
     method: Annotated[str | None, typer.Option(help="ego, gauss_newton, pareto, hybrid or smt_ego.")] = None,
     budget: Annotated[
         int | None, typer.Option(min=1, help="True-solver evaluations, the baseline among them.")

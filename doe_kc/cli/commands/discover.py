@@ -9,7 +9,7 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.progress import described_bar
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
@@ -29,7 +29,7 @@ DISCOVERED_AXLE = (
 @app.command("discover")
 @takes_study
 def discover(
-    study_options: Given,
+    study_options: StudyOptions,
     exclude: Annotated[
         list[str] | None, typer.Option(help="Id of an effect not to look for; can be given several times.")
     ] = None,

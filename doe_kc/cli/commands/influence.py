@@ -6,7 +6,7 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.influence.relations import relations
 from doe_kc.influence.result import Influence
@@ -21,7 +21,7 @@ from doe_kc.workflow.influence import (
 
 @app.command("influence")
 @takes_study
-def influence(study_options: Given) -> None:
+def influence(study_options: StudyOptions) -> None:
     """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""
     found = study_options.read()
     measured = None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import RideHeight
 from doe_kc.solver.curve_set import curve_set
@@ -16,7 +16,7 @@ from doe_kc.workflow.measure import reduce_records, reduced_document, write_redu
 
 @app.command("reduce")
 @takes_study
-def reduce(study_options: Given) -> None:
+def reduce(study_options: StudyOptions) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
     found = study_options.read()
     solution = solve(found.axle)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.workflow.answer import answer_lines
 from doe_kc.workflow.compare import compare_model, write_comparison
@@ -22,7 +22,7 @@ NO_RUN = (
 
 @app.command("report")
 @takes_study
-def report(study_options: Given) -> None:
+def report(study_options: StudyOptions) -> None:
     """Rebuild the last correlation's results, and the answer of its run, with the study's present weights.
 
     No design is solved again. After doe-kc correlate there is no run: the answer at the top of out is left.

@@ -14,7 +14,7 @@ from doe_kc.cli.commands.influence import influence_lines
 from doe_kc.cli.commands.reduce import ride_height_line
 from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_json
 from doe_kc.influence.selection_result import Selection
@@ -37,7 +37,7 @@ from doe_kc.workflow.write_discovery import write_discovery
 
 @app.command("run")
 @takes_study
-def run(study_options: Given, scheduler: SchedulerOption = None) -> None:
+def run(study_options: StudyOptions, scheduler: SchedulerOption = None) -> None:
     """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle under out.
 
     The exit code is 1 where that axle is not usable, which the first line explains; all files are written.

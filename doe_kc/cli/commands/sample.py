@@ -10,7 +10,7 @@ from doe_kc.campaign.export import require_format
 from doe_kc.cli._app import app
 from doe_kc.cli.options import SchedulerOption
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, study_design, write_sample
 
@@ -18,7 +18,7 @@ from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, st
 @app.command("sample")
 @takes_study
 def sample(
-    study_options: Given,
+    study_options: StudyOptions,
     method: Annotated[
         str | None, typer.Option(help="lhs, sobol, one_at_a_time, full_factorial or table.")
     ] = None,

@@ -9,7 +9,7 @@ import typer
 
 from doe_kc.cli._app import app
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import Given, takes_study
+from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import reduce_measurement
 from doe_kc.study import Study
@@ -21,7 +21,7 @@ from doe_kc.workflow.write_surrogates import surrogate_lines, surrogates_documen
 @app.command("surrogates")
 @takes_study
 def surrogates(
-    study_options: Given,
+    study_options: StudyOptions,
     models: Annotated[
         str | None,
         typer.Option(help="Models to choose from, with commas: linear,quadratic,rbf,gp,kpls,kriging,gp_ard."),

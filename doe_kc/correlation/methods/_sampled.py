@@ -8,11 +8,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from doe_kc.correlation.hybrid.record import SearchHistory
-from doe_kc.correlation.initial_design import Opening
+from doe_kc.correlation.initial_design import InitialDesign
 from doe_kc.correlation.methods._base import Method, MethodSettings
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 
-BROAD = Opening(fewest=20, variables_each=3, half_width=0.25)
+BROAD = InitialDesign(fewest=20, variables_each=3, half_width=0.25)
 """For methods whose searches or models need designs on all sides; in the whole cube nearly all are far worse
 than the start."""
 
@@ -23,7 +23,7 @@ class SurrogateMethod(Method):
     Randomness depends on seed and number of answers alone, so a resumed run goes on alike.
     """
 
-    def __init__(self, problem: Problem, settings: MethodSettings, opening: Opening = BROAD) -> None:
+    def __init__(self, problem: Problem, settings: MethodSettings, opening: InitialDesign = BROAD) -> None:
         self._problem, self._settings, self._opening = problem, settings, opening
         self._evaluated: list[Evaluated] = []
         self._opened = False

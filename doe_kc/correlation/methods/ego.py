@@ -21,16 +21,16 @@ from doe_kc.correlation.ego.first_order import first_order
 from doe_kc.correlation.ego.proposer import Proposer, fitted
 from doe_kc.correlation.ego.strategy import PATIENCE_WITH_SLOPES, PROPOSAL_CYCLE, Strategy
 from doe_kc.correlation.ego.trust import Trust
-from doe_kc.correlation.initial_design import Opening
+from doe_kc.correlation.initial_design import InitialDesign
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
 
-OPENING = Opening(fewest=8, variables_each=9, half_width=0.1, evened=True)
+OPENING = InitialDesign(fewest=8, variables_each=9, half_width=0.1, evened=True)
 """The proposals teach more than further samples would; near enough for the first slopes to hold where the
 search goes."""
-WITH_SLOPES = Opening(fewest=2, variables_each=None, half_width=0.1, evened=True)
+WITH_SLOPES = InitialDesign(fewest=2, variables_each=None, half_width=0.1, evened=True)
 """Slopes are known: a first-order step, and one design that shows how far they bend."""
 SETTLED_REASON = "every proposal is a design that is known already"
 EGO_DESIGNS = 3

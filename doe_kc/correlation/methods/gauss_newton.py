@@ -15,7 +15,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
-from doe_kc.correlation.constraint_penalty import Walls
+from doe_kc.correlation.constraint_penalty import ConstraintPenalty
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.methods._base import Method, MethodSettings, best_design, register
@@ -50,7 +50,7 @@ class GaussNewton(Method):
     def __init__(self, problem: Problem, settings: MethodSettings) -> None:
         del settings
         self._problem, self._data = problem, problem.likelihood
-        self._walls = Walls.of(problem.search)
+        self._walls = ConstraintPenalty.of(problem.search)
         self._origin = problem.space.start
         self._weight = problem.space.prior_sd**-2.0
         self._radius = 1.0

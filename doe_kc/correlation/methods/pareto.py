@@ -66,7 +66,7 @@ class Pareto(SurrogateMethod):
     @property
     def front(self) -> Front:
         """Of the designs confirmed so far."""
-        return front_of(self._problem.search, self._evaluated, found=self._objectives)
+        return front_of(self._problem.search, self._evaluated, chosen=self._objectives)
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; the region follows the best rating, patience the front."""

@@ -43,14 +43,14 @@ class Front:
         return frame.assign(rating=self.ratings, knee=np.arange(len(frame)) == self.knee)
 
 
-def front_of(targets: Targets, history: Sequence[Evaluated], *, found: Objectives | None = None) -> Front:
-    """Front of any method's designs; found: the objectives, by default one a load case.
+def front_of(targets: Targets, history: Sequence[Evaluated], *, chosen: Objectives | None = None) -> Front:
+    """Front of any method's designs; chosen: the objectives, by default one a load case.
 
     Feasible designs alone while there are any (their best rating is on it: the rating falls with every
     objective), of those the ones with at most STRETCH times the least loss: in many objectives nearly
     every design is best at something. Without a feasible design all, the violation being one more objective.
     """
-    chosen = found or objectives(targets)
+    chosen = chosen or objectives(targets)
     sound = [e for e in history if np.isfinite(e.merit)]
     feasible = [e for e in sound if e.feasible]
     pool = sorted(feasible or sound, key=lambda e: (-e.merit, e.index))

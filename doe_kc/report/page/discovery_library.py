@@ -28,7 +28,7 @@ LIBRARY_LEAD = (
 
 def library_section(discovery: Discovery) -> Section:
     """One row a hypothesis, sortable and filterable."""
-    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.standings}
+    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.statuses}
     rows = [
         {
             "label": hypothesis_label(s.hypothesis),

@@ -53,7 +53,7 @@ class GaussianProcess(Surrogate):
     label: ClassVar[str] = "Gaussian process"
     complexity: ClassVar[int] = 3
     exact_folds: ClassVar[bool] = True
-    flatters: ClassVar[bool] = True
+    optimistic_loo: ClassVar[bool] = True
     interpolates: ClassVar[bool] = True
 
     def fewest(self, variables: int) -> int:

@@ -34,7 +34,7 @@ class RelevanceProcess(Surrogate):
     costly: ClassVar[bool] = True
     interpolates: ClassVar[bool] = True
     exact_folds: ClassVar[bool] = True
-    flatters: ClassVar[bool] = True
+    optimistic_loo: ClassVar[bool] = True
 
     def fewest(self, variables: int) -> int:
         """Two rows a variable."""

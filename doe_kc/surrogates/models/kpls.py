@@ -32,7 +32,7 @@ class PartialLeastSquaresKriging(Surrogate):
     costly: ClassVar[bool] = True
     interpolates: ClassVar[bool] = True
     exact_folds: ClassVar[bool] = True
-    flatters: ClassVar[bool] = True
+    optimistic_loo: ClassVar[bool] = True
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         count = min(self.components, x.shape[1])

@@ -28,7 +28,7 @@ class Kriging(Surrogate):
     costly: ClassVar[bool] = True
     interpolates: ClassVar[bool] = True
     exact_folds: ClassVar[bool] = True
-    flatters: ClassVar[bool] = True
+    optimistic_loo: ClassVar[bool] = True
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         theta = [train_kriging(x, column, starts=self.starts, seed=seed) for column in y.T]
