@@ -31,7 +31,7 @@ class EffectSignal:
     too; an elastic law's scale is the same in every curve, which is what tells effects apart.
     """
 
-    effect_signals: tuple[FloatArray, ...]
+    changes: tuple[FloatArray, ...]
     largest: Mapping[tuple[str, Branches], float]
     sticks: bool
     square: float
@@ -87,7 +87,7 @@ def with_discrepancy(
 ) -> EffectModel:
     """The model, its records' errors its own and those of the laws of its effects.
 
-    made: what each member makes, see `effect_signals`. shares: one a member.
+    signals: what each member makes, see `effect_signals`. shares: one a member.
     """
     likelihood = model.likelihood
     curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
@@ -97,20 +97,20 @@ def with_discrepancy(
 def effect_signals(exact: Fit) -> list[EffectSignal]:
     """What each member of a fit to the records' own errors makes of their curves."""
     model = exact.model
-    return [_made(model, member, place, exact.residual, exact.z) for member, place in model.places()]
+    return [_signal(model, member, place, exact.residual, exact.z) for member, place in model.places()]
 
 
-def _made(
+def _signal(
     model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray
 ) -> EffectSignal:
     without = model.without(member)
     whitened = residual - without.residual(np.delete(z, np.r_[place]))
-    effect_signals = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
+    changes = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
     largest: dict[tuple[str, Branches], float] = {}
-    for curve, change in zip(model.likelihood.curves, effect_signals, strict=True):
+    for curve, change in zip(model.likelihood.curves, changes, strict=True):
         key = (curve.response, curve.branches)
         largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
-    return EffectSignal(effect_signals, largest, _frictional(model, member, z), float(whitened @ whitened))
+    return EffectSignal(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
 
 
 def sticks(fit: Fit, member: Hypothesis) -> bool:

@@ -168,10 +168,10 @@ def _limit(size: Size, standing: HypothesisStatus) -> float | list[float | None]
 
 def not_testable(statuses: Iterable[HypothesisStatus]) -> list[str]:
     """Ids of effects that cannot be tested in any place."""
-    statuses: dict[str, list[str]] = {}
+    of_effect: dict[str, list[str]] = {}
     for s in statuses:
-        statuses.setdefault(s.hypothesis.effect, []).append(s.status)
-    return [ident for ident, each in statuses.items() if all(status in HIDDEN for status in each)]
+        of_effect.setdefault(s.hypothesis.effect, []).append(s.status)
+    return [ident for ident, places in of_effect.items() if all(status in HIDDEN for status in places)]
 
 
 def _finite(value: Any) -> Any:
