@@ -33,7 +33,7 @@ LONGEST = (
     "cli/test_correlate.py",
     "benchmarks_discovery/test_quick_subset.py",
     "effects/test_hypotheses.py",
-    "reporting/test_correlation_reports.py",
+    "report/test_correlation_reports.py",
     "solver/test_sensitivity.py",
     "correlation/test_methods.py",
 )

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from doe_kc.report import comparison_figures, correlation_figures, influence_figures, rig_figures
-from doe_kc.workflow import write_discovery as discovery_handover
+from doe_kc.workflow import write_discovery
 
 
 @pytest.fixture(autouse=True)
@@ -25,4 +25,4 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(comparison_figures, "write_comparison_figures", nothing)
     monkeypatch.setattr(influence_figures, "write_influence_figures", nothing)
     monkeypatch.setattr(correlation_figures, "write_correlation_figures", nothing)
-    monkeypatch.setattr(discovery_handover, "write_discovery_figures", nothing)
+    monkeypatch.setattr(write_discovery, "write_discovery_figures", nothing)

@@ -318,7 +318,7 @@ def test_report_without_a_correlation(tmp_path: Path) -> None:
 
 def test_a_full_disk_keeps_what_was_evaluated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from doe_kc.ground.errors import RunError
-    from doe_kc.workflow import write_correlation as handover
+    from doe_kc.workflow import write_correlation
 
     study = study_in(tmp_path, budget=4)
 
@@ -326,7 +326,7 @@ def test_a_full_disk_keeps_what_was_evaluated(tmp_path: Path, monkeypatch: pytes
         raise RunError(f"{tmp_path}: cannot be written (No space left on device).")
 
     with monkeypatch.context() as patch:
-        patch.setattr(handover, "write_axle", full)
+        patch.setattr(write_correlation, "write_axle", full)
         fails(1, "No space left", "correlate", study)
     count = stored(study)
     assert count >= 4

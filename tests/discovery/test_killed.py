@@ -21,12 +21,12 @@ from tests.discovery.cases import LATERAL, library, model
 SEARCH = """
 import os, signal, sys
 from pathlib import Path
-from doe_kc.discovery.workers import Bench
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.discovery.discover import discover
-from doe_kc.discovery.result_cache import Ledger
+from doe_kc.discovery.result_cache import ResultCache
 from tests.discovery.cases import LATERAL, library, model
 
-put, fresh = Ledger.put, []
+put, fresh = ResultCache.put, []
 
 def counted(self, key, arrays):
     if len(fresh) == int(sys.argv[2]):
@@ -34,9 +34,9 @@ def counted(self, key, arrays):
     fresh.append(key)
     put(self, key, arrays)
 
-Ledger.put = counted
-with Ledger(Path(sys.argv[1])) as ledger:
-    discover(model("named", LATERAL), library("hub_compliance"), Bench(ledger=ledger))
+ResultCache.put = counted
+with ResultCache(Path(sys.argv[1])) as ledger:
+    discover(model("named", LATERAL), library("hub_compliance"), DiscoveryWorkers(ledger=ledger))
 """
 """Of a process that stores as many results as it is told, then kills itself."""
 
