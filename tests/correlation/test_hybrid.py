@@ -179,7 +179,7 @@ def test_several_searches_contribute_and_say_who_they_are() -> None:
 
 def test_stops_when_nothing_gains_any_more(monkeypatch: pytest.MonkeyPatch) -> None:
     patience = 15
-    monkeypatch.setattr(hybrid, "PATIENCE", patience)
+    monkeypatch.setattr(hybrid, "HYBRID_PATIENCE", patience)
     problem = synthetic(3)
     method = Hybrid(problem, MethodSettings(seed=1, budget=400))
     run = run_method(problem, method, solver(problem), budget=400)
