@@ -79,7 +79,11 @@ def rank_of(group: str) -> int:
 def pytest_terminal_summary(terminalreporter: TerminalReporter) -> None:
     """Say how many tests of the pages ran: without a browser they are skipped."""
     ran, skipped = (
-        sum("browser" in report.keywords for kind in kinds for report in terminalreporter.stats.get(kind, []))
+        sum(
+            "browser" in getattr(report, "keywords", ())
+            for kind in kinds
+            for report in terminalreporter.stats.get(kind, [])
+        )
         for kinds in (("passed", "failed", "error"), ("skipped",))
     )
     if ran or skipped:

@@ -8,6 +8,7 @@ from pathlib import Path
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
+from doe_kc.report.axle_views import axle_figure, correlation_view
 from doe_kc.report.correlation_bars import parameter_figure
 from doe_kc.report.correlation_convergence import convergence_figure
 from doe_kc.report.correlation_curves import case_views, curve_figure
@@ -24,13 +25,14 @@ def write_correlation_figures(
     workers: int | None = None,
     pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """Pictures `correlation_dna`, `_parameters`, `_convergence` and one `curves_<load case>` each.
+    """Pictures `correlation_dna`, `_parameters`, `_axle`, `_convergence` and one `curves_<load case>` each.
 
     Raises RunError when the folder cannot be written.
     """
     jobs: list[Job] = [
         (folder / "correlation_dna", partial(dna_figure, correlation, study)),
         (folder / "correlation_parameters", partial(parameter_figure, correlation, study)),
+        (folder / "correlation_axle", partial(axle_figure, correlation_view(correlation, study))),
         (folder / "correlation_convergence", partial(convergence_figure, correlation, study)),
     ]
     jobs += [

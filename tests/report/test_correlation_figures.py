@@ -27,7 +27,7 @@ def test_files_are_written_without_curves_too(tmp_path: Path) -> None:
     paths = write_correlation_figures(
         typed(), None, tmp_path / "new", study="S $x_1$", workers=1, pictures="svg"
     )
-    names = ["correlation_dna", "correlation_parameters", "correlation_convergence"]
+    names = ["correlation_dna", "correlation_parameters", "correlation_axle", "correlation_convergence"]
     assert [p.name for p in paths] == [f"{n}.svg" for n in names]
     assert all(p.stat().st_size > 5000 for p in paths)
 
