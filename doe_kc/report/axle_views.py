@@ -21,6 +21,7 @@ from doe_kc.report.correlation_parameters import parameter_rows
 from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.sheet import Sheet
+from doe_kc.report.words import POINTS
 
 Member = tuple[str, str]
 MEMBERS: Mapping[str, tuple[Member, ...]] = {
@@ -51,6 +52,11 @@ SHOWN_MOVE = 0.05
 """mm; a point that moved less has no arrow: points are measured to a tenth."""
 BORDER = 60.0
 """mm of free space about the axle in each view, and of what reaches over to the other side."""
+LEFT_EDGE, RIGHT_EDGE, BETWEEN_ACROSS = 56.0, 18.0, 50.0
+HEAD_ROOM, BETWEEN_UP, KEY_ROOM = 66.0, 62.0, 96.0
+"""Points about the views: numbers, labels, titles and the key."""
+TABLE_LINE, TABLE_PLACES = 13.0, (0.0, 34.0, 87.0, 140.0)
+"""Points."""
 NAME_PLACES = (
     (3.0, 3.0), (3.0, -8.0), (-3.0, 3.0), (-3.0, -8.0),
     (3.0, 10.0), (3.0, -15.0), (-3.0, 10.0), (-3.0, -15.0),
@@ -128,19 +134,17 @@ def axle_figure(view: AxleView) -> Sheet:
 
     The right side is the mirror image, but for what the axle file says of it alone.
     """
-    page = Sheet(style.A4)
     low, high = _extent(view.before)
     span = high - low
-    left, gap, bottom, top = 0.095 * page.width, 0.085 * page.width, 0.125 * page.height, 0.915 * page.height
-    scale = min(
-        (page.width - left - gap - 0.03 * page.width) / (span[0] + span[1]),
-        (top - bottom - 0.075 * page.height) / (span[2] + span[1]),
-    )
-    middle = left + scale * span[0] + gap
+    width = style.A4[0] * POINTS
+    scale = (width - LEFT_EDGE - BETWEEN_ACROSS - RIGHT_EDGE) / (span[0] + span[1])
+    height = HEAD_ROOM + scale * (span[2] + span[1]) + BETWEEN_UP + KEY_ROOM
+    page = Sheet((style.A4[0], height / POINTS))
+    middle, top = LEFT_EDGE + scale * span[0] + BETWEEN_ACROSS, height - HEAD_ROOM
     for name, (across, up) in PLANES.items():
         box = PageBox(
-            left if across == 0 else middle,
-            top - scale * span[2] if up == 2 else top - scale * (span[2] + span[1]) - 0.075 * page.height,
+            LEFT_EDGE if across == 0 else middle,
+            top - scale * span[2] if up == 2 else KEY_ROOM,
             scale * span[across],
             scale * span[up],
         )
@@ -153,9 +157,9 @@ def axle_figure(view: AxleView) -> Sheet:
         panel.set_title({"side": "From the left", "top": "From above", "rear": "From behind"}[name])
         _draw(panel, view, name)
     if view.after is not None:
-        _table(page, view, middle / page.width, (top - scale * span[2]) / page.height - 0.078)
+        _table(page, view, middle, KEY_ROOM + scale * span[1])
     page.add_legend(_handles(view), columns=3, size=7.5)
-    page.set_heading(view.title, 0.97)
+    page.set_heading(view.title, 1.0 - 18.0 / height)
     return page
 
 
@@ -244,23 +248,24 @@ def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
 
 
 def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:
-    columns = (0.0, 0.057, 0.147, 0.237)
-    words = ("Δ ± sd", "ΔX [mm]", "ΔY [mm]", "ΔZ [mm]")
-    for place, word in zip(columns, words, strict=True):
-        page.write(x + place, y, word, 7.0, weight="bold")
+    """x, y: points of its upper left corner."""
+    rows: list[tuple[str, ...]] = [("Δ ± sd", "ΔX [mm]", "ΔY [mm]", "ΔZ [mm]")]
     shown = sorted((m for m in view.moves if m.distance >= SHOWN_MOVE), key=lambda m: -m.distance)
-    for k, m in enumerate(shown, start=1):
-        page.write(x, y - 0.0155 * k, m.name, 6.3)
-        for place, move, sd in zip(columns[1:], m.move, m.sd, strict=True):
-            page.write(x + place, y - 0.0155 * k, _move_words(float(move), float(sd)), 6.3)
+    rows += [(m.name, *(_move_words(*pair) for pair in zip(m.move, m.sd, strict=True))) for m in shown]
     if not shown:
-        page.write(x, y - 0.0155, f"No point moved by {SHOWN_MOVE:g} mm or more.", 7.0)
+        rows = [(f"No point moved by {SHOWN_MOVE:g} mm or more.",)]
+    for k, row in enumerate(rows):
+        height = (y - k * TABLE_LINE) / page.height
+        look: dict[str, Any] = {"size": 7.0, "weight": "bold"} if k == 0 and shown else {"size": 6.3}
+        for place, words in zip(TABLE_PLACES, row, strict=False):
+            page.write((x + place) / page.width, height, words, along="top", **look)
 
 
 def _move_words(move: float, sd: float) -> str:
-    if not np.isfinite(sd):
-        return f"{move:+.2f}".replace("-", "\N{MINUS SIGN}")
-    return ("+" if move > 0 else "") + with_sd(move, sd).replace("-", "\N{MINUS SIGN}")
+    words = with_sd(float(move), float(sd)) if np.isfinite(sd) else f"{move:.2f}"
+    if not float(words.split()[0]):
+        return words.removeprefix("-")
+    return words.replace("-", "\N{MINUS SIGN}") if words.startswith("-") else f"+{words}"
 
 
 def _handles(view: AxleView) -> list[Line2D]:

@@ -18,7 +18,7 @@ pytestmark = [
     pytest.mark.skipif(BROWSER is None, reason="Chromium is not installed, so no page can be opened"),
 ]
 
-TITLES = ["Summary", "Characteristics", "Curves", "Convergence", "Parameters"]
+TITLES = ["Summary", "Characteristics", "Curves", "Convergence", "Parameters", "Axle"]
 LEGIBLE = 9.0
 LAYERS = "document.querySelectorAll('#curves-chart path.layer')"
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from doe_kc.correlation.assessment import STATUS_LABELS, Assessment
 from doe_kc.correlation.result import Correlation
+from doe_kc.report.page.axle import axle_section
 from doe_kc.report.page.characteristics import characteristics_section
 from doe_kc.report.page.section import Section, render, write_page
 
@@ -51,6 +52,7 @@ def write_answer_page(
     sections = [
         Section("Answer", html),
         characteristics_section(correlation),
+        axle_section(correlation),
         Section("Everything else", render("answer_files.html", places=places)),
     ]
     return write_page(path, study, sections, subtitle=date)

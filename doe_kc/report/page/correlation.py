@@ -10,6 +10,7 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_parameters import remark_sentences
 from doe_kc.report.correlation_summary import summary
+from doe_kc.report.page.axle import axle_section
 from doe_kc.report.page.characteristics import characteristics_section
 from doe_kc.report.page.convergence import convergence_section
 from doe_kc.report.page.curves import curves_section
@@ -24,13 +25,21 @@ def correlation_sections(
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
 ) -> list[Section]:
-    """Summary, Characteristics, Curves, Convergence, Parameters. notes: further lines of the summary."""
+    """Summary, Characteristics, Curves, Convergence, Parameters, Axle.
+
+    notes: further lines of the summary.
+    """
     sections = [
         _summary(correlation, notes or {}, assessment or assess(correlation)),
         characteristics_section(correlation),
     ]
     sections += curves_section(correlation, measurement)
-    return [*sections, convergence_section(correlation), parameters_section(correlation)]
+    return [
+        *sections,
+        convergence_section(correlation),
+        parameters_section(correlation),
+        axle_section(correlation),
+    ]
 
 
 def write_correlation_page(
