@@ -10,7 +10,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.characteristics.reduction import LEFT_WHEEL
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
+from doe_kc.ground.numbers import with_sd
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Gradient, Measurement
@@ -28,6 +31,7 @@ LOAD_COLOUR = PALETTE["orange"]
 TREND_COLOUR = PALETTE["black"]
 GRADIENT_COLOUR = PALETTE["vermillion"]
 RESIDUAL_COLOURS = (PALETTE["blue"], PALETTE["vermillion"])
+ABSCISSA_WORDS = {"wheel_travel": "of wheel travel", "pad_travel": "of pad travel"}
 WINDOW_COLOUR = "#EAF3EA"
 RIG_MARGINS = {"left": 0.09, "right": 0.988, "top": 0.948, "bottom": 0.078, "wspace": 0.355, "hspace": 0.12}
 
@@ -42,11 +46,12 @@ def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
     page, panels = sheet(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=RIG_MARGINS)
     gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
     for row, response in zip(panels, RIG_RESPONSES, strict=True):
+        other = _characteristic(measurement, load_case, response)
         for side, name in enumerate(SIDES):
             _panel(row[side], measurement, load_case, response, side)
-            _gradient(row[side], gradients[response, name])
+            _gradient(row[side], gradients[response, name], other if side == LEFT_WHEEL else "")
         _residual(row[2], measurement, load_case, response)
-        _same_scale(row[0], row[1])
+        _same_scale(row[0], row[1], notes=2 if other else 1)
         row[0].set_labels(None, response_axis(response))
         row[2].set_labels(None, f"residual [{RESPONSE_UNITS[response]}]")
     for panel in panels.flat:
@@ -103,12 +108,30 @@ def _changes(measurement: Measurement, load_case: str, response: str, side: int)
     return samples if response == "tyre_load" else samples - own[at]
 
 
-def _gradient(panel: Panel, gradient: Gradient) -> None:
+def _gradient(panel: Panel, gradient: Gradient, characteristic: str) -> None:
+    """characteristic: what the tables say of it where they take another abscissa, else empty."""
     window = np.array([-gradient.window, gradient.window])
     panel.vspan(window[0], window[1], color=WINDOW_COLOUR, zorder=0)
     panel.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT_COLOUR, lw=1.6)
     scale, unit = _readable(gradient.unit)
-    _note(panel, f"{scale * gradient.value:.4g} ± {scale * gradient.sd:.1g} {unit}", GRADIENT_COLOUR)
+    travel = " of pad travel" if gradient.load_case == "vertical" else ""
+    words = f"{_numbers(scale * gradient.value, scale * gradient.sd)} {unit}{travel}"
+    _note(panel, f"{words}\n{characteristic}" if characteristic else words, GRADIENT_COLOUR)
+
+
+def _characteristic(measurement: Measurement, load_case: str, response: str) -> str:
+    """Value and unit of the left wheel's characteristic that is over another abscissa than the input."""
+    same = "pad_travel" if load_case == "vertical" else "input"
+    for ident, estimate in measurement.characteristics.items():
+        entry = CHARACTERISTICS[ident]
+        of_panel = (entry.load_case, entry.response, entry.kind) == (load_case, response, "gradient")
+        if of_panel and entry.abscissa not in ("input", same) and np.isfinite(estimate.value):
+            return f"{_numbers(estimate.value, estimate.sd)} {entry.unit} {ABSCISSA_WORDS[entry.abscissa]}"
+    return ""
+
+
+def _numbers(value: float, sd: float) -> str:
+    return with_sd(value, sd).replace("-", "\N{MINUS SIGN}")
 
 
 def _readable(unit: str) -> tuple[float, str]:
@@ -155,10 +178,11 @@ def _residual(panel: Panel, measurement: Measurement, load_case: str, response: 
     panel.y.set_limits(low, high + 0.15 * (high - low))
 
 
-def _same_scale(left: Panel, right: Panel) -> None:
+def _same_scale(left: Panel, right: Panel, notes: int) -> None:
+    """notes: lines of text in the top edge."""
     limits = [*left.y.limits, *right.y.limits]
     # Room for the note in the top edge.
-    limits.append(max(limits) + 0.12 * (max(limits) - min(limits)))
+    limits.append(max(limits) + (0.02 + 0.1 * notes) * (max(limits) - min(limits)))
     for panel in (left, right):
         panel.y.set_limits(min(limits), max(limits))
 

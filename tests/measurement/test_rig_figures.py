@@ -24,8 +24,34 @@ def test_every_panel_has_its_unit(car_a: Measurement) -> None:
         assert panels[3 * row].y_label.text.endswith(f" [{unit}]")
         assert panels[3 * row + 2].y_label.text == f"residual [{unit}]"
     assert [panel.x_label.text for panel in panels[-3:]] == ["Pad travel [mm]"] * 3
-    assert any("26.26 ± 0.04 N/mm" in t.text for t in panels[18].texts)
+    assert any("26.264 ± 0.045 N/mm" in t.text for t in panels[18].texts)
     assert fig.outside == []
+
+
+@pytest.mark.parametrize(
+    ("case", "panel", "ident", "travel"),
+    [
+        ("vertical", 3, "vertical.camber_change", "wheel"),
+        ("roll", 0, "roll.roll_steer", "wheel"),
+        ("roll", 18, "roll.roll_rate", "pad"),
+    ],
+)
+def test_gradients_name_their_abscissa_and_are_those_of_the_tables(
+    car_a: Measurement, case: str, panel: int, ident: str, travel: str
+) -> None:
+    (note,) = [t.text for t in rig_figure(car_a, case).panels[panel].texts]
+    plain, tabled = note.split("\n")
+    estimate = car_a.characteristics[ident]
+    assert tabled.endswith(f" of {travel} travel")
+    assert float(tabled.split()[0].replace("\N{MINUS SIGN}", "-")) == pytest.approx(
+        estimate.value, abs=estimate.sd
+    )
+    assert plain.endswith("deg/m of pad travel" if case == "vertical" else "/deg")
+
+
+def test_a_gradient_over_the_input_stands_once(car_a: Measurement) -> None:
+    panels = rig_figure(car_a, "lateral").panels
+    assert all("\n" not in t.text for panel in panels for t in panel.texts)
 
 
 FORMATS: tuple[PictureFormat, ...] = ("png", "svg")
