@@ -36,6 +36,14 @@ def with_sd(value: float, sd: float) -> str:
     return f"{round(value, place):.{digits}f} ± {round(sd, place):.{digits}f}"
 
 
+def signed(value: float, sd: float) -> str:
+    """A change with its sign, as `with_sd` writes it; two decimals without a standard deviation."""
+    words = with_sd(value, sd) if math.isfinite(sd) and sd > 0.0 else f"{value:.2f}"
+    if not float(words.split()[0]):
+        return words.removeprefix("-")
+    return words.replace("-", "\N{MINUS SIGN}") if words.startswith("-") else f"+{words}"
+
+
 def sd_format(sd: float) -> str:
     """Number format of a sheet for a value with this standard deviation, or of the deviation itself."""
     if not math.isfinite(sd) or sd <= 0.0:

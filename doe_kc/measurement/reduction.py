@@ -55,6 +55,14 @@ class Measurement:
     gradients: tuple[Gradient, ...]
     characteristics: Mapping[str, GradientEstimate]
 
+    def curve_sd(self, load_case: str) -> dict[str, FloatArray]:
+        """Response -> (2, n) standard deviations of its mean curves, left and right, in its unit."""
+        noise = self.noise.get(load_case, {})
+        return {
+            name: np.array([np.sqrt(np.maximum(np.diag(model.covariance(side=s)), 0.0)) for s in (0, 1)])
+            for name, model in noise.items()
+        }
+
 
 @one_thread()
 def reduce_measurement(

@@ -14,7 +14,7 @@ from doe_kc.axle.geometry import point
 from doe_kc.axle.model import HARDPOINTS, Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import with_sd
+from doe_kc.ground.numbers import signed
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report import style
 from doe_kc.report.correlation_parameters import parameter_rows
@@ -251,7 +251,9 @@ def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:
     """x, y: points of its upper left corner."""
     rows: list[tuple[str, ...]] = [("Δ ± sd", "ΔX [mm]", "ΔY [mm]", "ΔZ [mm]")]
     shown = sorted((m for m in view.moves if m.distance >= SHOWN_MOVE), key=lambda m: -m.distance)
-    rows += [(m.name, *(_move_words(*pair) for pair in zip(m.move, m.sd, strict=True))) for m in shown]
+    for m in shown:
+        moves = (signed(float(move), float(sd)) for move, sd in zip(m.move, m.sd, strict=True))
+        rows.append((m.name, *moves))
     if not shown:
         rows = [(f"No point moved by {SHOWN_MOVE:g} mm or more.",)]
     for k, row in enumerate(rows):
@@ -259,13 +261,6 @@ def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:
         look: dict[str, Any] = {"size": 7.0, "weight": "bold"} if k == 0 and shown else {"size": 6.3}
         for place, words in zip(TABLE_PLACES, row, strict=False):
             page.write((x + place) / page.width, height, words, along="top", **look)
-
-
-def _move_words(move: float, sd: float) -> str:
-    words = with_sd(float(move), float(sd)) if np.isfinite(sd) else f"{move:.2f}"
-    if not float(words.split()[0]):
-        return words.removeprefix("-")
-    return words.replace("-", "\N{MINUS SIGN}") if words.startswith("-") else f"+{words}"
 
 
 def _handles(view: AxleView) -> list[Line2D]:

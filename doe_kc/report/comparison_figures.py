@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.report import style
 from doe_kc.report.names import RESPONSE_NAMES, input_label, response_axis, response_name
-from doe_kc.report.panel import PageBox, Panel
+from doe_kc.report.panel import Dash, PageBox, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
@@ -22,6 +23,11 @@ from doe_kc.targets.comparison.compare import Comparison, same_input
 
 SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
 SIDE_NAMES = ("left", "right")
+SIDE_DASHES: tuple[Dash, Dash] = ("-", "--")
+MODEL_WIDTHS = (1.5, 1.1)
+LOOP_WIDTH = 0.5
+NOISE_BAND = 2.0
+"""Standard deviations of the measured mean curve that its band shows."""
 COMPARISON_MARGINS = {
     "left": 0.06,
     "right": 0.988,
@@ -33,16 +39,15 @@ COMPARISON_MARGINS = {
 
 
 def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
-    """Responses of both wheels over the input: measured (dots, band = both branches), model (lines).
+    """Responses of both wheels over the input: measured (dots, branches, noise), model (lines).
 
     Angles and wheel centre are changes from static.
     """
-    model = comparison.model.cases[load_case]
     measured = comparison.measured.cases[load_case]
     case = LOAD_CASES[load_case]
     page, panels = sheet(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=COMPARISON_MARGINS)
     for panel, response in zip(panels.flat, RIG_RESPONSES, strict=False):
-        _draw(panel, model, measured, response)
+        _draw(panel, comparison, load_case, response)
         panel.set_labels(input_label(load_case, measured.input_unit), response_axis(response))
         panel.set_title(RESPONSE_LABELS[response])
         panel.x.set_locator(ticks(5))
@@ -50,7 +55,7 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
     table, legend = page.panels[7:]
     del page.panels[7:]
     _table(page, table.box, comparison, load_case)
-    page.add_legend(_handles(), 1, 8.0, ("left", "top"), (legend.box.left, legend.box.top))
+    page.add_legend(_handles(comparison), 1, 7.5, ("left", "top"), (legend.box.left, legend.box.top))
     page.set_heading(f"{case.label}: {comparison.model.source} against {comparison.measured.source}", 0.985)
     return page
 
@@ -70,45 +75,59 @@ def write_comparison_figures(
     )
 
 
-def _draw(panel: Panel, model: CaseCurves, measured: CaseCurves, response: str) -> None:
+def _draw(panel: Panel, comparison: Comparison, load_case: str, response: str) -> None:
+    """Right over left, so that both are seen where they coincide: the right wheel is drawn finer."""
+    model, measured = comparison.model.cases[load_case], comparison.measured.cases[load_case]
+    sd = comparison.curve_sd.get(load_case, {}).get(response)
     for side, colour in enumerate(SIDE_COLOURS):
-        mean, half = measured.mean[response][side], np.abs(measured.half_width[response][side])
-        panel.fill_between(measured.input, mean - half, mean + half, color=colour, alpha=0.2, lw=0)
-        panel.plot(measured.input[::2], mean[::2], "", marker=".", color=colour, ms=3)
-        panel.plot(model.input, model.mean[response][side], color=colour)
+        mean, half = measured.mean[response][side], measured.half_width[response][side]
+        look: dict[str, Any] = {"color": colour, "lw": LOOP_WIDTH, "alpha": 0.6}
+        for sign in (-1, 1):
+            panel.plot(measured.input, mean + sign * half, **look)
+        if sd is not None:
+            band = NOISE_BAND * sd[side]
+            panel.fill_between(measured.input, mean - band, mean + band, color=colour, alpha=0.18, zorder=0)
+        face = "none" if side else colour
+        panel.plot(measured.input[::2], mean[::2], "", marker="o", color=colour, mfc=face, mew=0.6, ms=2.4)
+        line: dict[str, Any] = {"color": colour, "lw": MODEL_WIDTHS[side], "zorder": 3 + side}
+        panel.plot(model.input, model.mean[response][side], SIDE_DASHES[side], **line)
         loop = np.abs(model.half_width[response][side])
         if loop.max() > 0:
             for sign in (-1, 1):
                 panel.plot(model.input, model.mean[response][side] + sign * loop, ":", color=colour, lw=0.8)
 
 
-def _handles() -> list[Line2D | Patch]:
+def _handles(comparison: Comparison) -> list[Line2D | Patch]:
     out: list[Line2D | Patch] = []
-    for colour, name in zip(SIDE_COLOURS, SIDE_NAMES, strict=True):
-        dots = f"measured, {name} wheel (mean of branches)"
+    for side, (colour, name) in enumerate(zip(SIDE_COLOURS, SIDE_NAMES, strict=True)):
+        dots: dict[str, Any] = {"ls": "", "marker": "o", "ms": 3.5, "mfc": "none" if side else colour}
         out += [
-            Line2D([], [], ls="", marker=".", color=colour, label=dots),
-            Patch(color=colour, alpha=0.2, lw=0, label="   between its branches"),
-            Line2D([], [], color=colour, lw=1.5, label=f"model, {name} wheel"),
+            Line2D([], [], color=colour, label=f"measured, {name} wheel (mean of branches)", **dots),
+            Line2D([], [], color=colour, lw=LOOP_WIDTH, alpha=0.6, label="   its branches"),
         ]
+        if comparison.curve_sd:
+            out.append(Patch(color=colour, alpha=0.18, lw=0, label=f"   ± {NOISE_BAND:g} sd of its noise"))
+        model = f"model, {name} wheel"
+        out.append(Line2D([], [], color=colour, ls=SIDE_DASHES[side], lw=MODEL_WIDTHS[side], label=model))
+        out.append(Line2D([], [], color=colour, ls=":", lw=0.8, label="   its branches, with friction"))
     return out
 
 
 def _table(page: Sheet, box: PageBox, comparison: Comparison, load_case: str) -> None:
-    """Characteristics of the load case, and the RMS of its curves on the left wheel."""
+    """Characteristics of the load case, which are the left wheel's, and the RMS of the curves of both."""
     rows = [r for r in comparison.characteristics if r.entry.load_case == load_case]
     gradients = {f"{r.entry.label} [{r.entry.unit}]": r for r in rows if r.entry.kind == "gradient"}
-    wide = max(map(len, (*gradients, *RESPONSE_NAMES.values()))) + 1
+    wide = max(map(len, (*gradients, *RESPONSE_NAMES.values()))) + 7
     lines = [f"{'Left wheel':<{wide}}{'model':>10}{'target':>10}"]
     for name, row in gradients.items():
         mark = "" if row.inside else " *"
         lines.append(f"{name:<{wide}}{row.value:>10.4g}{row.target:>10.4g}{mark}")
-    lines += ["", "RMS of curve"]
-    for curve in comparison.curves:
-        if curve.load_case == load_case and curve.side == "L":
-            unit = RESPONSE_UNITS[curve.response]
-            lines.append(f"{response_name(curve.response):<{wide}}{curve.rms:>10.3g} {unit}")
-    lines.append("* outside the constraint interval")
-    page.write(
-        box.left / page.width, box.top / page.height, "\n".join(lines), 6.0, along="top", family="monospace"
-    )
+    if any(not row.inside for row in gradients.values()):
+        lines.append("* outside the interval of equations 5.1 and 5.2")
+    lines += ["", f"{'RMS, model minus measured':<{wide}}{'left':>10}{'right':>10}"]
+    rms = {(c.response, c.side): c.rms for c in comparison.curves if c.load_case == load_case}
+    for response in RIG_RESPONSES:
+        name = f"{response_name(response)} [{RESPONSE_UNITS[response]}]"
+        lines.append(f"{name:<{wide}}" + "".join(f"{rms[response, side]:>10.3g}" for side in SIDES))
+    words = "\n".join(lines).replace("-", "\N{MINUS SIGN}")
+    page.write(box.left / page.width, box.top / page.height, words, 6.0, along="top", family="monospace")

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import with_sd
+from doe_kc.ground.numbers import signed
 from doe_kc.report import style
 from doe_kc.report.correlation_parameters import ParameterRow, parameter_rows
 from doe_kc.report.panel import Panel
@@ -22,7 +22,8 @@ SEEN, UNSEEN, BOUND = style.PALETTE["blue"], "#B9BEC3", style.PALETTE["vermillio
 
 
 def parameter_figure(correlation: Correlation, study: str) -> Sheet:
-    """Bar from baseline to final between lower and upper bound, whisker ± sd of the posterior."""
+    """Bar from baseline to final between lower and upper bound, whisker ± sd of the posterior; beside it the
+    change."""
     rows = [r for r in parameter_rows(correlation) if r.role == "variable"]
     parts = _columns(_lines(rows))
     columns, deep = len(parts), max(map(len, parts))
@@ -38,6 +39,10 @@ def parameter_figure(correlation: Correlation, study: str) -> Sheet:
         _column(panel, part, deep)
     _legend(page, correlation.posterior is not None)
     page.set_heading(f"Parameter changes: {study}", 1 - 0.15 / height)
+    page.write(
+        0.5, 1 - 0.42 / height, "numbers: final minus baseline, ± standard deviation", 7.5, "center", "top",
+        color="#555555",
+    )  # fmt: skip
     return page
 
 
@@ -99,7 +104,7 @@ def _bar(panel: Panel, y: float, row: ParameterRow) -> None:
 def _texts(panel: Panel, y: float, row: ParameterRow, colour: str) -> None:
     panel.text(-0.04, y, row.path, size=6.2, across="right", along="center", color=colour)
     unit = "" if row.unit == "-" else f" {row.unit}"
-    words = f"{with_sd(row.final, row.sd)}{unit}"
+    words = f"{signed(row.change, row.sd)}{unit}"
     panel.text(1.05, y, words, size=6.2, along="center", color=colour)
 
 

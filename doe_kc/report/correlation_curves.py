@@ -63,18 +63,12 @@ def case_views(correlation: Correlation, measurement: Measurement | None) -> lis
         if measured is not None and after is not None and not same_input(after, measured):
             measured = None
         if any(c is not None for c in (before, after, measured)):
-            views.append(CaseView(case, measured, before, after, _sd(measurement, measured)))
+            views.append(CaseView(case, measured, before, after, _curve_sd(measurement, measured)))
     return views
 
 
-def _sd(measurement: Measurement | None, case: CaseCurves | None) -> dict[str, FloatArray]:
-    if measurement is None or case is None:
-        return {}
-    noise = measurement.noise.get(case.load_case, {})
-    return {
-        r: np.array([np.sqrt(np.maximum(np.diag(noise[r].covariance(side=s)), 0.0)) for s in (0, 1)])
-        for r in noise
-    }
+def _curve_sd(measurement: Measurement | None, case: CaseCurves | None) -> dict[str, FloatArray]:
+    return {} if measurement is None or case is None else measurement.curve_sd(case.load_case)
 
 
 def curve_figure(view: CaseView, study: str) -> Sheet:

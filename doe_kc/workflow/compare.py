@@ -16,7 +16,8 @@ from doe_kc.targets.comparison import Comparison, compare
 def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Comparison:
     """Model against measurement in the study's fit windows."""
     spread = {name: estimate.sd for name, estimate in measurement.characteristics.items()}
-    return compare(model, measurement.curves, target_sd=spread, windows=study.windows)
+    noise = {case: measurement.curve_sd(case) for case in measurement.curves.cases}
+    return compare(model, measurement.curves, target_sd=spread, windows=study.windows, curve_sd=noise)
 
 
 def write_comparison(

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from doe_kc.ground.numbers import number, sd_format, short, unit_words, with_sd
+from doe_kc.ground.numbers import number, sd_format, short, signed, unit_words, with_sd
 
 
 def test_four_significant_digits_without_an_exponent() -> None:
@@ -58,3 +58,8 @@ def test_a_sheet_shows_two_digits_of_the_deviation(sd: float, form: str) -> None
 
 def test_a_ratio_has_no_unit() -> None:
     assert [unit_words(u) for u in ("-", "", "N/mm")] == ["", "", " N/mm"]
+
+
+def test_changes_have_signs_but_for_nothing() -> None:
+    words = [signed(*pair) for pair in ((1.0, math.nan), (-1.0, 0.25), (-0.001, math.nan), (-0.001, 0.28))]
+    assert words == ["+1.00", "\N{MINUS SIGN}1.00 ± 0.25", "0.00", "0.00 ± 0.28"]

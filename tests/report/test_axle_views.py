@@ -11,7 +11,7 @@ from matplotlib.patches import FancyArrowPatch
 from doe_kc.axle import with_values
 from doe_kc.axle_file import read_axle
 from doe_kc.report import style
-from doe_kc.report.axle_views import LONGEST_ARROW, PLANES, AxleView, _move_words, axle_figure
+from doe_kc.report.axle_views import LONGEST_ARROW, PLANES, AxleView, axle_figure
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"
 SD = {f"LWB.{axis}": 0.3 for axis in "xyz"}
@@ -72,8 +72,3 @@ def test_nothing_reaches_beyond_the_page(moved: AxleView, tmp_path: Path, form: 
     page = axle_figure(moved)
     assert page.outside == []
     assert style.save(page, tmp_path / "axle", form).stat().st_size > 10_000
-
-
-def test_numbers_have_signs_but_for_nothing() -> None:
-    words = [_move_words(*pair) for pair in ((1.0, np.nan), (-1.0, 0.25), (-0.001, np.nan), (-0.001, 0.28))]
-    assert words == ["+1.00", "\N{MINUS SIGN}1.00 ± 0.25", "0.00", "0.00 ± 0.28"]

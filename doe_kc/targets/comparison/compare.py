@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,12 +56,16 @@ class CurveComparison:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Model and measurement; static angles are compared only where the measurement has them."""
+    """Model and measurement; static angles are compared only where the measurement has them.
+
+    curve_sd: load case -> response -> (2, n) standard deviations of the measured mean curves, where known.
+    """
 
     model: CurveSet
     measured: CurveSet
     characteristics: tuple[CharacteristicComparison, ...]
     curves: tuple[CurveComparison, ...]
+    curve_sd: Mapping[str, Mapping[str, FloatArray]] = field(default_factory=dict)
 
     def characteristics_frame(self) -> pd.DataFrame:
         """One row a characteristic: name, load_case, unit, model, target, target_sd, difference, low, ..."""
@@ -112,10 +116,12 @@ def compare(
     *,
     target_sd: Mapping[str, float] | None = None,
     windows: Mapping[str, float] | None = None,
+    curve_sd: Mapping[str, Mapping[str, FloatArray]] | None = None,
 ) -> Comparison:
     """Every characteristic that the measurement has, and every curve that both have.
 
     target_sd: characteristic id -> standard deviation of its target. windows: as in `reduce_all`.
+    curve_sd: see `Comparison`.
     """
     ours, targets = reduce_all(model, windows), reduce_all(measured, windows)
     spread = target_sd or {}
@@ -133,7 +139,7 @@ def compare(
         for response in RIG_RESPONSES
         for side in range(2)
     ]
-    return Comparison(model, measured, tuple(rows), tuple(curves))
+    return Comparison(model, measured, tuple(rows), tuple(curves), dict(curve_sd or {}))
 
 
 def same_input(model: CaseCurves, measured: CaseCurves) -> bool:
