@@ -17,6 +17,7 @@ from scipy.special import log_ndtr
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.thresholds import (
     FIT_DECREASE,
@@ -190,6 +191,22 @@ def to_errors(fit: Fit, likelihood: Likelihood) -> Fit:
         return fit
     model = fit.model.with_errors(likelihood)
     return followed(with_errors(fit, model), model)
+
+
+def amplitude_estimates(fit: Fit, hypothesis: Hypothesis) -> tuple[FloatArray, FloatArray]:
+    """(m,) amplitudes of a member, in typical sizes, and (m,) their standard deviations.
+
+    The records show only the sum of a wrong input and of its load case's calibration: that is what counts.
+    """
+    model = fit.model
+    place = next(p for h, p in model.places() if h == hypothesis)
+    weights = np.eye(fit.z.size)[place]
+    if hypothesis.effect == INPUT_EFFECT and hypothesis.location in model.cases:
+        (size,) = hypothesis.sizes
+        calibration = model.calibrations.start + model.cases.index(hypothesis.location)
+        weights[0, calibration] = input_gain_amplitude(size)
+    covariance = weights @ fit.covariance @ weights.T
+    return np.asarray(weights @ fit.z), np.asarray(np.sqrt(np.diag(covariance)))
 
 
 def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:

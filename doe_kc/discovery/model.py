@@ -14,8 +14,8 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
-from doe_kc.discovery.calibration import calibrated
-from doe_kc.discovery.contrasts import Contrasts, contrasts
+from doe_kc.discovery.nuisances import calibrated
+from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
 from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, CALIBRATION_STEP, DIFFERENCE, RIG
 from doe_kc.effects import apply_effect

@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from doe_kc.discovery.adequacy import Adequacy
-from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.disagreement import Map
-from doe_kc.discovery.exclusion import HypothesisStatus
-from doe_kc.discovery.extra_test import ExtraTest
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.held_out import HeldOut
-from doe_kc.discovery.scan import Scan
-from doe_kc.discovery.search import EffectSearch
-from doe_kc.discovery.trials import HypothesisFit
+from doe_kc.discovery.screening.contrasts import Contrast
+from doe_kc.discovery.screening.disagreement import Map
+from doe_kc.discovery.screening.scan import Scan
+from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.search.search import EffectSearch
+from doe_kc.discovery.verdict.adequacy import Adequacy
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
+from doe_kc.discovery.verdict.extra_test import ExtraTest
+from doe_kc.discovery.verdict.held_out import HeldOut
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from doe_kc.campaign.in_process import InProcess
 from doe_kc.discovery.fit import Fit, cost_of, fit
-from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
-from doe_kc.discovery.scan import Scan, scan
-from doe_kc.discovery.screen import Screened, effort, screen
+from doe_kc.discovery.screening.scan import Scan, scan
+from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS
+from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged

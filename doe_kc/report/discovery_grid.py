@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.screening.contrasts import Contrast
+from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.load_cases import CASE_ORDER
 
 CASES = ("static", *CASE_ORDER)

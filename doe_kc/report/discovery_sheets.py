@@ -12,8 +12,8 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.curves import RESPONSE_LABELS
-from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.ground.numbers import sd_format
 from doe_kc.report.discovery_effects import effect_frame
 from doe_kc.report.discovery_gaps import gap_rows

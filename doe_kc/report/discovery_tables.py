@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_words import (
     STATUS_WORDS,

@@ -11,8 +11,8 @@ from doe_kc.campaign.executors import processes
 from doe_kc.discovery import result_cache as ledgers
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result_cache import ResultCache
-from doe_kc.discovery.screen import effort
-from doe_kc.discovery.search import tune
+from doe_kc.discovery.screening.screen import effort
+from doe_kc.discovery.search.search import tune
 from doe_kc.discovery.workers import DiscoveryWorkers, _packed_fit, _unpacked_fit
 from tests.discovery.cases import library, model
 

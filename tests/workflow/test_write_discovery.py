@@ -12,9 +12,9 @@ import pandas as pd
 import pytest
 
 from doe_kc.axle_file import read_axle
-from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Finding, ParameterEstimate
-from doe_kc.discovery.sentences import odds_words
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
+from doe_kc.discovery.verdict.sentences import odds_words
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.errors import RunError
 from doe_kc.report.discovery_effects import effect_frame

@@ -1,0 +1,76 @@
+"""Load cases held out, in absolute terms."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import multivariate_normal
+
+from doe_kc.discovery.fit import fit, followed
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import LIMIT
+from doe_kc.discovery.verdict.held_out import HeldOutScore, _prediction, _without, held_out
+from doe_kc.ground.typing import FloatArray
+from tests.discovery.cases import LOAD_CASES, discovery
+
+
+@pytest.mark.parametrize("car", ["named", "friction"])
+def test_a_right_model_predicts_what_it_has_not_seen(car: str) -> None:
+    for held in discovery(car).held_out:
+        assert -LIMIT < held.law_granted.excess < LIMIT
+        assert held.with_effect.size > 500
+
+
+def test_a_model_without_the_effect_does_not() -> None:
+    assert max(h.tuned.excess for h in discovery("named").held_out) > 3.0 * LIMIT
+
+
+def test_the_excess_counts_records_and_the_noise_s_own_size() -> None:
+    assert HeldOutScore(1.23, 0.0, 1300).excess == pytest.approx(8.2, abs=0.1)
+    assert HeldOutScore(1.23, 0.0, 10**9).excess == pytest.approx(11.5, abs=0.1)
+    assert HeldOutScore(1.1, 0.0, 50).excess == pytest.approx(0.98, abs=0.02)
+
+
+@pytest.mark.parametrize("case", LOAD_CASES[-1:])
+def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
+    search = discovery("named").search
+    alike = held_out(search.tuned, search.plain, search.plain, case)
+    assert alike.law_granted is alike.with_effect
+
+
+def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    search, taken = discovery("named").search, []
+    tuning = EffectModel.tuning
+
+    def counted(self: EffectModel, *at: FloatArray) -> FloatArray:
+        taken.append(self.left_out)
+        return tuning(self, *at)
+
+    monkeypatch.setattr(EffectModel, "tuning", counted)
+    near = _without(search.plain, "steer")
+    assert not taken and near.converged
+    anew = fit(near.model, search.plain.z)
+    assert np.linalg.norm((near.z - anew.z) / np.sqrt(np.diag(anew.covariance))) < 0.1
+    taken.clear()
+    assert _without(search.tuned, "steer").converged
+    assert taken
+
+
+def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
+    plain = discovery("named").search.plain
+    false = replace(plain, jacobian=-plain.jacobian, z=plain.z)
+    assert not followed(false, replace(plain.model, left_out="steer")).converged
+
+
+def test_a_prediction_has_the_density_of_its_covariance() -> None:
+    found = _without(discovery("named").search.plain, "lateral")
+    hidden = np.flatnonzero(~found.model.used)
+    residual, rows = found.residual[hidden], found.jacobian[hidden]
+    covariance = np.eye(hidden.size) + rows @ found.covariance @ rows.T
+    own = _prediction(found)
+    density = multivariate_normal(np.zeros(hidden.size), covariance).logpdf(residual)
+    assert own.score == pytest.approx(density + 0.5 * hidden.size * np.log(2.0 * np.pi), abs=1e-5)
+    whole = float(residual @ np.linalg.solve(covariance, residual))
+    assert own.rms == pytest.approx(np.sqrt(whole / hidden.size), rel=1e-8)
