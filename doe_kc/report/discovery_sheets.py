@@ -51,13 +51,17 @@ def disagreement_sheet(book: Workbook, discovery: Discovery, study: str) -> None
     """Every contrast of the records with the model, what re-tuning explains worst first."""
     ws = book.create_sheet("Disagreement")
     below = (
-        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} "
-        f"(nominal ±{discovery.raw.threshold:.1f}) "
+        f"Standard deviations; beyond ±{discovery.tuned_map.threshold:.1f} "
+        f"(nominal ±{discovery.nominal_map.threshold:.1f}) "
         "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
         "Empty: absorbed by re-tuning."
     )
     title(ws, f"Disagreement: {study}", below)
-    maps = {"nominal": discovery.raw, "re-tuned": discovery.tuned, "with effect": discovery.final}
+    maps = {
+        "nominal": discovery.nominal_map,
+        "re-tuned": discovery.tuned_map,
+        "with effect": discovery.residual_map,
+    }
     rows = [
         (
             case_label(r.load_case), RESPONSE_LABELS[r.response], r.shape, _wheels(r.wheels), r.z_nominal,

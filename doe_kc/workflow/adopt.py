@@ -118,7 +118,7 @@ def _without(discovery: Discovery, any_effect: bool) -> frozenset[tuple[str, str
     if discovery.verdict != "unexplained":
         return frozenset()
     left: Sequence[tuple[Contrast, float]] = (
-        discovery.unexplained if any_effect else discovery.tuned.worst(PLACES_LISTED)
+        discovery.unexplained if any_effect else discovery.tuned_map.worst(PLACES_LISTED)
     )
     return frozenset((c.load_case, c.response) for c, _ in left if c.shape not in LOOP_SHAPES)
 

@@ -142,11 +142,11 @@ def further_tests(discovery: Discovery) -> list[dict[str, Any]]:
             "kind": "component",
             "effects": [s.hypothesis.effect],
             "location": s.hypothesis.location,
-            "parts": list(s.bench.parts),
-            "separation": s.bench.separation,
+            "parts": list(s.component_test.parts),
+            "separation": s.component_test.separation,
         }
         for s in discovery.statuses
-        if s.bench is not None
+        if s.component_test is not None
     ]
     return [*runs, *parts]
 

@@ -39,7 +39,7 @@ def test_a_stop_touches_inside_the_sweep() -> None:
 def test_the_calibration_is_the_effect_s_own_column(tuned: Fit, case: str) -> None:
     model = tuned.model.extended(wrong_input(case))
     place = model.calibrations.start + model.cases.index(case)
-    effect = model.growth(np.append(tuned.z, 0.0), tuned.residual)[:, 0] / np.log(1.05)
+    effect = model.amplitude_columns(np.append(tuned.z, 0.0), tuned.residual)[:, 0] / np.log(1.05)
     calibration = tuned.jacobian[:, place] / INPUT_GAIN
     assert np.linalg.norm(effect) > 50.0
     assert np.linalg.norm(effect - calibration) < 0.01 * np.linalg.norm(effect)

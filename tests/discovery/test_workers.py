@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.campaign.executors import processes
-from doe_kc.discovery import result_cache as ledgers
+from doe_kc.discovery import result_cache
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result_cache import ResultCache
 from doe_kc.discovery.screening.screen import effort
@@ -30,8 +30,8 @@ def start(tuned: Fit) -> tuple[object, np.ndarray]:
 def test_a_fit_of_a_worker_is_of_the_very_model_and_errors_of_its_start(tuned: Fit) -> None:
     extended, z = start(tuned)
     with processes(2) as executor:
-        (there,) = DiscoveryWorkers(executor, workers=2).fitted([(extended, z)], "", tuned.jacobian)
-    (here,) = DiscoveryWorkers().fitted([(extended, z)], "", tuned.jacobian)
+        (there,) = DiscoveryWorkers(executor, workers=2).fits([(extended, z)], "", tuned.jacobian)
+    (here,) = DiscoveryWorkers().fits([(extended, z)], "", tuned.jacobian)
     assert there is not None and here is not None
     assert there.model is extended and there.model.likelihood is tuned.model.likelihood
     assert np.array_equal(there.z, here.z) and np.array_equal(there.jacobian, here.jacobian)
@@ -41,9 +41,9 @@ def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
     begun, steps = [start(tuned)], []
     fits = []
     for _ in range(2):
-        with ResultCache(tmp_path / "discovery.sqlite") as ledger:
-            bench = DiscoveryWorkers(ledger=ledger, watch=lambda *step: steps.append(step))
-            fits += bench.fitted(begun, "refitting", tuned.jacobian)
+        with ResultCache(tmp_path / "discovery.sqlite") as cache:
+            workers = DiscoveryWorkers(cache=cache, watch=lambda *step: steps.append(step))
+            fits += workers.fits(begun, "refitting", tuned.jacobian)
     computed, stored = fits
     for name in ("z", "residual", "jacobian", "cost", "evaluations", "converged", "evidence"):
         assert np.array_equal(getattr(computed, name), getattr(stored, name)), name
@@ -66,11 +66,11 @@ def test_results_of_another_format_are_not_taken_up(
     hypotheses = library("hub_compliance")
     stored: list[int] = []
     for tag in ("one", "one", "two"):
-        monkeypatch.setattr(ledgers, "FORMAT", tag)
-        with ResultCache(tmp_path / "discovery.sqlite") as ledger:
-            put = ledger.put
-            monkeypatch.setattr(ledger, "put", lambda *a, put=put, tag=tag: (stored.append(tag), put(*a)))
-            DiscoveryWorkers(ledger=ledger).screened(tuned, hypotheses)
+        monkeypatch.setattr(result_cache, "FORMAT", tag)
+        with ResultCache(tmp_path / "discovery.sqlite") as cache:
+            put = cache.put
+            monkeypatch.setattr(cache, "put", lambda *a, put=put, tag=tag: (stored.append(tag), put(*a)))
+            DiscoveryWorkers(cache=cache).screenings(tuned, hypotheses)
     assert stored == ["one", "two"]
 
 
@@ -84,11 +84,11 @@ def test_the_longest_screenings_begin_first(tuned: Fit) -> None:
     hypotheses = library("rig_channel_gain", "steering_friction")
     efforts = [effort(h) for h in hypotheses]
     assert efforts[-1] > max(efforts[:-1])
-    bench = DiscoveryWorkers(ledger=Order(None))
-    found = bench.screened(tuned, hypotheses)
+    workers = DiscoveryWorkers(cache=Order(None))
+    found = workers.screenings(tuned, hypotheses)
     assert [s.hypothesis for s in found] == hypotheses
     alone = Order(None)
     first = begun[0]
     begun.clear()
-    DiscoveryWorkers(ledger=alone).screened(tuned, hypotheses[-1:])
+    DiscoveryWorkers(cache=alone).screenings(tuned, hypotheses[-1:])
     assert begun == [first]

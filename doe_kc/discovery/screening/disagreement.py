@@ -9,23 +9,23 @@ import numpy as np
 
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screening.contrasts import Contrast, Contrasts
-from doe_kc.discovery.thresholds import CONTRAST_SHARE, DOUBT, FALSE_ALARM_CHANCE, NOISE_DRAWS
+from doe_kc.discovery.thresholds import CONTRAST_SHARE, FALSE_ALARM_CHANCE, NOISE_DRAWS, NOISE_SIZE_DOUBT
 from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
 class Map:
-    """z: (k,) statistics, N(0, 1) each without disagreement, nan where re-tuning absorbs everything.
-
-    root: (k', k') of the correlation of those that are not nan.
-    """
+    """Where a model and the records disagree, contrast by contrast."""
 
     names: tuple[Contrast, ...]
+    """(k,) the contrasts."""
     z: FloatArray
+    """(k,) statistics, N(0, 1) each without disagreement, nan where re-tuning absorbs the contrast wholly."""
     root: FloatArray
+    """(k', k') R of the correlation R R' of those that are not nan."""
 
     @cached_property
-    def _by_chance(self) -> FloatArray:
+    def _largest_by_noise(self) -> FloatArray:
         """(draws,) largest |z| that noise alone gives."""
         rng = np.random.default_rng(11)
         drawn = rng.standard_normal((NOISE_DRAWS, self.root.shape[1])) @ self.root.T
@@ -34,12 +34,12 @@ class Map:
     @property
     def threshold(self) -> float:
         """Largest |z| that noise alone passes in 5 % of maps."""
-        return float(np.quantile(self._by_chance, 1.0 - FALSE_ALARM_CHANCE))
+        return float(np.quantile(self._largest_by_noise, 1.0 - FALSE_ALARM_CHANCE))
 
     @property
     def chance(self) -> float:
         """How often noise alone gives a largest |z| as large as this map's."""
-        return float(np.mean(self._by_chance >= self.largest))
+        return float(np.mean(self._largest_by_noise >= self.largest))
 
     @property
     def largest(self) -> float:
@@ -67,14 +67,14 @@ def raw_map(contrasts: Contrasts, residual: FloatArray) -> Map:
     return _map(contrasts, (contrasts.rows.T @ contrasts.rows).toarray(), contrasts.rows.T @ residual)
 
 
-def remaining_map(contrasts: Contrasts, residual: FloatArray, project: Projection) -> Map:
+def residual_map(contrasts: Contrasts, residual: FloatArray, projection: Projection) -> Map:
     """Of a fitted residual (M,): what re-tuning cannot absorb."""
-    return _map(contrasts, *project.products(contrasts.rows, residual))
+    return _map(contrasts, *projection.products(contrasts.rows, residual))
 
 
 def _map(contrasts: Contrasts, gram: FloatArray, products: FloatArray) -> Map:
     """gram: (k, k) of the contrasts. products: (k,) of them with the residual."""
-    gram = gram + DOUBT * np.diag(np.diag(gram))
+    gram = gram + NOISE_SIZE_DOUBT * np.diag(np.diag(gram))
     length = np.sqrt(np.diag(gram))
     seen = length**2 > CONTRAST_SHARE
     z = np.where(seen, products / np.where(seen, length, 1.0), np.nan)

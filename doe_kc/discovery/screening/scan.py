@@ -38,7 +38,7 @@ AXIS_WORDS = {
 class Place:
     """A law at an interface. side: both, L or R. dofs: those that count, the largest first.
 
-    score: standard deviations by which it improves the fit. closed: share of what re-tuning leaves that it
+    score: standard deviations by which it improves the fit. explained: share of what re-tuning leaves that it
     explains. probability: among all places of the scan.
     """
 
@@ -47,7 +47,7 @@ class Place:
     side: str
     dofs: tuple[str, ...]
     score: float
-    closed: float
+    explained: float
     probability: float
 
     @property
@@ -75,15 +75,15 @@ def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
     influences = interface_influences(axle, tuned.model.solutions(axle))
     residual = tuned.remainder
     project = tuned.projection
-    found: list[tuple[Place, float]] = []
+    scored: list[tuple[Place, float]] = []
     for law in LAWS:
-        found += _of_law(law, influences, tuned, project, residual)
-    found.sort(key=lambda item: -item[1])
-    logs = np.array([gain for _, gain in found]) / temper
+        scored += _of_law(law, influences, tuned, project, residual)
+    scored.sort(key=lambda item: -item[1])
+    logs = np.array([gain for _, gain in scored]) / temper
     shares = np.exp(logs - logs.max()) / np.exp(logs - logs.max()).sum()
     places = tuple(
-        Place(p.interface, p.law, p.side, p.dofs, p.score, p.closed, float(share))
-        for (p, _), share in zip(found, shares, strict=True)
+        Place(p.interface, p.law, p.side, p.dofs, p.score, p.explained, float(share))
+        for (p, _), share in zip(scored, shares, strict=True)
     )
     return Scan(places, _sure(places, "interface"), _sure(places, "law"))
 
@@ -111,7 +111,7 @@ def _of_law(
         for side in ("both", "L", "R"):
             dofs, block = _block(chosen, members, columns, side)
             if dofs:
-                yield _judged(interface, law, side, dofs, block, project, residual)
+                yield _place(interface, law, side, dofs, block, project, residual)
 
 
 def _block(
@@ -129,7 +129,7 @@ def _block(
     return list(by_dof), np.column_stack(list(by_dof.values())) if by_dof else empty
 
 
-def _judged(
+def _place(
     interface: str,
     law: str,
     side: str,
@@ -140,8 +140,8 @@ def _judged(
 ) -> tuple[Place, float]:
     """The place with its ln evidence: ln(1 + score^2) / 2 is taken off for each degree of freedom."""
     seen = project(block)
-    whole, left = np.linalg.norm(block, axis=0), np.linalg.norm(seen, axis=0)
-    use = (left > COLUMN_SHARE * whole) & (left > 0.0)
+    before, left = np.linalg.norm(block, axis=0), np.linalg.norm(seen, axis=0)
+    use = (left > COLUMN_SHARE * before) & (left > 0.0)
     if not use.any():
         return Place(interface, law, side, (), 0.0, 0.0, 0.0), 0.0
     unit = seen[:, use] / left[use]
@@ -153,8 +153,8 @@ def _judged(
     strongest = float(np.abs(amplitudes).max())
     counted = tuple(str(names[i]) for i in order if strongest > 0 and abs(amplitudes[i]) > 0.2 * strongest)
     gain = 0.5 * gained - 0.5 * len(counted) * float(np.log1p(gained))
-    closed = gained / max(float(residual @ residual) - residual.size, 1.0)
-    return Place(interface, law, side, counted, float(np.sqrt(gained)), min(1.0, closed), 0.0), gain
+    explained_share = gained / max(float(residual @ residual) - residual.size, 1.0)
+    return Place(interface, law, side, counted, float(np.sqrt(gained)), min(1.0, explained_share), 0.0), gain
 
 
 def _amplitudes(unit: FloatArray, residual: FloatArray, *, signed: bool) -> FloatArray:
@@ -167,5 +167,5 @@ def _amplitudes(unit: FloatArray, residual: FloatArray, *, signed: bool) -> Floa
     keep = values > 1e-10 * values.max()
     root = (vectors[:, keep] * np.sqrt(values[keep])).T
     target = -(vectors[:, keep] / np.sqrt(values[keep])).T @ slope
-    found: FloatArray = nnls(root, target)[0]
-    return found
+    amplitudes: FloatArray = nnls(root, target)[0]
+    return amplitudes

@@ -20,11 +20,11 @@ from doe_kc.discovery.thresholds import (
     HOPELESS,
     NULL_SHARE,
     PROBE,
+    PROBE_FACTOR,
     SCREEN_DECREASE,
     SCREEN_STEP_SHARES,
     SCREEN_STEPS,
-    SHAPES,
-    SMALLER,
+    SHAPE_STARTS,
 )
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
@@ -51,10 +51,10 @@ class Screened:
     change: FloatArray
     detectability: float
     absorbed: float
-    visible: FloatArray
+    size_detectability: FloatArray
     failed: str = ""
 
-    def with_errors(self, before: Likelihood, after: Likelihood) -> Screened:
+    def rewhitened(self, before: Likelihood, after: Likelihood) -> Screened:
         """Its changes in units of other errors of the same records; what was concluded stays."""
         change = rewhitened(self.change, before, after)
         return replace(self, change=change, columns=rewhitened(self.columns, before, after))
@@ -64,8 +64,8 @@ def screen(fit: Fit, hypothesis: Hypothesis) -> Screened:
     """The hypothesis on its own; one without equilibria comes back as failed."""
     model = fit.model.extended(hypothesis)
     try:
-        starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, SMALLER * PROBE), strict=True)
-        results = [follow(model, fit, *s) for s in starts]
+        starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, PROBE_FACTOR * PROBE), strict=True)
+        results = [amplitude_solution(model, fit, *s) for s in starts]
         change = _typical(model, fit, hypothesis)
     except NotConverged as error:
         empty = np.zeros(len(hypothesis.sizes))
@@ -106,7 +106,7 @@ def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
     base = np.array([0.0 if s.shape or s.signed else first for s in hypothesis.sizes])
     shapes = [i for i, s in enumerate(hypothesis.sizes) if s.shape]
     out = []
-    for shape in SHAPES if shapes else (0.0,):
+    for shape in SHAPE_STARTS if shapes else (0.0,):
         start = base.copy()
         start[shapes] = shape
         out.append(start)
@@ -114,11 +114,11 @@ def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
 
 
 @dataclass(frozen=True)
-class _Followed:
+class _AmplitudeSolution:
     """amplitudes (m,), columns (M, m) and change (M,) there; reduced: (M + d,) what re-tuning leaves of the
     residual, projected: (M + d, m) of the columns.
 
-    followed: False where amplitudes and cost are those that a first step promises, which is nothing.
+    solved: False where amplitudes and cost are those that a first step promises, which is nothing.
     """
 
     amplitudes: FloatArray
@@ -127,10 +127,12 @@ class _Followed:
     change: FloatArray
     reduced: FloatArray
     cost: float
-    followed: bool = True
+    solved: bool = True
 
 
-def follow(model: EffectModel, fit: Fit, start: FloatArray, smaller: FloatArray) -> _Followed:
+def amplitude_solution(
+    model: EffectModel, fit: Fit, start: FloatArray, smaller: FloatArray
+) -> _AmplitudeSolution:
     """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing.
 
     A promise that is worse than the model without the effect is none: along a straight line the effect could
@@ -146,9 +148,9 @@ def follow(model: EffectModel, fit: Fit, start: FloatArray, smaller: FloatArray)
         step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
         predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
         if k == 0 and predicted > without + 2.0 * HOPELESS and not np.array_equal(start, smaller):
-            return follow(model, fit, smaller, smaller)
+            return amplitude_solution(model, fit, smaller, smaller)
         if without - predicted < 2.0 * HOPELESS:
-            return replace(best, amplitudes=best.amplitudes + step, cost=predicted, followed=False)
+            return replace(best, amplitudes=best.amplitudes + step, cost=predicted, solved=False)
         trial = _better(model, fit, best, step)
         if trial is None:
             break
@@ -159,7 +161,9 @@ def follow(model: EffectModel, fit: Fit, start: FloatArray, smaller: FloatArray)
     return best
 
 
-def _better(model: EffectModel, fit: Fit, best: _Followed, step: FloatArray) -> _Followed | None:
+def _better(
+    model: EffectModel, fit: Fit, best: _AmplitudeSolution, step: FloatArray
+) -> _AmplitudeSolution | None:
     """The longest of the shortened steps that gains, None when none does or has an equilibrium."""
     for share in SCREEN_STEP_SHARES:
         try:
@@ -171,26 +175,28 @@ def _better(model: EffectModel, fit: Fit, best: _Followed, step: FloatArray) -> 
     return None
 
 
-def _solved(model: EffectModel, fit: Fit, amplitudes: FloatArray, near: _Followed | None = None) -> _Followed:
+def _solved(
+    model: EffectModel, fit: Fit, amplitudes: FloatArray, near: _AmplitudeSolution | None = None
+) -> _AmplitudeSolution:
     """The true solution at some amplitudes, its columns those of a point that is near or still none."""
     residual = model.residual(np.concatenate([fit.z, amplitudes]))
     reduced = fit.projection.residual(residual)
     cost = float(reduced @ reduced + amplitudes @ amplitudes)
     none = np.zeros((0, amplitudes.size))
     columns, projected = (none, none) if near is None else (near.columns, near.projected)
-    return _Followed(amplitudes, columns, projected, residual - fit.residual, reduced, cost)
+    return _AmplitudeSolution(amplitudes, columns, projected, residual - fit.residual, reduced, cost)
 
 
-def _derived(model: EffectModel, fit: Fit, best: _Followed, place: slice) -> _Followed:
+def _derived(model: EffectModel, fit: Fit, best: _AmplitudeSolution, place: slice) -> _AmplitudeSolution:
     """The same with columns taken there. place: of the amplitudes in z."""
     z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change
-    columns = model.growth(z, residual, which=place)
+    columns = model.amplitude_columns(z, residual, which=place)
     return replace(best, columns=columns, projected=fit.projection(columns))
 
 
-def _summary(fit: Fit, hypothesis: Hypothesis, best: _Followed, change: FloatArray) -> Screened:
+def _summary(fit: Fit, hypothesis: Hypothesis, best: _AmplitudeSolution, change: FloatArray) -> Screened:
     hessian = best.projected.T @ best.projected + np.eye(best.amplitudes.size)
-    seen, whole = fit.projection(change), float(change @ change)
+    seen, square = fit.projection(change), float(change @ change)
     without = float(fit.remainder @ fit.remainder)
     fitted = best.cost - float(best.amplitudes @ best.amplitudes)
     return Screened(
@@ -202,12 +208,12 @@ def _summary(fit: Fit, hypothesis: Hypothesis, best: _Followed, change: FloatArr
         best.columns,
         change,
         float(np.linalg.norm(seen)),
-        1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
-        visible(hypothesis, best.projected, seen),
+        1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
+        size_detectability(hypothesis, best.projected, seen),
     )
 
 
-def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> FloatArray:
+def size_detectability(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> FloatArray:
     """(m,) see `Screened`. columns: (M + d, m) and change (M + d,) of the effect, re-tuning projected out."""
     out = np.full(len(hypothesis.sizes), np.nan)
     amounts = [i for i, s in enumerate(hypothesis.sizes) if not s.shape]
@@ -220,7 +226,7 @@ def visible(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> 
     return out
 
 
-def rescreened(fit: Fit, known: Screened) -> Screened:
+def score_test(fit: Fit, known: Screened) -> Screened:
     """The score test at another model with the columns known from an earlier one: no new solution.
 
     known: its changes in the other model's errors. amplitudes and gain to first order; hypotheses without
@@ -228,14 +234,14 @@ def rescreened(fit: Fit, known: Screened) -> Screened:
     """
     if known.failed:
         return known
-    project, plain = fit.projection, fit.remainder
+    project = fit.projection
     seen = project(known.change)
     columns = project(known.columns if known.amplitudes.size else known.change[:, None])
     hessian = columns.T @ columns + np.eye(columns.shape[1])
-    slope = columns.T @ plain
+    slope = columns.T @ fit.remainder
     amplitudes = np.asarray(-np.linalg.solve(hessian, slope), dtype=np.float64)
     gain = 0.5 * float(-slope @ amplitudes) - 0.5 * float(np.linalg.slogdet(hessian)[1])
-    whole = float(known.change @ known.change)
+    square = float(known.change @ known.change)
     return replace(
         known,
         amplitudes=amplitudes if known.amplitudes.size else known.amplitudes,
@@ -243,6 +249,6 @@ def rescreened(fit: Fit, known: Screened) -> Screened:
         gain=gain,
         score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
         detectability=float(np.linalg.norm(seen)),
-        absorbed=1.0 - float(seen @ seen) / whole if whole > 0.0 else 0.0,
-        visible=visible(known.hypothesis, columns, seen),
+        absorbed=1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
+        size_detectability=size_detectability(known.hypothesis, columns, seen),
     )

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.screening.disagreement import remaining_map
 from doe_kc.discovery.search.search import EffectSearch, search
-from doe_kc.discovery.thresholds import AT, BOUND_EVIDENCE, FACTORS, HELD
+from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, BOUND_SHARE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
@@ -23,7 +22,7 @@ from doe_kc.variables import Space
 
 
 def search_within_bounds(
-    model: EffectModel, library: Sequence[Hypothesis], bench: DiscoveryWorkers
+    model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers
 ) -> tuple[EffectSearch, float]:
     """The search, and by how much all ranges are wider in it than the model's: 1 where that is not asked for.
 
@@ -31,24 +30,24 @@ def search_within_bounds(
     cannot bend parameters in place of an effect; then the search begins anew between them.
     NotConverged when the nominal axle has no equilibrium.
     """
-    found = search(model, library, bench)
-    factor = bound_evidence(found.final, bench)
+    first = search(model, library, workers)
+    factor = bound_evidence(first.with_law_discrepancy, workers)
     if factor == 1.0:
-        return found, factor
-    again = search(replace(model, space=model.space.widened(factor)), library, bench)
-    return (again, factor) if again.plain.evidence > found.plain.evidence + BOUND_EVIDENCE else (found, 1.0)
+        return first, factor
+    wider = search(replace(model, space=model.space.widened(factor)), library, workers)
+    gain = wider.with_effects.evidence - first.with_effects.evidence
+    return (wider, factor) if gain > BOUND_EVIDENCE else (first, 1.0)
 
 
-def bound_evidence(final: Fit, bench: DiscoveryWorkers) -> float:
+def bound_evidence(fit: Fit, workers: DiscoveryWorkers) -> float:
     """By how much wider the ranges are with the largest evidence, 1 unless it is clear."""
-    shapes = final.model.contrasts
-    few = np.mean(at_bounds(final)) < HELD
-    if few or not remaining_map(shapes, final.residual, final.projection).agrees:
+    few = np.mean(at_bounds(fit)) < BOUND_SHARE
+    if few or not fit.residual_map.agrees:
         return 1.0
-    best, most = 1.0, final.evidence + BOUND_EVIDENCE
-    for factor in FACTORS:
-        model, z = with_wider_bounds(final, factor)
-        (wider,) = bench.fitted([(model, z)], "wider bounds", final.jacobian * _stretch(final, model, z))
+    best, most = 1.0, fit.evidence + BOUND_EVIDENCE
+    for factor in BOUND_FACTORS:
+        model, z = with_wider_bounds(fit, factor)
+        (wider,) = workers.fits([(model, z)], "wider bounds", fit.jacobian * _stretch(fit, model, z))
         if wider is None or wider.evidence < most:
             break
         best, most = factor, wider.evidence
@@ -81,4 +80,4 @@ def beyond(space: Space, fit: Fit) -> tuple[str, ...]:
     """Paths of the parameters that the fit puts outside the bounds of `space`."""
     values = fit.model.space.values(fit.z[: fit.model.parameters])
     places = {v.path: v.place(values[v.path]) for v in space.variables}
-    return tuple(path for path, u in places.items() if not -AT <= u <= 1.0 + AT)
+    return tuple(path for path, u in places.items() if not -BOUND_ROUNDING <= u <= 1.0 + BOUND_ROUNDING)

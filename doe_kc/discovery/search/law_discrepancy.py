@@ -1,7 +1,8 @@
-"""What the law of an effect leaves open, granted as a further error of the records.
+"""The model discrepancy of an effect's law, a further error of the records.
 
 An effect that is in the model follows a law of its own in the car: a compliance stiffens, a friction breaks
-away more softly. Without this, the difference would be taken for another effect.
+away more softly. Without this, the difference would be taken for another effect (M. C. Kennedy, A. O'Hagan,
+Journal of the Royal Statistical Society B 63, 2001).
 """
 
 from __future__ import annotations
@@ -14,9 +15,9 @@ from scipy.linalg import cho_factor, cho_solve, cholesky
 
 from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
 from doe_kc.curves import TYRE_LOAD
-from doe_kc.discovery.fit import Fit, followed, with_errors
+from doe_kc.discovery.fit import Fit, chord_fit, rewhitened_fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import DISCREPANCY_SHARES, LENGTH
+from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, DISCREPANCY_SHARES
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import smooth_correlation
@@ -24,48 +25,48 @@ from doe_kc.measurement.noise import smooth_correlation
 
 @dataclass(frozen=True)
 class EffectSignal:
-    """What one member makes: change of every curve (n,), the largest of each response and branches, and the
-    sum of squares in the records' errors.
-
-    sticks: a friction, whose smaller loops hang on the shape of its law, so that each curve's scale is open
-    too; an elastic law's scale is the same in every curve, which is what tells effects apart.
-    """
+    """What one member makes of the curves."""
 
     changes: tuple[FloatArray, ...]
+    """Of every curve its change (n,), in the curve's unit."""
     largest: Mapping[tuple[str, Branches], float]
-    sticks: bool
+    """Response and branches -> the largest |change| of their curves."""
+    friction: bool
+    """Whether it is a friction, whose smaller loops hang on the shape of its law, so that each curve's scale
+    is open too. An elastic law's scale is the same in every curve, which is what tells effects apart."""
     square: float
+    """Sum of squares of all changes, in the records' errors."""
 
 
 def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
-    """The fit with the laws of its effects left open by as much as the records ask for, and by how much.
+    """The fit with the discrepancy of its effects' laws that the records ask for, and each member's share.
 
-    exact: to the records' own errors. The share of each effect is the one of SHARES with the largest
-    evidence, one effect after the other, largest first: the errors of the records grow by what its law may
-    do to the curves, and with them their determinant, so that a law that fits is left as it is.
+    exact: to the records' own errors. The share of each effect is the one of DISCREPANCY_SHARES with the
+    largest evidence, one effect after the other, largest first: the errors of the records grow by what its
+    law may do to the curves, and with them their determinant, so that a law that fits is left as it is.
     """
-    made = effect_signals(exact)
-    shares = [0.0] * len(made)
+    signals = effect_signals(exact)
+    shares = [0.0] * len(signals)
     best, most = exact, marginal(exact)
-    for i in sorted(range(len(made)), key=lambda i: -made[i].square):
+    for i in sorted(range(len(signals)), key=lambda i: -signals[i].square):
         for share in DISCREPANCY_SHARES[1:]:
-            tried = [share if k == i else s for k, s in enumerate(shares)]
-            wider = with_errors(exact, with_discrepancy(exact.model, made, tried))
+            candidate = [share if k == i else s for k, s in enumerate(shares)]
+            wider = rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate))
             evidence = marginal(wider)
             if evidence > most:
                 best, most, shares[i] = wider, evidence, share
     names = [h.name for h in exact.model.members]
-    found = followed(best, best.model) if any(shares) else exact
-    return found, dict(zip(names, shares, strict=True))
+    settled = chord_fit(best, best.model) if any(shares) else exact
+    return settled, dict(zip(names, shares, strict=True))
 
 
 def without_own_discrepancy(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
-    """Of each member whose law was opened, the records' errors with all laws opened but its own."""
+    """Of each member with a discrepancy, the records' errors with the discrepancies of all others."""
     if not any(shares.values()):
         return {}
-    made, names = effect_signals(exact), [h.name for h in exact.model.members]
+    signals, names = effect_signals(exact), [h.name for h in exact.model.members]
     return {
-        name: with_discrepancy(exact.model, made, [shares[n] * (n != name) for n in names]).likelihood
+        name: with_discrepancy(exact.model, signals, [shares[n] * (n != name) for n in names]).likelihood
         for name in names
         if shares[name]
     }
@@ -91,7 +92,7 @@ def with_discrepancy(
     """
     likelihood = model.likelihood
     curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
-    return model.with_errors(replace(likelihood, curves=tuple(curves)))
+    return model.with_likelihood(replace(likelihood, curves=tuple(curves)))
 
 
 def effect_signals(exact: Fit) -> list[EffectSignal]:
@@ -113,7 +114,7 @@ def _signal(
     return EffectSignal(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
 
 
-def sticks(fit: Fit, member: Hypothesis) -> bool:
+def is_friction(fit: Fit, member: Hypothesis) -> bool:
     """Whether a member of a fit is a friction."""
     return _frictional(fit.model, member, fit.z)
 
@@ -130,14 +131,14 @@ def _widened(
     if not any(shares):
         return curve
     relative = curve.input / np.abs(curve.input).max()
-    smooth = smooth_correlation(relative, LENGTH)
+    smooth = smooth_correlation(relative, DISCREPANCY_LENGTH)
     centred = np.eye(curve.size) - 1.0 / curve.size
     covariance = curve.root @ curve.root.T
     for one, share in zip(signals, shares, strict=True):
         change = one.changes[at]
-        ratio = smooth if one.sticks else centred @ smooth @ centred
+        ratio = smooth if one.friction else centred @ smooth @ centred
         covariance = covariance + share**2 * ratio * np.outer(change, change)
-        if one.sticks:
+        if one.friction:
             level = share * one.largest[curve.response, curve.branches]
             left_open = level * (1.0 - relative**2 if curve.branches == "half_width" else relative)
             covariance = covariance + smooth * np.outer(left_open, left_open)

@@ -14,12 +14,12 @@ from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.thresholds import (
     ABSORBED_SHARE,
     CONFIDENT,
-    LEADERS,
-    OF_ONE_KIND,
+    PLACES_REFITTED,
     REFIT_SHARE,
+    REFITS_MOST,
     RELEVANT,
-    RIVAL,
-    TIED,
+    RIVAL_CORRELATION,
+    TIED_EVIDENCE,
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
@@ -41,10 +41,10 @@ def leaders(screened: Sequence[Screened], project: Projection, least: float) -> 
     out = [best]
     own = _explained(best, project)
     for s in screened[1:]:
-        if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == LEADERS:
+        if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == REFITS_MOST:
             break
         kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
-        if kind < OF_ONE_KIND and abs(float(own @ _explained(s, project))) > RIVAL:
+        if kind < PLACES_REFITTED and abs(float(own @ _explained(s, project))) > RIVAL_CORRELATION:
             out.append(s)
     small = (
         best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT
@@ -87,12 +87,12 @@ Sized = Iterable[tuple[Size, float, float]]
 """Amplitude of a size in typical ones, and its standard deviation."""
 
 
-def believed(sizes: Sized) -> bool:
+def believable(sizes: Sized) -> bool:
     """Whether none is surely beyond what such a part has."""
     return not any(abs(a) - CONFIDENT * sd > size.most for size, a, sd in sizes)
 
 
-def matters(sizes: Sized) -> bool:
+def more_than_trace(sizes: Sized) -> bool:
     """Whether one is surely more than a trace; an effect without a size does when it is there."""
     counted = list(sizes)
     return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)
@@ -107,17 +107,19 @@ class HypothesisFit:
     gain: float
 
 
-def tried(current: Fit, screened: Sequence[Screened], bench: DiscoveryWorkers) -> list[HypothesisFit]:
+def joint_refits(
+    current: Fit, screened: Sequence[Screened], workers: DiscoveryWorkers
+) -> list[HypothesisFit]:
     """The joint refits from the screened sizes, best first; those without a solution are left out."""
     starts = [
         (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
     ]
-    fits = bench.fitted(starts, "refitting leaders", current.jacobian)
+    fits = workers.fits(starts, "refitting leaders", current.jacobian)
     trials = []
-    for s, found in zip(screened, fits, strict=True):
-        if found is not None:
-            gain = found.evidence - current.evidence + log_odds(s.hypothesis)
-            trials.append(HypothesisFit(s.hypothesis, found, gain))
+    for s, refit in zip(screened, fits, strict=True):
+        if refit is not None:
+            gain = refit.evidence - current.evidence + log_odds(s.hypothesis)
+            trials.append(HypothesisFit(s.hypothesis, refit, gain))
     return sorted(trials, key=lambda t: -t.gain)
 
 
@@ -128,7 +130,7 @@ def log_odds(hypothesis: Hypothesis) -> float:
 
 def plausible(trial: HypothesisFit) -> bool:
     """Whether the effect's sizes are believed."""
-    return believed(amounts(trial))
+    return believable(amounts(trial))
 
 
 def amounts(trial: HypothesisFit) -> list[tuple[Size, float, float]]:
@@ -147,7 +149,7 @@ def stiffer_first(trials: list[HypothesisFit]) -> list[HypothesisFit]:
     if len(trials) < 2:
         return trials
     first, second, *rest = trials
-    same = first.hypothesis.effect == second.hypothesis.effect and first.gain - second.gain < TIED
+    same = first.hypothesis.effect == second.hypothesis.effect and first.gain - second.gain < TIED_EVIDENCE
     one = len(first.hypothesis.sizes) == len(second.hypothesis.sizes) == 1
     if same and one and first.fit.z[-1] < 0.0 < second.fit.z[-1]:
         return [second, first, *rest]

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.discovery.thresholds import LIMIT, NOISE, NOISE_DRAWS, UNLISTED
+from doe_kc.discovery.thresholds import HELD_OUT_LIMIT, NOISE_CHANCE, NOISE_DRAWS, UNLISTED
 from doe_kc.discovery.verdict.held_out import HeldOut
 
 
@@ -27,8 +27,8 @@ class Adequacy:
     @property
     def holds(self) -> bool:
         """Whether noise alone explains what remains, on the map and on load cases held out."""
-        predicted = self.worst is None or self.worst.law_granted.excess <= LIMIT
-        return self.map_chance >= NOISE and predicted
+        predicted = self.worst is None or self.worst.law_granted.excess <= HELD_OUT_LIMIT
+        return self.map_chance >= NOISE_CHANCE and predicted
 
     @property
     def unlisted(self) -> float | None:

@@ -9,13 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
-from doe_kc.discovery.fit import Fit, last_member, to_errors
+from doe_kc.discovery.fit import Fit, last_member, refit_to_errors
 from doe_kc.discovery.projection import Projection
-from doe_kc.discovery.screening.disagreement import Map, remaining_map
-from doe_kc.discovery.screening.screen import Screened, rescreened
-from doe_kc.discovery.search.refits import HypothesisFit, compatible, leaders, log_odds, plausible, tried
+from doe_kc.discovery.screening.disagreement import Map
+from doe_kc.discovery.screening.screen import Screened, score_test
+from doe_kc.discovery.search.refits import (
+    HypothesisFit,
+    compatible,
+    joint_refits,
+    leaders,
+    log_odds,
+    plausible,
+)
 from doe_kc.discovery.search.search import EffectSearch, Step, accepted_at, threshold
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
@@ -23,18 +29,17 @@ from doe_kc.effects.hypothesis import Hypothesis
 
 @dataclass(frozen=True)
 class Alternatives:
-    """One effect of the final set, its removal and its rivals.
-
-    without: the final set without it, refitted; all others' laws are granted as in the final set, its own
-    and those of its rivals are not. screened: itself, then the library without the other members, there.
-    trials: itself, then the plausible rivals in its place, refitted, best first; gains are over `without`.
-    temper: what ln evidence is divided by, because what remains of the final set is not noise alone.
-    """
+    """One effect of the last set, its removal and its rivals."""
 
     without: Fit
+    """The set without it, refitted; the errors hold the discrepancy of all others' laws, not that of its own
+    nor of its rivals'."""
     screened: tuple[Screened, ...]
+    """Itself, then the library without the other members, added to `without`."""
     trials: tuple[HypothesisFit, ...]
+    """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`."""
     temper: float
+    """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
 
     @property
     def hypothesis(self) -> Hypothesis:
@@ -47,38 +52,37 @@ class Alternatives:
         own = self.trials[0]
         return own.gain - log_odds(own.hypothesis)
 
-    @cached_property
+    @property
     def map(self) -> Map:
         """Where model and records disagree without it."""
-        fitted = self.without
-        return remaining_map(fitted.model.contrasts, fitted.residual, fitted.projection)
+        return self.without.residual_map
 
 
-def alternatives(search: EffectSearch, temper: float, bench: DiscoveryWorkers) -> tuple[Alternatives, ...]:
+def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
     """Of every member of the final set, in its order."""
-    members = search.final.model.members
+    members = search.with_law_discrepancy.model.members
     bases = [_without_own_law(search, h) for h in members]
     steps = [_same_set(search, base) for base in bases]
     missing = [base for base, step in zip(bases, steps, strict=True) if step is None]
     starts = [(b.model.without(b.model.members[-1]), b.z[: _first_size(b)]) for b in missing]
-    refits = iter(bench.fitted(starts, "taking effects out", search.final.jacobian))
+    refits = iter(workers.fits(starts, "taking effects out", search.with_law_discrepancy.jacobian))
     out = []
     for base, step in zip(bases, steps, strict=True):
         if step is not None:
-            out.append(_from_step(base, step, temper, bench))
+            out.append(_from_step(base, step, temper, workers))
             continue
         without = next(refits)
         if without is None:  # no equilibrium without it: all that is known is how it came in
-            out.append(_from_step(base, accepted_at(search, base.model.members[-1]), temper, bench))
+            out.append(_from_step(base, accepted_at(search, base.model.members[-1]), temper, workers))
         else:
-            out.append(_at_final_set(search, base, without, temper, bench))
+            out.append(_at_final_set(search, base, without, temper, workers))
     return tuple(out)
 
 
 def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
     """The final set, the member last, under errors that do not grant its own law."""
-    errors = search.without_law.get(member.name, search.final.model.likelihood)
-    return last_member(to_errors(search.final, errors), member)
+    errors = search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
+    return last_member(refit_to_errors(search.with_law_discrepancy, errors), member)
 
 
 def _first_size(base: Fit) -> int:
@@ -94,14 +98,14 @@ def _same_set(search: EffectSearch, base: Fit) -> Step | None:
     return step if same and all(a is b for a, b in errors) else None
 
 
-def _from_step(base: Fit, step: Step, temper: float, bench: DiscoveryWorkers) -> Alternatives:
+def _from_step(base: Fit, step: Step, temper: float, workers: DiscoveryWorkers) -> Alternatives:
     """From refits of the search; what has friction is driven by as many loops as the final set."""
     own = _own(base, step.before)
     kept = [t for t in step.trials if plausible(t) and _may_replace(base, t.hypothesis)]
     axle = base.model.axle
     stale = [t for t in kept if t.fit.model.axle != axle and _frictional(t.fit)]
     starts = [(replace(t.fit.model, axle=axle), t.fit.z) for t in stale]
-    fits = bench.fitted(starts, "refitting rivals", step.before.jacobian) if starts else []
+    fits = workers.fits(starts, "refitting rivals", step.before.jacobian) if starts else []
     again = {
         t.hypothesis.name: HypothesisFit(
             t.hypothesis, f, f.evidence - step.before.evidence + log_odds(t.hypothesis)
@@ -116,26 +120,26 @@ def _from_step(base: Fit, step: Step, temper: float, bench: DiscoveryWorkers) ->
 
 
 def _at_final_set(
-    search: EffectSearch, base: Fit, without: Fit, temper: float, bench: DiscoveryWorkers
+    search: EffectSearch, base: Fit, without: Fit, temper: float, workers: DiscoveryWorkers
 ) -> Alternatives:
     """From refits of the final set without the member and with each rival in its place."""
     own, project = _own(base, without), without.projection
     known = {s.hypothesis.name: s for s in _screened(search, without)}
-    first = rescreened(without, known.pop(own.hypothesis.name))
+    first = score_test(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
-    there = [rescreened(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
+    there = [score_test(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
-    near = _near([first, *there], project, threshold(len(known) + 1), without, bench)
-    rivals = [t for t in tried(without, near, bench) if plausible(t)]
+    near = _near([first, *there], project, threshold(len(known) + 1), without, workers)
+    rivals = [t for t in joint_refits(without, near, workers) if plausible(t)]
     return Alternatives(without, (first, *there), (own, *rivals), temper)
 
 
 def _near(
-    screened: Sequence[Screened], project: Projection, least: float, without: Fit, bench: DiscoveryWorkers
+    screened: Sequence[Screened], project: Projection, least: float, without: Fit, workers: DiscoveryWorkers
 ) -> list[Screened]:
     """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
     chosen = [s.hypothesis for s in leaders(screened, project, least / 2.0)[1:]]
-    return [s for s in bench.screened(without, chosen) if not s.failed]
+    return [s for s in workers.screenings(without, chosen) if not s.failed]
 
 
 def _own(base: Fit, without: Fit) -> HypothesisFit:
@@ -163,5 +167,5 @@ def _screened(search: EffectSearch, without: Fit) -> list[Screened]:
     """Every hypothesis as it was screened last, in the errors of `without`."""
     latest = {s.hypothesis.name: (s, step) for step in search.steps for s in step.screened}
     return [
-        s.with_errors(step.before.model.likelihood, without.model.likelihood) for s, step in latest.values()
+        s.rewhitened(step.before.model.likelihood, without.model.likelihood) for s, step in latest.values()
     ]

@@ -1,4 +1,4 @@
-"""Which parts, measured on a bench, would show an effect that re-tuning absorbs.
+"""Which parts, measured on a workers, would show an effect that re-tuning absorbs.
 
 With parameter i known to a standard deviation of e_i instead of p_i, the information on the effect's sizes
 grows by m m' / (1 / (e_i^-2 - p_i^-2) + H^-1_ii), m the i-th row of H^-1 J' S: how the parameter follows the
@@ -16,13 +16,13 @@ from scipy.linalg import cho_factor, cho_solve
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.thresholds import (
-    ANGLE,
     BENCH_ACCURACY,
+    BENCH_ANGLE,
+    BENCH_POSITION,
+    BENCH_RADIUS,
     DETECTION_LEVEL,
     NULL_SHARE,
     PARTS_MOST,
-    POSITION,
-    RADIUS,
 )
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
@@ -43,10 +43,10 @@ def accuracy(variable: Variable, value: float) -> float:
     """Standard deviation to which a bench knows a parameter of some value, in the parameter's unit."""
     scale = abs(value)
     if variable.path.endswith(".radius"):
-        return RADIUS * scale
+        return BENCH_RADIUS * scale
     if variable.logarithmic:
         return BENCH_ACCURACY * scale
-    return ANGLE if variable.unit == "deg" else POSITION
+    return BENCH_ANGLE if variable.unit == "deg" else BENCH_POSITION
 
 
 def component_tests(fit: Fit, screened: Sequence[Screened], least: float) -> list[ComponentTest | None]:
@@ -125,8 +125,8 @@ def _columns(screened: Screened) -> FloatArray:
 
 def _shown(information: FloatArray) -> float:
     """Standard deviations of the size that shows least, whatever the others are; 0 if none does anything."""
-    whole = float(np.trace(information))
-    if whole <= 0.0:
+    total = float(np.trace(information))
+    if total <= 0.0:
         return 0.0
-    floor = NULL_SHARE * whole * np.eye(information.shape[0])
+    floor = NULL_SHARE * total * np.eye(information.shape[0])
     return float(1.0 / np.sqrt(np.diag(np.linalg.inv(information + floor)).max()))

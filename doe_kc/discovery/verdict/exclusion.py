@@ -13,7 +13,7 @@ from scipy.special import ndtr
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.thresholds import ALIKE_CORRELATION, HIDING, ONE_SIDED, POWER, UNSURE
+from doe_kc.discovery.thresholds import ALIKE_CORRELATION, HIDING_LISTED, ONE_SIDED, POWER, UNSURE_SHARE
 from doe_kc.discovery.verdict.component_test import ComponentTest, component_tests
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
@@ -31,8 +31,8 @@ class HypothesisStatus:
     it, if the model is right but for this size; inf when re-tuning absorbs nearly all, nan for a shape.
     detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
     parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
-    remaining change is the same, with the correlation. bench: of one that hardly shows, parts to measure
-    that would show it.
+    remaining change is the same, with the correlation. component_test: of one that hardly shows, parts to
+    measure that would show it.
     """
 
     hypothesis: Hypothesis
@@ -42,7 +42,7 @@ class HypothesisStatus:
     hidden_by: tuple[tuple[str, float], ...]
     alike: tuple[tuple[str, float], ...]
     limits: tuple[float, ...] = ()
-    bench: ComponentTest | None = None
+    component_test: ComponentTest | None = None
 
 
 def hypothesis_statuses(
@@ -72,8 +72,7 @@ def hypothesis_statuses(
         limits = _limits(s, by_bounds, critical)
         limits = limits if i in known else np.maximum(limits, _upper(s))
         amounts = limits[~np.isnan(limits)]
-        whole = float(np.linalg.norm(s.change))
-        seen = _trusted(s.detectability, whole, by_bounds)
+        seen = _trusted(s.detectability, float(np.linalg.norm(s.change)), by_bounds)
         detectable = float(amounts.min()) if amounts.size else _limit(seen, critical)
         status: Status = known.get(i) or _status(s, detectable, resolved=resolved)
         alike = tuple(
@@ -82,14 +81,13 @@ def hypothesis_statuses(
             if j != i and abs(correlation[i, j]) >= ALIKE_CORRELATION and length[i] > 1.0 and length[j] > 1.0
         )
         hidden_by = _hiding(fit, moves[:, i], s)
-        stands = HypothesisStatus(
-            s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits)
+        out.append(
+            HypothesisStatus(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
         )
-        out.append(stands)
-    hidden = [i for i, s in enumerate(out) if s.status in ("not testable", "trace")]
-    tests = component_tests(fit, [everything[i] for i in hidden], critical + POWER)
-    for i, test in zip(hidden, tests, strict=True):
-        out[i] = replace(out[i], bench=test)
+    untested = [i for i, s in enumerate(out) if s.status in ("not testable", "trace")]
+    tests = component_tests(fit, [everything[i] for i in untested], critical + POWER)
+    for i, test in zip(untested, tests, strict=True):
+        out[i] = replace(out[i], component_test=test)
     return tuple(out)
 
 
@@ -104,9 +102,12 @@ def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray
     if sum(not s.shape for s in sizes) == 1:
         seen = _trusted(screened.detectability, float(np.linalg.norm(screened.change)), by_bounds)
         return np.array([np.nan if s.shape else _limit(seen, critical) for s in sizes])
-    whole = np.linalg.norm(screened.columns, axis=0)
+    lengths = np.linalg.norm(screened.columns, axis=0)
     return np.array(
-        [_limit(_trusted(v, w, 0.0), critical) for v, w in zip(screened.visible, whole, strict=True)]
+        [
+            _limit(_trusted(v, w, 0.0), critical)
+            for v, w in zip(screened.size_detectability, lengths, strict=True)
+        ]
     )
 
 
@@ -117,7 +118,7 @@ def _trusted(visible: float, before: float, by_bounds: float) -> float:
     which no bend of theirs undoes; the rest are deviations of the records.
     """
     left = visible**2 - by_bounds**2
-    return by_bounds if left <= UNSURE * before**2 else visible
+    return by_bounds if left <= UNSURE_SHARE * before**2 else visible
 
 
 def _limit(visible: float, critical: float) -> float:
@@ -150,7 +151,7 @@ def _hiding(fit: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, 
         return ()
     paths = fit.model.space.paths
     relative = move[: len(paths)] / fit.model.prior_sd[: len(paths)]
-    order = np.argsort(-np.abs(relative))[:HIDING]
+    order = np.argsort(-np.abs(relative))[:HIDING_LISTED]
     return tuple((paths[i], float(relative[i])) for i in order)
 
 

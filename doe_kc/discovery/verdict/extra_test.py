@@ -16,7 +16,7 @@ from scipy.linalg import block_diag, cho_factor, cho_solve
 from doe_kc.correlation.likelihood import CurveData, Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import LARGER, TEST_WORTH, TESTS_LISTED
+from doe_kc.discovery.thresholds import AMPLITUDE_FACTOR, TEST_WORTH, TESTS_LISTED
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES, LoadCase
 from doe_kc.load_cases.lateral_offset import LateralOffset
@@ -34,21 +34,21 @@ class ExtraTest:
 
 def extra_tests(one: Fit, other: Fit) -> tuple[ExtraTest, ...]:
     """Further load cases that separate two fits, best first; none when no load case does."""
-    found = []
+    tests = []
     for words, case, like in _candidates(one.model):
         try:
-            found.append(ExtraTest(words, _separation(one, other, case, like), case))
+            tests.append(ExtraTest(words, _separation(one, other, case, like), case))
         except NotConverged:
             continue
-    found.sort(key=lambda t: -t.separation)
-    return tuple(t for t in found[:TESTS_LISTED] if t.separation >= TEST_WORTH)
+    tests.sort(key=lambda t: -t.separation)
+    return tuple(t for t in tests[:TESTS_LISTED] if t.separation >= TEST_WORTH)
 
 
 def _candidates(model: EffectModel) -> Iterator[tuple[str, LoadCase, str]]:
     """Words, the load case, and the measured one whose errors it is given."""
     cases = model.axle.load_cases
     for ident, case in cases.items():
-        more = case.amplitude * LARGER
+        more = case.amplitude * AMPLITUDE_FACTOR
         yield f"{ident} up to {more:.4g} {case.unit}", replace(case, amplitude=more), ident
         if isinstance(case, LateralOffset):
             for offset in (-case.offset, 2.0 * case.offset):
@@ -67,7 +67,7 @@ def _separation(one: Fit, other: Fit, case: LoadCase, like: str) -> float:
     free, count = model.dimension - model.parameters, model.parameters
     z = _point(model, other)
     difference = model.residual(z)
-    jacobian = np.hstack([model.tuning(z, difference), model.growth(z, difference)])
+    jacobian = np.hstack([model.tuning_columns(z, difference), model.amplitude_columns(z, difference)])
     kept = np.r_[0:count, other.model.dimension : other.z.size]
     known = other.covariance[np.ix_(kept, kept)]
     covariance = block_diag(known[:count, :count], np.eye(free), known[count:, count:])

@@ -12,17 +12,17 @@ from scipy.special import log_ndtr, logsumexp, ndtr
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
-from doe_kc.discovery.search.refits import HypothesisFit, amounts, believed, matters
+from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
-    BESIDE,
-    DECISIVE,
-    MENTIONED,
+    BESIDE_SHARE,
+    DECISIVE_EVIDENCE,
     NAME_ALWAYS_LEVEL,
     NAME_LEVEL,
-    NOISE,
-    PRESENT,
+    NOISE_CHANCE,
+    RIVAL_LISTED,
     TRACE_LEVEL,
+    TRACE_SD,
     WRONG_NAME_CHANCE,
 )
 from doe_kc.discovery.verdict.alternatives import Alternatives
@@ -36,14 +36,14 @@ NO_EFFECT = ""
 
 
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
-    """Every member of the final model, each judged beside all the others. compared: in their order."""
-    hidden = unseen(search)
+    """Every member of the last set, each judged beside all the others. compared: in the set's order."""
+    trace_sd = unseen_effect_sd(search)
     every = [
-        _finding(search, one, place, hidden[place.start - search.final.model.dimension :])
-        for one, (_, place) in zip(compared, search.final.model.places(), strict=True)
+        _finding(search, one, place, trace_sd[place.start - search.with_law_discrepancy.model.dimension :])
+        for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     ]
     most = max((f.gain for f in every), default=0.0)
-    least = BESIDE * most if any(search.shares.values()) else 0.0
+    least = BESIDE_SHARE * most if any(search.discrepancy_shares.values()) else 0.0
     return tuple(
         replace(f, relevant=f.relevant and _stands_out(one, least))
         for f, one in zip(every, compared, strict=True)
@@ -58,32 +58,37 @@ def _stands_out(own: Alternatives, least: float) -> bool:
     strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
     if strength >= NAME_ALWAYS_LEVEL:
         return True
-    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE)
+    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE_CHANCE)
 
 
-def _finding(search: EffectSearch, own: Alternatives, place: slice, hidden: FloatArray) -> Finding:
-    """hidden: standard deviations by effects that are not seen, of its sizes and those behind them."""
+def _finding(search: EffectSearch, own: Alternatives, place: slice, trace_sd: FloatArray) -> Finding:
+    """trace_sd: standard deviations by effects that are not seen, of its sizes and those behind them."""
     hypothesis = own.hypothesis
     logs = log_probabilities(own, [s.hypothesis for s in search.steps[0].screened])
     against, odds = best_alternative(logs, hypothesis.effect)
-    most_probable, _ = amplitude_estimates(search.plain, hypothesis)
+    most_probable, _ = amplitude_estimates(search.with_effects, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = _with_law(hypothesis, most_probable, amplitude_estimates(search.final, hypothesis)[1], search.shares)
-    detectability = _detectability(search.plain, place) if sizes else own.screened[0].detectability
+    sd = _with_law(
+        hypothesis,
+        most_probable,
+        amplitude_estimates(search.with_law_discrepancy, hypothesis)[1],
+        search.discrepancy_shares,
+    )
+    detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
-    chances = _wrong_names(own, detectability)
-    for effect, chance in _mistaken(own).items():
+    chances = _wrong_name_chances(own, detectability)
+    for effect, chance in _confusion_chances(own).items():
         chances[effect] = max(chances.get(effect, 0.0), chance)
     rivals = tuple(
         Rival(effect, float(np.exp(log)))
         for effect, log in sorted(logs.items(), key=lambda item: -item[1])
-        if effect not in (hypothesis.effect, NO_EFFECT) and np.exp(log) >= MENTIONED
+        if effect not in (hypothesis.effect, NO_EFFECT) and np.exp(log) >= RIVAL_LISTED
     )
     return Finding(
         hypothesis=hypothesis,
         estimates=tuple(
             estimate(s, a, float(np.hypot(e, more)))
-            for (s, a), e, more in zip(sizes, sd, hidden[: len(sizes)], strict=True)
+            for (s, a), e, more in zip(sizes, sd, trace_sd[: len(sizes)], strict=True)
         ),
         probability=float(np.exp(logs[hypothesis.effect])),
         log10_odds=odds,
@@ -94,8 +99,8 @@ def _finding(search: EffectSearch, own: Alternatives, place: slice, hidden: Floa
         wrong_name=max(chances.values(), default=0.0),
         alike=_alike(own, chances),
         largest=max((a for _, a, _ in counted), default=1.0),
-        believed=believed(counted),
-        relevant=matters(counted) and not _trace_would_do(own),
+        believed=believable(counted),
+        relevant=more_than_trace(counted) and not _trace_would_do(own),
         elsewhere=_elsewhere(own),
     )
 
@@ -150,15 +155,15 @@ def estimate(size: Size, amplitude: float, sd: float) -> ParameterEstimate:
     return ParameterEstimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
 
 
-def _detectability(final: Fit, place: slice) -> float:
+def _detectability(fit: Fit, place: slice) -> float:
     """Standard deviations that the effect makes at its size, all else re-tuned."""
-    covariance = final.covariance[place, place]
+    covariance = fit.covariance[place, place]
     information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
-    sizes = final.z[place]
+    sizes = fit.z[place]
     return float(np.sqrt(max(0.0, float(sizes @ information @ sizes))))
 
 
-def _wrong_names(own: Alternatives, detectability: float) -> dict[str, float]:
+def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:
     """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
     project = own.without.projection
     first, *others = own.screened
@@ -172,7 +177,7 @@ def _wrong_names(own: Alternatives, detectability: float) -> dict[str, float]:
     return out
 
 
-def _mistaken(own: Alternatives) -> dict[str, float]:
+def _confusion_chances(own: Alternatives) -> dict[str, float]:
     """Effect id -> chance that noise alone puts its refit before the effect's own, in truth the right one.
 
     Phi(-d / 2), d the distance of what both predict in standard deviations of the records.
@@ -181,13 +186,13 @@ def _mistaken(own: Alternatives) -> dict[str, float]:
     out: dict[str, float] = {}
     for t in rest:
         effect = t.hypothesis.effect
-        if effect != first.hypothesis.effect and _whole(t):
+        if effect != first.hypothesis.effect and _has_needed_sizes(t):
             apart = float(np.linalg.norm(t.fit.residual - first.fit.residual))
             out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
     return out
 
 
-def _whole(trial: HypothesisFit) -> bool:
+def _has_needed_sizes(trial: HypothesisFit) -> bool:
     """Whether the sizes are there that make it: a free play without a gap is a compliance by another name."""
     return all(abs(a) > max(ABSENT, sd) for s, a, sd in amounts(trial) if s.needed)
 
@@ -195,8 +200,10 @@ def _whole(trial: HypothesisFit) -> bool:
 def _alike(own: Alternatives, chances: Mapping[str, float]) -> tuple[str, ...]:
     """Effects that the records hardly tell from this one and whose evidence is not decisively less."""
     best = max(t.gain for t in own.trials if t.hypothesis.effect == own.hypothesis.effect)
-    rivals = (t for t in own.trials if t.hypothesis.effect != own.hypothesis.effect and _whole(t))
-    close = dict.fromkeys(t.hypothesis.effect for t in rivals if (best - t.gain) / own.temper < DECISIVE)
+    rivals = (t for t in own.trials if t.hypothesis.effect != own.hypothesis.effect and _has_needed_sizes(t))
+    close = dict.fromkeys(
+        t.hypothesis.effect for t in rivals if (best - t.gain) / own.temper < DECISIVE_EVIDENCE
+    )
     return tuple(e for e in close if chances.get(e, 0.0) > WRONG_NAME_CHANCE)
 
 
@@ -206,8 +213,8 @@ def _trace_would_do(own: Alternatives) -> bool:
     return any(
         t.hypothesis.effect != own.hypothesis.effect
         and t.gain > 0.0
-        and (first.gain - t.gain) / own.temper < DECISIVE
-        and not matters(amounts(t))
+        and (first.gain - t.gain) / own.temper < DECISIVE_EVIDENCE
+        and not more_than_trace(amounts(t))
         for t in rest
     )
 
@@ -216,7 +223,7 @@ def _elsewhere(own: Alternatives) -> tuple[str, ...]:
     """Other places of the same effect whose evidence is not decisively less."""
     first, *rest = own.trials
     others = (t for t in rest if t.hypothesis.effect == own.hypothesis.effect)
-    close = (t for t in others if (first.gain - t.gain) / own.temper < DECISIVE)
+    close = (t for t in others if (first.gain - t.gain) / own.temper < DECISIVE_EVIDENCE)
     return tuple(t.hypothesis.location for t in close if t.hypothesis.location)
 
 
@@ -225,21 +232,21 @@ def _unit(seen: FloatArray) -> FloatArray:
     return np.asarray(seen / length if length > 1e-9 else 0.0 * seen)
 
 
-def unseen(search: EffectSearch) -> FloatArray:
+def unseen_effect_sd(search: EffectSearch) -> FloatArray:
     """(m,) standard deviation of the final model's amplitudes by all effects that are not in it.
 
     To first order: each at PRESENT of its typical size, less where more would have been seen, independently.
     """
-    final = search.final
-    members = {h.name for h in final.model.members}
+    fit = search.with_law_discrepancy
+    members = {h.name for h in fit.model.members}
     others = [
         s
         for s in search.steps[-1].screened
         if not s.failed and s.hypothesis.name not in members and not EFFECTS[s.hypothesis.effect].on_rig
     ]
     if not others:
-        return np.zeros(final.amplitudes.size)
-    sizes = np.array([min(PRESENT, TRACE_LEVEL / max(s.detectability, 1e-9)) for s in others])
+        return np.zeros(fit.amplitudes.size)
+    sizes = np.array([min(TRACE_SD, TRACE_LEVEL / max(s.detectability, 1e-9)) for s in others])
     changes = np.array([s.change for s in others]).T * sizes
-    moves = cho_solve(cho_factor(final.hessian), final.jacobian.T @ changes)
-    return np.asarray(np.linalg.norm(moves[final.model.dimension :], axis=1))
+    moves = cho_solve(cho_factor(fit.hessian), fit.jacobian.T @ changes)
+    return np.asarray(np.linalg.norm(moves[fit.model.dimension :], axis=1))

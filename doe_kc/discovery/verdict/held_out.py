@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, cost_of, fit, followed
-from doe_kc.discovery.thresholds import FOLLOW_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
+from doe_kc.discovery.thresholds import CHORD_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
 from doe_kc.ground.typing import FloatArray
 
 
@@ -46,23 +46,24 @@ class HeldOut:
         return self.with_effect.score - self.tuned.score
 
 
-def held_out(tuned: Fit, plain: Fit, final: Fit, case: str) -> HeldOut:
+def held_out(tuned: Fit, with_effects: Fit, with_discrepancy: Fit, case: str) -> HeldOut:
     """One load case of the records, predicted from all the others.
 
-    plain, final: with the effects, to the records' own errors and to those that grant their laws.
+    with_effects: fitted to the records' own errors; with_discrepancy: to errors that hold that of the laws.
     """
-    with_effect = law_granted = _prediction(_without(plain, case))
-    if final.model.likelihood is not plain.model.likelihood:
-        law_granted = _prediction(followed(final, replace(final.model, left_out=case)))
+    with_effect = law_granted = _prediction(_without(with_effects, case))
+    if with_discrepancy.model.likelihood is not with_effects.model.likelihood:
+        model = replace(with_discrepancy.model, left_out=case)
+        law_granted = _prediction(chord_fit(with_discrepancy, model))
     return HeldOut(case, _prediction(_without(tuned, case)), with_effect, law_granted)
 
 
 def _without(start: Fit, case: str) -> Fit:
     """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
     model = replace(start.model, left_out=case)
-    near = followed(start, model)
+    near = chord_fit(start, model)
     gained = cost_of(model, start.z, start.residual) - near.cost
-    if near.converged and gained <= FOLLOW_DECREASE:
+    if near.converged and gained <= CHORD_DECREASE:
         return near
     return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
 
@@ -73,8 +74,8 @@ def _prediction(fit: Fit) -> HeldOutScore:
     Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
     det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
     """
-    hidden = ~fit.model.used
-    residual, rows = fit.residual[hidden], fit.jacobian[hidden]
+    predicted = ~fit.model.used
+    residual, rows = fit.residual[predicted], fit.jacobian[predicted]
     before = cholesky(fit.hessian, lower=True)
     after = cholesky(fit.hessian + rows.T @ rows, lower=True)
     pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)

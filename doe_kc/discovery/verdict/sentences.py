@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from doe_kc.discovery.result import Finding, Gap
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.scan import Scan
-from doe_kc.discovery.thresholds import ADVISED, CERTAIN, NOISE_DRAWS, PARAMETERS_LISTED, UNLISTED
+from doe_kc.discovery.thresholds import CERTAIN, NOISE_DRAWS, PARAMETERS_LISTED, TESTS_ADVISED, UNLISTED
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.extra_test import ExtraTest
@@ -19,7 +19,7 @@ from doe_kc.ground.numbers import unit_words, with_sd
 def sentences(
     verdict: Verdict,
     findings: Sequence[Finding],
-    holds: Adequacy,
+    adequacy: Adequacy,
     gap: Gap,
     remaining: Map,
     scan: Scan | None,
@@ -40,7 +40,7 @@ def sentences(
         ]
         if scan is not None and scan.interface is not None:
             out.append(f"The data point to {scan.places[0].words}.")
-    out.append(adequacy_words(holds))
+    out.append(adequacy_words(adequacy))
     if beyond:
         out.append(_outside(beyond, widened))
     out.append(
@@ -108,18 +108,18 @@ def odds_number(log10_odds: float) -> str:
     return f"> {CERTAIN:g}" if log10_odds > CERTAIN else f"{log10_odds:.1f}"
 
 
-def adequacy_words(holds: Adequacy) -> str:
+def adequacy_words(adequacy: Adequacy) -> str:
     """One line on whether the set explains the records, and on something that the library does not list."""
-    text = f"Adequacy: noise alone leaves as large a disagreement in {_share(holds.map_chance)} of cars"
-    if holds.worst is not None and holds.held_out_chance is not None:
-        worst = holds.worst
+    text = f"Adequacy: noise alone leaves as large a disagreement in {_share(adequacy.map_chance)} of cars"
+    if adequacy.worst is not None and adequacy.held_out_chance is not None:
+        worst = adequacy.worst
         text += (
             f", and deviations of a load case held out as large as those of {worst.load_case} "
-            f"(RMS {worst.law_granted.rms:.2f}) in {_share(holds.held_out_chance)}"
+            f"(RMS {worst.law_granted.rms:.2f}) in {_share(adequacy.held_out_chance)}"
         )
-    if holds.unlisted is None:
+    if adequacy.unlisted is None:
         return f"{text}; something that the library does not list, or a law of another shape, is at work."
-    most = 100.0 * holds.unlisted
+    most = 100.0 * adequacy.unlisted
     return (
         f"{text}; something that the library does not list is at most {most:.0f} % probable, "
         f"with {100.0 * UNLISTED:.0f} % assumed before the records."
@@ -149,37 +149,37 @@ def next_tests(
         for f in findings:
             ident = f.hypothesis.effect
             out.setdefault(ident, f"To confirm {_known(ident)}: {EFFECTS[ident].shown_by}.")
-    for effect, best in _hidden(statuses):
-        how = f"{EFFECTS[effect].shown_by}{_bench(best)}"
+    for effect, best in _untestable(statuses):
+        how = f"{EFFECTS[effect].shown_by}{_component_words(best)}"
         out.setdefault(effect, f"Not testable here, {_known(effect)}: {how}.")
-    return tuple(list(out.values())[:ADVISED])
+    return tuple(list(out.values())[:TESTS_ADVISED])
 
 
-def _hidden(statuses: Sequence[HypothesisStatus]) -> list[tuple[str, HypothesisStatus]]:
+def _untestable(statuses: Sequence[HypothesisStatus]) -> list[tuple[str, HypothesisStatus]]:
     """Effects that hardly show in any place, each with the place that measured parts show best; those that
     they show come first, by how many parts that takes."""
     places: dict[str, list[HypothesisStatus]] = {}
     for s in statuses:
         places.setdefault(s.hypothesis.effect, []).append(s)
     best = [
-        (effect, min(each, key=_effort))
-        for effect, each in places.items()
-        if all(s.status == "not testable" or s.bench is not None for s in each)
+        (effect, min(statuses_of, key=_effort))
+        for effect, statuses_of in places.items()
+        if all(s.status == "not testable" or s.component_test is not None for s in statuses_of)
     ]
     return sorted(best, key=lambda item: _effort(item[1]))
 
 
-def _effort(standing: HypothesisStatus) -> tuple[float, float]:
-    test = standing.bench
+def _effort(status: HypothesisStatus) -> tuple[float, float]:
+    test = status.component_test
     return (float("inf"), 0.0) if test is None else (len(test.parts), -test.separation)
 
 
-def _bench(standing: HypothesisStatus) -> str:
-    test = standing.bench
+def _component_words(status: HypothesisStatus) -> str:
+    test = status.component_test
     if test is None:
         return ""
     return (
-        f"; or measure {', '.join(test.parts)} on a bench, after which its typical size stands out by "
+        f"; or measure {', '.join(test.parts)} on a workers, after which its typical size stands out by "
         f"{test.separation:.0f} standard deviations"
     )
 

@@ -8,7 +8,15 @@ from dataclasses import dataclass
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Finding, VerdictKind
 from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.discovery.thresholds import CLEAR, CLOSED, HARM, HARM_SHARE, LIMIT, NAME_PROBABILITY, NOISE
+from doe_kc.discovery.thresholds import (
+    GAP_CLEAR,
+    GAP_CLOSURE,
+    HARM,
+    HARM_SHARE,
+    HELD_OUT_LIMIT,
+    NAME_PROBABILITY,
+    NOISE_CHANCE,
+)
 from doe_kc.discovery.verdict.held_out import HeldOut
 
 
@@ -25,16 +33,16 @@ def verdict(
     remaining: Map,
     held_out: Sequence[HeldOut],
     tuned: Fit,
-    final: Fit,
+    with_effects: Fit,
 ) -> Verdict:
-    """findings: the relevant ones. remaining: map of the final model."""
-    closed = _closed(tuned, final)
-    agrees = remaining.chance >= NOISE
+    """The verdict on the relevant findings. remaining: map of what the fit with the effects leaves."""
+    closure = _gap_closure(tuned, with_effects)
+    agrees = remaining.chance >= NOISE_CHANCE
     if not findings:
         return Verdict("none") if agrees else Verdict("unexplained")
     objections = [*_implausible(findings), *_harmed(held_out), *_missed(held_out)]
-    if closed < CLOSED:
-        objections.append(f"it closes only {closed:.0%} of the gap that re-tuning leaves")
+    if closure < GAP_CLOSURE:
+        objections.append(f"it closes only {closure:.0%} of the gap that re-tuning leaves")
     if not agrees:
         worst, z = remaining.worst(1)[0]
         objections.append(
@@ -87,14 +95,14 @@ def _missed(held_out: Sequence[HeldOut]) -> list[str]:
         f"held-out load case {h.load_case} deviates from its prediction by an RMS of "
         f"{h.law_granted.rms:.2f}, {h.law_granted.excess:.0f} standard deviations more than noise"
         for h in held_out
-        if h.law_granted.excess > LIMIT
+        if h.law_granted.excess > HELD_OUT_LIMIT
     ]
 
 
-def _closed(tuned: Fit, final: Fit) -> float:
+def _gap_closure(tuned: Fit, with_effects: Fit) -> float:
     """Share of the gap beyond noise that is closed; 1 where there is no clear gap."""
     expected = float(tuned.residual.size)
-    before, after = tuned.misfit - expected, final.misfit - expected
-    if before < CLEAR * (2.0 * expected) ** 0.5:
+    before, after = tuned.misfit - expected, with_effects.misfit - expected
+    if before < GAP_CLEAR * (2.0 * expected) ** 0.5:
         return 1.0
     return 1.0 - max(0.0, after) / before

@@ -11,8 +11,8 @@ import pytest
 from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
-from doe_kc.discovery.screening.screen import follow, rescreened, screen
-from doe_kc.discovery.thresholds import PROBE, SMALLER
+from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen
+from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR
 from doe_kc.discovery.verdict.exclusion import _trusted, hypothesis_statuses, wrong_name_chance
 from tests.discovery.cases import library, model
 
@@ -32,7 +32,7 @@ def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
 def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
     found = screen(tuned, hub)
-    again = rescreened(tuned, found)
+    again = score_test(tuned, found)
     prior = tuned.model.prior_sd
     marginal = np.eye(tuned.residual.size) + (tuned.jacobian * prior**2) @ tuned.jacobian.T
     weighted = np.linalg.solve(marginal, found.columns)
@@ -57,17 +57,17 @@ def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) ->
     for own, other in ((0, 1), (1, 0)):
         share = columns[:, own] @ columns[:, other] / (columns[:, other] @ columns[:, other])
         rest = columns[:, own] - share * columns[:, other]
-        assert found.visible[own] == pytest.approx(np.linalg.norm(rest), rel=1e-4)
-    assert (rescreened(tuned, found).visible == found.visible).all()
-    assert found.visible.min() < found.detectability
+        assert found.size_detectability[own] == pytest.approx(np.linalg.norm(rest), rel=1e-4)
+    assert (score_test(tuned, found).size_detectability == found.size_detectability).all()
+    assert found.size_detectability.min() < found.detectability
 
 
 def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
     found = screen(tuned, friction)
     amounts = [not s.shape for s in friction.sizes]
-    assert found.visible[amounts] == pytest.approx(found.detectability)
-    assert np.isnan(found.visible[~np.array(amounts)]).all()
+    assert found.size_detectability[amounts] == pytest.approx(found.detectability)
+    assert np.isnan(found.size_detectability[~np.array(amounts)]).all()
 
 
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
@@ -117,7 +117,7 @@ class Saturating:
     def residual(self, z: np.ndarray) -> np.ndarray:
         return self.residual_of + self.made(float(z[0]))
 
-    def growth(self, z: np.ndarray, residual: np.ndarray, *, which: slice) -> np.ndarray:
+    def amplitude_columns(self, z: np.ndarray, residual: np.ndarray, *, which: slice) -> np.ndarray:
         return np.array([[200.0 / (1.0 + 5.0 * float(z[0])) ** 2]])
 
 
@@ -136,10 +136,10 @@ def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() 
     found: Any = SimpleNamespace(
         z=model.z, residual=model.residual_of, remainder=model.residual_of, projection=Untuned()
     )
-    given_up = follow(model, found, np.array([PROBE]), np.array([PROBE]))
-    assert not given_up.followed
-    followed = follow(model, found, np.array([PROBE]), np.array([SMALLER * PROBE]))
-    assert followed.followed
+    unsolved = amplitude_solution(model, found, np.array([PROBE]), np.array([PROBE]))
+    assert not unsolved.solved
+    followed = amplitude_solution(model, found, np.array([PROBE]), np.array([PROBE_FACTOR * PROBE]))
+    assert followed.solved
     assert followed.amplitudes == pytest.approx([0.03], abs=1e-3)
 
 

@@ -29,8 +29,8 @@ def test_an_effect_is_named_in_a_series_that_is_off_nominal() -> None:
 
 
 def test_between_the_bounds_the_gap_would_stay() -> None:
-    narrow = search(model(CAR), known_to(CAR), DiscoveryWorkers()).plain
-    wide = discovery(CAR).search.plain
+    narrow = search(model(CAR), known_to(CAR), DiscoveryWorkers()).with_effects
+    wide = discovery(CAR).search.with_effects
     assert wide.rms < 1.0 < narrow.rms
     assert wide.evidence > narrow.evidence + 50.0
     assert at_bounds(narrow).sum() >= 3 and not at_bounds(wide).any()
@@ -44,7 +44,7 @@ def test_no_other_car_asks_for_wider_bounds(car: str) -> None:
 
 
 def test_bounds_are_not_widened_where_tuning_cannot_be_the_reason() -> None:
-    final = discovery("unexplained").search.final
+    final = discovery("unexplained").search.with_law_discrepancy
     z = final.z.copy()
     z[: final.model.parameters] = 0.0
     held = replace(final, z=z)

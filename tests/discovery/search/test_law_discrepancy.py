@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, cost_of, fit, with_errors
+from doe_kc.discovery.fit import Fit, cost_of, fit, rewhitened_fit
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
     fit_discrepancy,
@@ -108,8 +108,8 @@ def test_other_errors_change_the_units_of_everything() -> None:
     residual = sided.residual(z)
     found = Fit(sided, z, residual, np.zeros((residual.size, z.size)), cost_of(sided, z, residual), 1, True)
     wide = with_discrepancy(sided, effect_signals(found), [SHARE])
-    moved = with_errors(found, wide)
+    moved = rewhitened_fit(found, wide)
     np.testing.assert_allclose(wide.residual(z), moved.residual, rtol=0, atol=1e-8)
     assert np.abs(moved.residual - residual).max() > 0.1
-    back = with_errors(moved, wide.with_errors(sided.likelihood))
+    back = rewhitened_fit(moved, wide.with_likelihood(sided.likelihood))
     np.testing.assert_allclose(back.residual, residual, rtol=0, atol=1e-8)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, fit, to_errors, with_errors
+from doe_kc.discovery.fit import Fit, fit, refit_to_errors, rewhitened_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
-from doe_kc.discovery.search.pruning import pruned
+from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
@@ -23,13 +23,13 @@ def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
     exact, hub = two_fitted()
     wide = with_discrepancy(exact.model, effect_signals(exact), [0.5, 0.0])
-    found = fit(wide, exact.z, tuning=with_errors(exact, wide).jacobian[:, : wide.dimension])
+    found = fit(wide, exact.z, tuning=rewhitened_fit(exact, wide).jacobian[:, : wide.dimension])
     fooled = _loss(found, hub)
-    own = _loss(to_errors(found, exact.model.likelihood), hub)
+    own = _loss(refit_to_errors(found, exact.model.likelihood), hub)
     assert own > 1.5 * fooled
     between = float(np.sqrt(own * fooled))
-    assert hub not in pruned(found, between, DiscoveryWorkers(), {}).model.members
-    judged = pruned(found, between, DiscoveryWorkers(), {hub.name: exact.model.likelihood})
+    assert hub not in backward_elimination(found, between, DiscoveryWorkers(), {}).model.members
+    judged = backward_elimination(found, between, DiscoveryWorkers(), {hub.name: exact.model.likelihood})
     assert hub in judged.model.members
     assert judged.model.likelihood is wide.likelihood
 

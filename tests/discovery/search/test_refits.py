@@ -12,7 +12,13 @@ import pytest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.search.refits import HypothesisFit, believed, matters, overlooked, stiffer_first
+from doe_kc.discovery.search.refits import (
+    HypothesisFit,
+    believable,
+    more_than_trace,
+    overlooked,
+    stiffer_first,
+)
 from doe_kc.discovery.search.search import with_conditioning
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Size
@@ -22,7 +28,7 @@ from tests.discovery.cases import discovery, library
 
 def trial(place: str, gain: float, amplitude: float) -> HypothesisFit:
     hypothesis = next(h for h in library("left_right_asymmetry") if h.location == place)
-    found = discovery("named").search.final
+    found = discovery("named").search.with_law_discrepancy
     return HypothesisFit(hypothesis, replace(found, z=np.append(found.z, amplitude)), gain)
 
 
@@ -45,11 +51,11 @@ def test_of_two_places_that_say_the_same_the_stiffer_leads(
 
 def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
     size = Size("k", 1.0, "-")
-    assert believed([(size, 3.5, 0.3)])
-    assert not believed([(size, 1.0, 0.1), (size, -3.5, 0.2)])
-    assert believed([(replace(size, most=4.0), -3.5, 0.2)])
-    assert matters([(size, 0.3, 0.09)]) and not matters([(size, 0.3, 0.11)])
-    assert matters([])
+    assert believable([(size, 3.5, 0.3)])
+    assert not believable([(size, 1.0, 0.1), (size, -3.5, 0.2)])
+    assert believable([(replace(size, most=4.0), -3.5, 0.2)])
+    assert more_than_trace([(size, 0.3, 0.09)]) and not more_than_trace([(size, 0.3, 0.11)])
+    assert more_than_trace([])
 
 
 class Asked(DiscoveryWorkers):
@@ -68,7 +74,7 @@ class Asked(DiscoveryWorkers):
 
 @pytest.mark.parametrize(("own", "other"), [(0, 1), (1, 0), (2, 0)])
 def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -> None:
-    found = discovery("friction").search.final
+    found = discovery("friction").search.with_law_discrepancy
     model = replace(found.model, axle=found.model.axle.conditioned(own))
     asked = Asked()
     current = replace(found, model=model)
@@ -77,7 +83,7 @@ def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -
 
 
 def test_without_friction_the_loops_are_those_of_the_file() -> None:
-    found = discovery("named").search.final
+    found = discovery("named").search.with_law_discrepancy
     assert not found.model.with_effects(found.z).topology.frictional
     looped = replace(found, model=replace(found.model, axle=found.model.axle.conditioned(1)))
     again = with_conditioning(looped, found.model.axle, Asked())

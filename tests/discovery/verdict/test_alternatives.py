@@ -51,7 +51,7 @@ def test_an_effect_is_taken_out_of_the_whole_set(
 ) -> None:
     """Not out of the set that it came into."""
     for one in compared:
-        others = {h.effect for h in found.final.model.members} - {one.hypothesis.effect}
+        others = {h.effect for h in found.with_law_discrepancy.model.members} - {one.hypothesis.effect}
         assert {h.effect for h in one.without.model.members} == others
         assert one.loss == pytest.approx(one.trials[0].fit.evidence - one.without.evidence)
 
@@ -59,8 +59,12 @@ def test_an_effect_is_taken_out_of_the_whole_set(
 def test_the_order_of_two_effects_does_not_matter(
     compared: tuple[Alternatives, ...], found: EffectSearch
 ) -> None:
-    first, second = found.final.model.members
-    swapped = replace(found, final=last_member(found.final, first), plain=last_member(found.plain, first))
+    first, second = found.with_law_discrepancy.model.members
+    swapped = replace(
+        found,
+        with_law_discrepancy=last_member(found.with_law_discrepancy, first),
+        with_effects=last_member(found.with_effects, first),
+    )
     assert swapped.final.model.members == (second, first)
     there = findings(found, compared)
     back = findings(swapped, alternatives(swapped, 1.0, DiscoveryWorkers()))

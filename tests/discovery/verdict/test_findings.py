@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from doe_kc.discovery.thresholds import PRESENT
+from doe_kc.discovery.thresholds import TRACE_SD
 from doe_kc.discovery.verdict.findings import (
     NO_EFFECT,
     _alike,
-    _mistaken,
+    _confusion_chances,
     _stands_out,
     _trace_would_do,
     best_alternative,
     log_probabilities,
-    unseen,
+    unseen_effect_sd,
 )
 from tests.discovery.cases import discovery, library
 
@@ -52,8 +52,8 @@ def test_an_effect_is_not_named_where_a_trace_of_another_would_do(
 def test_effects_that_predict_the_same_are_mistaken_for_each_other() -> None:
     rod = trial("tie_rod_compliance", [1.5], 100.0)
     near, far = (trial("hub_compliance", [0.5, 0.5], 99.0, apart) for apart in (1.0, 6.0))
-    assert _mistaken(place(rod, near))["hub_compliance"] == pytest.approx(0.3085, abs=1e-4)
-    assert _mistaken(place(rod, far))["hub_compliance"] < 0.002
+    assert _confusion_chances(place(rod, near))["hub_compliance"] == pytest.approx(0.3085, abs=1e-4)
+    assert _confusion_chances(place(rod, far))["hub_compliance"] < 0.002
 
 
 def test_a_free_play_without_a_gap_is_the_tie_rod_s_compliance_by_another_name() -> None:
@@ -61,7 +61,7 @@ def test_a_free_play_without_a_gap_is_the_tie_rod_s_compliance_by_another_name()
     for gap, counted in ((0.0, False), (0.005, False), (0.1, True)):
         play = trial("tie_rod_free_play", [gap, 2.0], 99.0)
         chances = {"tie_rod_free_play": 0.4}
-        assert ("tie_rod_free_play" in _mistaken(place(rod, play))) is counted
+        assert ("tie_rod_free_play" in _confusion_chances(place(rod, play))) is counted
         assert _alike(place(rod, play), chances) == (("tie_rod_free_play",) if counted else ())
 
 
@@ -116,17 +116,17 @@ def test_each_trace_moves_a_size_as_a_refit_to_first_order_says() -> None:
     (one,) = [s for s in found.steps[-1].screened if s.hypothesis.effect == "strut_bending"]
     last = replace(found.steps[-1], screened=(one,))
     alone = replace(found, steps=(*found.steps[:-1], last))
-    final = found.final
-    share = min(PRESENT, 4.0 / one.detectability)
+    final = found.with_law_discrepancy
+    share = min(TRACE_SD, 4.0 / one.detectability)
     weight = np.diag(final.model.prior_sd**-1.0)
     stacked = np.vstack([final.jacobian, weight])
     change = np.concatenate([share * one.change, np.zeros(final.z.size)])
     moved = np.linalg.lstsq(stacked, change, rcond=None)[0][final.model.dimension :]
-    assert unseen(alone) == pytest.approx(np.abs(moved), rel=1e-6)
-    assert np.all(unseen(found) >= unseen(alone) * (1.0 - 1e-12))
+    assert unseen_effect_sd(alone) == pytest.approx(np.abs(moved), rel=1e-6)
+    assert np.all(unseen_effect_sd(found) >= unseen_effect_sd(alone) * (1.0 - 1e-12))
 
 
 def test_with_nothing_else_in_the_library_nothing_is_added() -> None:
     found = discovery("named").search
     last = replace(found.steps[-1], screened=())
-    assert not unseen(replace(found, steps=(*found.steps[:-1], last))).any()
+    assert not unseen_effect_sd(replace(found, steps=(*found.steps[:-1], last))).any()

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from doe_kc.discovery.fit import fit, followed
+from doe_kc.discovery.fit import chord_fit, fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import LIMIT
+from doe_kc.discovery.thresholds import HELD_OUT_LIMIT
 from doe_kc.discovery.verdict.held_out import HeldOutScore, _prediction, _without, held_out
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import LOAD_CASES, discovery
@@ -19,12 +19,12 @@ from tests.discovery.cases import LOAD_CASES, discovery
 @pytest.mark.parametrize("car", ["named", "friction"])
 def test_a_right_model_predicts_what_it_has_not_seen(car: str) -> None:
     for held in discovery(car).held_out:
-        assert -LIMIT < held.law_granted.excess < LIMIT
+        assert -HELD_OUT_LIMIT < held.law_granted.excess < HELD_OUT_LIMIT
         assert held.with_effect.size > 500
 
 
 def test_a_model_without_the_effect_does_not() -> None:
-    assert max(h.tuned.excess for h in discovery("named").held_out) > 3.0 * LIMIT
+    assert max(h.tuned.excess for h in discovery("named").held_out) > 3.0 * HELD_OUT_LIMIT
 
 
 def test_the_excess_counts_records_and_the_noise_s_own_size() -> None:
@@ -36,22 +36,22 @@ def test_the_excess_counts_records_and_the_noise_s_own_size() -> None:
 @pytest.mark.parametrize("case", LOAD_CASES[-1:])
 def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
     search = discovery("named").search
-    alike = held_out(search.tuned, search.plain, search.plain, case)
+    alike = held_out(search.tuned, search.with_effects, search.with_effects, case)
     assert alike.law_granted is alike.with_effect
 
 
 def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     search, taken = discovery("named").search, []
-    tuning = EffectModel.tuning
+    tuning = EffectModel.tuning_columns
 
     def counted(self: EffectModel, *at: FloatArray) -> FloatArray:
         taken.append(self.left_out)
         return tuning(self, *at)
 
     monkeypatch.setattr(EffectModel, "tuning", counted)
-    near = _without(search.plain, "steer")
+    near = _without(search.with_effects, "steer")
     assert not taken and near.converged
-    anew = fit(near.model, search.plain.z)
+    anew = fit(near.model, search.with_effects.z)
     assert np.linalg.norm((near.z - anew.z) / np.sqrt(np.diag(anew.covariance))) < 0.1
     taken.clear()
     assert _without(search.tuned, "steer").converged
@@ -59,13 +59,13 @@ def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch
 
 
 def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
-    plain = discovery("named").search.plain
+    plain = discovery("named").search.with_effects
     false = replace(plain, jacobian=-plain.jacobian, z=plain.z)
-    assert not followed(false, replace(plain.model, left_out="steer")).converged
+    assert not chord_fit(false, replace(plain.model, left_out="steer")).converged
 
 
 def test_a_prediction_has_the_density_of_its_covariance() -> None:
-    found = _without(discovery("named").search.plain, "lateral")
+    found = _without(discovery("named").search.with_effects, "lateral")
     hidden = np.flatnonzero(~found.model.used)
     residual, rows = found.residual[hidden], found.jacobian[hidden]
     covariance = np.eye(hidden.size) + rows @ found.covariance @ rows.T
