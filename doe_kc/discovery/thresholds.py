@@ -74,7 +74,7 @@ central ones."""
 CALIBRATION_STEP = 0.1
 """standard deviations, step of the calibrations of inputs for their derivatives. They are linear far beyond
 it."""
-BOUND_SHARE = 0.05
+SHARE_AT_BOUNDS = 0.05
 """-, share of the parameters at a bound from which wider ranges are tried. A single one is a tolerance, not
 a series."""
 BOUND_ROUNDING = 1e-09

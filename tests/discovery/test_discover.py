@@ -125,7 +125,7 @@ def test_white_noise_assumed_where_it_is_not_does_not_pass_for_agreement() -> No
     }
     likelihood = record_likelihood(nominal(), replace(measured, noise=noise))
     found = discover(EffectModel(nominal(), space(), likelihood), library())
-    assert found.tuned.mean_square > 1.5
+    assert found.tuned_map.mean_square > 1.5
     assert not found.tuned_map.agrees
 
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.search import EffectSearch, search
-from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, BOUND_SHARE
+from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, SHARE_AT_BOUNDS
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
@@ -41,7 +41,7 @@ def search_within_bounds(
 
 def bound_evidence(fit: Fit, workers: DiscoveryWorkers) -> float:
     """By how much wider the ranges are with the largest evidence, 1 unless it is clear."""
-    few = np.mean(at_bounds(fit)) < BOUND_SHARE
+    few = np.mean(at_bounds(fit)) < SHARE_AT_BOUNDS
     if few or not fit.residual_map.agrees:
         return 1.0
     best, most = 1.0, fit.evidence + BOUND_EVIDENCE

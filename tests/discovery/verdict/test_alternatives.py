@@ -65,7 +65,7 @@ def test_the_order_of_two_effects_does_not_matter(
         with_law_discrepancy=last_member(found.with_law_discrepancy, first),
         with_effects=last_member(found.with_effects, first),
     )
-    assert swapped.final.model.members == (second, first)
+    assert swapped.with_law_discrepancy.model.members == (second, first)
     there = findings(found, compared)
     back = findings(swapped, alternatives(swapped, 1.0, DiscoveryWorkers()))
     for one, other in zip(there, reversed(back), strict=True):

@@ -48,7 +48,7 @@ def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch
         taken.append(self.left_out)
         return tuning(self, *at)
 
-    monkeypatch.setattr(EffectModel, "tuning", counted)
+    monkeypatch.setattr(EffectModel, "tuning_columns", counted)
     near = _without(search.with_effects, "steer")
     assert not taken and near.converged
     anew = fit(near.model, search.with_effects.z)
