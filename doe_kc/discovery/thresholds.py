@@ -24,13 +24,14 @@ of each: a choice, small beside the tenth that is worth a name."""
 SIDE_POSITION = 0.25
 """mm, standard deviation of right minus left of a hardpoint. Tolerance of drilled and welded parts."""
 SIDE_CLEARANCE = 1.0
-"""mm, the same of a bump stop's clearance. Rubber and spring seats of one batch."""
+"""mm, standard deviation of right minus left of a bump stop's clearance. Rubber and spring seats of one
+batch."""
 SIDE_ANGLE = 0.07
-"""deg, the same of a static angle. Setting on an alignment bench."""
+"""deg, standard deviation of right minus left of a static angle. Setting on an alignment bench."""
 SIDE_BUSHING = 0.03
-"""-, the same of a bushing's stiffness, relative. Rubber of one batch."""
+"""-, standard deviation of right minus left of a bushing's stiffness, relative. Rubber of one batch."""
 SIDE_RATE = 0.02
-"""-, the same of a rate, relative. Springs are paired by rate."""
+"""-, standard deviation of right minus left of a rate, relative. Springs are paired by rate."""
 
 # Fit
 
@@ -41,7 +42,8 @@ LAST_STEP_DECREASE = 1.0
 """ln likelihood times 2, predicted decrease below which a step is the last and keeps the derivatives before
 it. One standard deviation; the quadratic convergence of Gauss-Newton leaves a hundredth of it."""
 FRESH_DECREASE = 3.0
-"""ln likelihood times 2, decrease since derivatives were taken up to which they may end a fit. A choice."""
+"""ln likelihood times 2, decrease since derivatives were taken up to which they may end a fit. A choice: less
+than two standard deviations, over which derivatives hardly change."""
 REUSE_DECREASE = 3000.0
 """ln likelihood times 2, decrease below which old derivatives still lead on. A choice that saves
 solutions."""
@@ -58,7 +60,7 @@ FIT_POOR_RATIO = 0.25
 """-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint
 2000)."""
 FIT_GOOD_RATIO = 0.75
-"""-, the same, above which it grows."""
+"""-, decrease over its prediction, above which the trust radius grows. Usual (Conn, Gould, Toint 2000)."""
 LEAST_STEP = 0.0001
 """prior standard deviations, trust radius below which a fit is given up. A choice, beyond any use."""
 LARGEST_RADIUS = 2.0
@@ -67,7 +69,8 @@ AMPLITUDE_LIMIT = 2.0
 """times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is
 too large."""
 NUISANCE_LIMIT = 6.0
-"""standard deviations, the same for the nuisances of the rig. A fault so large is an effect of its own."""
+"""standard deviations, nuisance that a fit does not go beyond. A fault of the rig so large is an effect of
+its own."""
 AMPLITUDE_STEP = 0.001
 """typical sizes, step of amplitudes for their derivatives. Near the cube root of rounding, the best of
 central ones."""
@@ -109,11 +112,13 @@ PROBE = 0.3
 """typical sizes, first size at which an effect is solved for. Small enough to be nearly linear, large
 enough to open a clearance."""
 PROBE_FACTOR = 0.1
-"""-, factor of the first size where the effect is not linear below it. A choice."""
+"""-, factor of the first size where the effect is not linear below it. A choice: a tenth brings it to 0.03
+typical sizes, where effects that level off are still linear."""
 SCREEN_STEPS = 4
 """-, steps of a screening at most. A ranking needs no more: the leaders are refitted."""
 SCREEN_STEP_SHARES = (1.0, 0.5, 0.2, 0.05)
-"""-, shares of a step, tried one after the other until one gains. A choice."""
+"""-, shares of a step, tried one after the other until one gains. A choice: four solutions at most, down to a
+twentieth."""
 HOPELESS = 1.0
 """ln likelihood, that a step must promise over the model without the effect. Less is what noise gives any
 column."""
@@ -136,7 +141,7 @@ REFITS_MOST = 5
 RIVAL_CORRELATION = 0.3
 """-, |correlation| of what two effects explain, from which they are rivals. Below, both would be needed."""
 REFIT_SHARE = 0.2
-"""-, share of the best screened gain below which a hypothesis is not refitted. A choice."""
+"""-, share of the best screened gain below which a hypothesis is not refitted. A choice that saves refits."""
 PLACES_REFITTED = 2
 """-, places of the same effect that are refitted at most. So that one effect does not fill the list."""
 ABSORBED_SHARE = 0.95
@@ -145,7 +150,8 @@ are missed by a screening of first order in the parameters."""
 TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01
-"""-, chance that noise alone brings in any effect at a step, shared by the whole library (Bonferroni)."""
+"""-, chance that noise alone brings in any effect at a step. The usual level of one in a hundred, shared by
+the whole library (Bonferroni)."""
 EFFECTS_MOST = 6
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six."""
 MOST_STEPS = 12
@@ -172,7 +178,8 @@ NAME_LEVEL = 6.0
 """standard deviations, below which an effect is not named by them alone. One in a billion: the library is
 large and the noise not exactly normal."""
 NAME_ALWAYS_LEVEL = 10.0
-"""standard deviations, from which an effect is named beside any other. A choice."""
+"""standard deviations, from which an effect is named beside any other. A choice: far above the six of
+`NAME_LEVEL`."""
 GAP_CLOSURE = 0.9
 """-, share of the gap that a name must close where the gap is clear of noise. A choice: a tenth is what
 laws leave."""
@@ -191,7 +198,8 @@ UNLISTED = 0.02
 """-, odds before the records that an effect outside the library is at work. An assumption, stated with the
 result."""
 RELEVANT = 0.1
-"""typical sizes, below which an effect is a trace: seen, but not worth a name. A choice."""
+"""typical sizes, below which an effect is a trace: seen, but not worth a name. A choice: every car has traces
+of most effects."""
 CONFIDENT = 2.0
 """standard deviations, by which a size must be beyond a limit to count as beyond it. The usual level."""
 BESIDE_SHARE = 0.01
@@ -218,9 +226,10 @@ POWER = 0.84
 """standard deviations above the critical value, at which an effect is found in 80 % of cars. Normal
 quantile."""
 ONE_SIDED = 1.645
-"""standard deviations of a one-sided 95 % limit. Normal quantile."""
+"""standard deviations, one-sided 95 % limit of a size. Normal quantile."""
 ALIKE_CORRELATION = 0.8
-"""-, |correlation| after re-tuning, from which two effects are listed as alike. A choice."""
+"""-, |correlation| after re-tuning, from which two effects are listed as alike. A choice: two thirds of the
+squares are shared."""
 UNSURE_SHARE = 0.005
 """-, share of a change's square below which what re-tuning leaves of it is not believed. A choice:
 parameters that follow so far are no longer linear."""
@@ -255,8 +264,8 @@ PARTS_MOST = 4
 BENCH_ACCURACY = 0.02
 """-, standard deviation of a measured stiffness or rate. Test benches of bushings and springs."""
 BENCH_RADIUS = 0.005
-"""-, the same of a bar's radius, whose fourth power is its rate. Half a tenth of a millimetre: a
-calliper."""
+"""-, standard deviation of a measured bar's radius, whose fourth power is its rate. Half a tenth of a
+millimetre: a calliper."""
 BENCH_POSITION = 0.1
 """mm, standard deviation of a point. Coordinate measuring machine with the parts' own seats."""
 BENCH_ANGLE = 0.02
