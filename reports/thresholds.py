@@ -1,10 +1,11 @@
-"""Prints the table of the numbers by which discovery decides, as docs/thresholds.md: python reports/thresholds.py"""
+"""Prints the numbers by which discovery decides as docs/thresholds.md: `python reports/thresholds.py`."""
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from report_text import table
@@ -14,9 +15,9 @@ from doe_kc.discovery import thresholds
 PAGE = Path(__file__).parents[1] / "docs" / "thresholds.md"
 HEAD = """# The numbers by which discovery decides
 
-Printed from `doe_kc/discovery/thresholds.py` by `python reports/thresholds.py`; the terms are those of the
-[glossary](glossary.md), the steps those of [discovery](discovery.md). "A choice" says that neither statistics nor the
-accuracy of rigs and benches fixes the number; what speaks for it follows.
+Printed from `doe_kc/discovery/thresholds.py` by `python reports/thresholds.py`; the terms are those of
+the [glossary](glossary.md), the steps those of [discovery](discovery.md). "A choice" says that neither
+statistics nor the accuracy of rigs and benches fixes the number; what speaks for it follows.
 """
 
 
@@ -39,7 +40,7 @@ def thresholds_of(source: str) -> Iterator[Threshold]:
     """
     lines, section = source.splitlines(), ""
     body = ast.parse(source).body
-    for node, words in zip(body, body[1:], strict=False):
+    for node, words in pairwise(body):
         if not isinstance(node, ast.Assign):
             continue
         above = [line[2:] for line in lines[: node.lineno - 1] if line.startswith("# ")]

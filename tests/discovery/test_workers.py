@@ -10,10 +10,11 @@ import pytest
 from doe_kc.campaign.executors import processes
 from doe_kc.discovery import result_cache
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.result_cache import ResultCache
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.result_cache import Arrays, ResultCache
 from doe_kc.discovery.screening.screen import effort
 from doe_kc.discovery.search.search import tune
-from doe_kc.discovery.workers import DiscoveryWorkers, _packed_fit, _unpacked_fit
+from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import library, model
 
 
@@ -22,7 +23,7 @@ def tuned() -> Fit:
     return tune(model("named"))
 
 
-def start(tuned: Fit) -> tuple[object, np.ndarray]:
+def start(tuned: Fit) -> tuple[EffectModel, np.ndarray]:
     (hub,) = library("hub_compliance")
     return tuned.model.extended(hub), np.concatenate([tuned.z, [0.5, 0.5]])
 
@@ -51,13 +52,19 @@ def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
 
 
 def test_what_the_model_says_is_not_stored_and_comes_back_in_its_place(tuned: Fit) -> None:
-    packed = _packed_fit(tuned)
-    sides = tuned.model.sides
-    assert sides is not None
-    assert packed["jacobian"].shape[1] == tuned.z.size - sides.shape[1]
-    again = _unpacked_fit(tuned.model, packed)
-    assert again is not None
-    assert np.array_equal(again.jacobian, tuned.jacobian)
+    widths: list[int] = []
+
+    class Widths(ResultCache):
+        def put(self, key: str, arrays: Arrays) -> None:
+            widths.append(arrays["jacobian"].shape[1])
+            super().put(key, arrays)
+
+    workers = DiscoveryWorkers(cache=Widths(None))
+    model, z = start(tuned)
+    computed, stored = (workers.fits([(model, z)], "", tuned.jacobian)[0] for _ in range(2))
+    assert computed is not None and stored is not None and model.sides is not None
+    assert widths == [z.size - model.sides.shape[1]]
+    assert np.array_equal(stored.jacobian, computed.jacobian)
 
 
 def test_results_of_another_format_are_not_taken_up(

@@ -72,7 +72,7 @@ def hypothesis_statuses(
         limits = _limits(s, by_bounds, critical)
         limits = limits if i in known else np.maximum(limits, _upper(s))
         amounts = limits[~np.isnan(limits)]
-        seen = _trusted(s.detectability, float(np.linalg.norm(s.change)), by_bounds)
+        seen = trusted_detectability(s.detectability, float(np.linalg.norm(s.change)), by_bounds)
         detectable = float(amounts.min()) if amounts.size else _limit(seen, critical)
         status: Status = known.get(i) or _status(s, detectable, resolved=resolved)
         alike = tuple(
@@ -97,21 +97,23 @@ def exclusion_limit(size: Size, amplitude: float) -> float | None:
 
 
 def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray:
-    """(m,) see `HypothesisStatus`. by_bounds: see `_trusted`."""
+    """(m,) see `HypothesisStatus`. by_bounds: see `trusted_detectability`."""
     sizes = screened.hypothesis.sizes
     if sum(not s.shape for s in sizes) == 1:
-        seen = _trusted(screened.detectability, float(np.linalg.norm(screened.change)), by_bounds)
+        seen = trusted_detectability(
+            screened.detectability, float(np.linalg.norm(screened.change)), by_bounds
+        )
         return np.array([np.nan if s.shape else _limit(seen, critical) for s in sizes])
     lengths = np.linalg.norm(screened.columns, axis=0)
     return np.array(
         [
-            _limit(_trusted(v, w, 0.0), critical)
+            _limit(trusted_detectability(v, w, 0.0), critical)
             for v, w in zip(screened.size_detectability, lengths, strict=True)
         ]
     )
 
 
-def _trusted(visible: float, before: float, by_bounds: float) -> float:
+def trusted_detectability(visible: float, before: float, by_bounds: float) -> float:
     """Standard deviations that are believed of those that re-tuning leaves of an effect.
 
     before: before re-tuning. by_bounds: the part that is left because parameters would have to move too far,

@@ -13,7 +13,7 @@ from scipy.stats import norm
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen
 from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR
-from doe_kc.discovery.verdict.exclusion import _trusted, hypothesis_statuses, wrong_name_chance
+from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
 from tests.discovery.cases import library, model
 
 
@@ -144,6 +144,6 @@ def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() 
 
 
 def test_what_is_left_of_a_large_change_is_trusted_where_bounds_leave_it() -> None:
-    assert _trusted(visible=8.0, before=100.0, by_bounds=0.0) == 8.0
-    assert _trusted(visible=6.0, before=100.0, by_bounds=1.0) == 1.0
-    assert _trusted(visible=16.0, before=300.0, by_bounds=15.9) == 15.9
+    assert trusted_detectability(visible=8.0, before=100.0, by_bounds=0.0) == 8.0
+    assert trusted_detectability(visible=6.0, before=100.0, by_bounds=1.0) == 1.0
+    assert trusted_detectability(visible=16.0, before=300.0, by_bounds=15.9) == 15.9

@@ -65,7 +65,7 @@ class Asked(DiscoveryWorkers):
         super().__init__()
         self.loops: list[int] = []
 
-    def fitted(
+    def fits(
         self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
     ) -> list[Fit | None]:
         self.loops += [model.axle.conditioning for model, _ in starts]
