@@ -36,19 +36,22 @@ AXIS_WORDS = {
 
 @dataclass(frozen=True)
 class Place:
-    """A law at an interface. side: both, L or R. dofs: those that count, the largest first.
-
-    score: standard deviations by which it improves the fit. explained: share of what re-tuning leaves that it
-    explains. probability: among all places of the scan.
-    """
+    """A law at an interface."""
 
     interface: str
+    """Names of its two bodies as `one|other`, or of a bushing."""
     law: str
+    """compliance, offset, clearance, stiffness, progression or friction."""
     side: str
+    """both, L or R."""
     dofs: tuple[str, ...]
+    """Degrees of freedom that count, the largest first."""
     score: float
+    """Standard deviations by which it improves the fit."""
     explained: float
+    """Share of what re-tuning leaves that it explains, 0 to 1."""
     probability: float
+    """Among all places of the scan."""
 
     @property
     def words(self) -> str:
@@ -62,15 +65,18 @@ class Place:
 
 @dataclass(frozen=True)
 class Scan:
-    """places: best first. interface, law: given where their summed probability is above 0.9, else None."""
+    """All places of the generic scan."""
 
     places: tuple[Place, ...]
+    """Best first."""
     interface: str | None
+    """The interface whose summed probability is above PLACE_PROBABILITY, None without one."""
     law: str | None
+    """The law whose summed probability is above PLACE_PROBABILITY, None without one."""
 
 
 def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
-    """At a model without the effect. temper: what ln evidence is divided by; NotConverged as `solve`."""
+    """At a model without the effect. temper: ln evidence is divided by it. NotConverged as `solve`."""
     axle = tuned.model.axle_at(tuned.z)
     influences = interface_influences(axle, tuned.model.solutions(axle))
     residual = tuned.remainder

@@ -33,26 +33,30 @@ from doe_kc.solver.result import NotConverged
 
 @dataclass(frozen=True)
 class Screened:
-    """One hypothesis added to a fitted model.
-
-    amplitudes: (m,) most probable sizes. sd: (m,) of them, after re-tuning and the prior. gain: ln of the
-    evidence over the model without it. score: standard deviations by which the fit improves. change: (M,)
-    whitened change of the data at typical size. detectability: standard deviations of that change after
-    re-tuning; absorbed: share of its square that re-tuning hides. visible: (m,) the same of each size alone,
-    whatever the others are; nan for a shape.
-    """
+    """One hypothesis added to a fitted model, the parameters following to first order."""
 
     hypothesis: Hypothesis
+    """The effect in its place."""
     amplitudes: FloatArray
+    """(m,) most probable amplitudes, in typical sizes."""
     sd: FloatArray
+    """(m,) standard deviations of them, after re-tuning and the prior."""
     gain: float
+    """ln of the evidence over the model without it; -inf where it has no equilibrium."""
     score: float
+    """Standard deviations by which the fit improves."""
     columns: FloatArray
+    """(M, m) derivative of the residual to the amplitudes, at `amplitudes`."""
     change: FloatArray
+    """(M,) whitened change of the data at typical size."""
     detectability: float
+    """Standard deviations of that change after re-tuning."""
     absorbed: float
+    """Share of its square that re-tuning hides, 0 to 1."""
     size_detectability: FloatArray
+    """(m,) detectability of each size alone, whatever the others are; nan for a shape."""
     failed: str = ""
+    """Why the axle with it has no equilibrium; empty where it has."""
 
     def rewhitened(self, before: Likelihood, after: Likelihood) -> Screened:
         """Its changes in units of other errors of the same records; what was concluded stays."""
@@ -115,19 +119,22 @@ def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
 
 @dataclass(frozen=True)
 class _AmplitudeSolution:
-    """amplitudes (m,), columns (M, m) and change (M,) there; reduced: (M + d,) what re-tuning leaves of the
-    residual, projected: (M + d, m) of the columns.
-
-    solved: False where amplitudes and cost are those that a first step promises, which is nothing.
-    """
+    """A point of the search for the amplitudes."""
 
     amplitudes: FloatArray
+    """(m,)."""
     columns: FloatArray
+    """(M, m) derivative of the residual to them."""
     projected: FloatArray
+    """(M + d, m) what re-tuning leaves of the columns."""
     change: FloatArray
+    """(M,) of the residual, from the model without the effect."""
     reduced: FloatArray
+    """(M + d,) what re-tuning leaves of the residual."""
     cost: float
+    """Sum of squares of that and of the amplitudes."""
     solved: bool = True
+    """False where amplitudes and cost are those that a first step promises, which is nothing."""
 
 
 def amplitude_solution(

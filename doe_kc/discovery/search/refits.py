@@ -30,6 +30,22 @@ SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetr
 """Effects that a model may have in several places at once."""
 
 
+Sized = Iterable[tuple[Size, float, float]]
+"""Amplitude of a size in typical ones, and its standard deviation."""
+
+
+@dataclass(frozen=True)
+class HypothesisFit:
+    """A hypothesis refitted jointly with parameters, nuisances and the other members."""
+
+    hypothesis: Hypothesis
+    """The effect in its place."""
+    fit: Fit
+    """The model with it as the last member."""
+    gain: float
+    """ln of the evidence over the model without it, times the effect's odds."""
+
+
 def leaders(screened: Sequence[Screened], project: Projection, least: float) -> list[Screened]:
     """The best and its rivals, which would explain the same; a decoy of another kind is among them.
 
@@ -83,10 +99,6 @@ def _bushing(hypothesis: Hypothesis) -> str:
     return (hypothesis.location or "").partition("_")[0]
 
 
-Sized = Iterable[tuple[Size, float, float]]
-"""Amplitude of a size in typical ones, and its standard deviation."""
-
-
 def believable(sizes: Sized) -> bool:
     """Whether none is surely beyond what such a part has."""
     return not any(abs(a) - CONFIDENT * sd > size.most for size, a, sd in sizes)
@@ -96,15 +108,6 @@ def more_than_trace(sizes: Sized) -> bool:
     """Whether one is surely more than a trace; an effect without a size does when it is there."""
     counted = list(sizes)
     return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)
-
-
-@dataclass(frozen=True)
-class HypothesisFit:
-    """A hypothesis refitted jointly. gain: ln of the evidence over the model without it, times its odds."""
-
-    hypothesis: Hypothesis
-    fit: Fit
-    gain: float
 
 
 def joint_refits(

@@ -1,4 +1,4 @@
-"""Whether the final set explains the records at all, apart from which effects are in it."""
+"""Whether the last set of effects explains the records at all, apart from which effects are in it."""
 
 from __future__ import annotations
 
@@ -15,14 +15,16 @@ from doe_kc.discovery.verdict.held_out import HeldOut
 
 @dataclass(frozen=True)
 class Adequacy:
-    """map_chance: how often noise alone leaves as large a disagreement as the final set does, at least
-    1 / DRAWS. held_out_chance: how often it gives the worst load case held out as large an RMS, of as many;
-    None where none was held out. worst: that load case.
-    """
+    """How often noise alone leaves as much as the last set of effects does."""
 
     map_chance: float
+    """Share of cars in which noise alone leaves as large a disagreement on the map, at least
+    1 / NOISE_DRAWS."""
     held_out_chance: float | None
+    """Share of cars in which it gives the worst of as many load cases held out as large an RMS; None where
+    none was held out."""
     worst: HeldOut | None
+    """The load case with the largest excess of its RMS."""
 
     @property
     def holds(self) -> bool:
@@ -46,7 +48,7 @@ class Adequacy:
 
 
 def adequacy(remaining: Map, held_out: Sequence[HeldOut]) -> Adequacy:
-    """remaining: map of the final set. held_out: its load cases, the laws of its effects granted."""
+    """remaining: residual map of the last set. held_out: every load case predicted from the others."""
     chance = max(remaining.chance, 1.0 / NOISE_DRAWS)
     worst = max(held_out, key=lambda h: h.law_granted.excess, default=None)
     if worst is None:

@@ -1,4 +1,4 @@
-"""Which parts, measured on a workers, would show an effect that re-tuning absorbs.
+"""Which parts, measured on a test bench, would show an effect that re-tuning absorbs.
 
 With parameter i known to a standard deviation of e_i instead of p_i, the information on the effect's sizes
 grows by m m' / (1 / (e_i^-2 - p_i^-2) + H^-1_ii), m the i-th row of H^-1 J' S: how the parameter follows the
@@ -31,12 +31,13 @@ from doe_kc.variables.variable import Variable
 
 @dataclass(frozen=True)
 class ComponentTest:
-    """parts: paths of the parameters to measure, those that bring most first. separation: standard
-    deviations that the effect would then make at its typical size; of several sizes, the one that shows
-    least."""
+    """Parts to measure on a test bench, so that an effect shows that re-tuning absorbs."""
 
     parts: tuple[str, ...]
+    """Paths of the parameters to measure, those that bring most first."""
     separation: float
+    """Standard deviations that the effect would then make at its typical size; of several sizes, the one that
+    shows least."""
 
 
 def accuracy(variable: Variable, value: float) -> float:
@@ -50,7 +51,7 @@ def accuracy(variable: Variable, value: float) -> float:
 
 
 def component_tests(fit: Fit, screened: Sequence[Screened], least: float) -> list[ComponentTest | None]:
-    """For each hypothesis the parts to measure; None where MOST parts do not show it.
+    """For each hypothesis the parts to measure; None where PARTS_MOST parts do not show it.
 
     least: standard deviations from which it shows.
     """
@@ -60,13 +61,16 @@ def component_tests(fit: Fit, screened: Sequence[Screened], least: float) -> lis
 
 @dataclass(frozen=True)
 class _Tuning:
-    """What re-tuning may do, n = d. covariance: (n, n) of its parameters and nuisances after the fit.
-    precision: (p,) that a bench adds to each parameter. jacobian: (M, n)."""
+    """What re-tuning may do."""
 
     paths: tuple[str, ...]
+    """(p,) paths of the parameters."""
     covariance: FloatArray
+    """(d, d) of parameters and nuisances after the fit."""
     precision: FloatArray
+    """(p,) that a bench adds to each parameter."""
     jacobian: FloatArray
+    """(M, d)."""
 
     @staticmethod
     def of(fit: Fit) -> _Tuning:

@@ -1,4 +1,4 @@
-"""Where every hypothesis of the library stands: found, excluded above a size, not testable or unresolved."""
+"""The status of every hypothesis of the library: found, excluded above a size, not testable or unresolved."""
 
 from __future__ import annotations
 
@@ -23,26 +23,26 @@ Status = Literal["found", "trace", "excluded", "unresolved", "not testable", "no
 
 @dataclass(frozen=True)
 class HypothesisStatus:
-    """One hypothesis.
-
-    status: excluded from its limits on where the model holds; unresolved where it does not.
-    limits: (m,) of each of its sizes the smallest amplitude, as a multiple of the typical one, that would be
-    found in 80 % of cars whatever the others are and that is above the 95 % limit of what the records say of
-    it, if the model is right but for this size; inf when re-tuning absorbs nearly all, nan for a shape.
-    detectable: the smallest of them. absorbed: share of the effect that re-tuning hides. hidden_by: tunable
-    parameters that do so, with their move in standard deviations of the prior. alike: hypotheses whose
-    remaining change is the same, with the correlation. component_test: of one that hardly shows, parts to
-    measure that would show it.
-    """
+    """What the records say of one hypothesis."""
 
     hypothesis: Hypothesis
+    """The effect in its place."""
     status: Status
+    """excluded from its limits on where the model holds; unresolved where it does not."""
     detectable: float
+    """The smallest of the limits."""
     absorbed: float
+    """Share of the effect's change, squared, that re-tuning hides, 0 to 1."""
     hidden_by: tuple[tuple[str, float], ...]
+    """Tunable parameters that do so, with their move in standard deviations of the prior."""
     alike: tuple[tuple[str, float], ...]
+    """Names of hypotheses whose remaining change is the same, with the correlation, -1 to 1."""
     limits: tuple[float, ...] = ()
+    """(m,) of each of its sizes the smallest amplitude, as a multiple of the typical one, that would be found
+    in 80 % of cars whatever the others are and that is above the 95 % limit of what the records say of it, if
+    the model is right but for this size; inf when re-tuning absorbs nearly all, nan for a shape."""
     component_test: ComponentTest | None = None
+    """Of one that hardly shows: parts to measure that would show it."""
 
 
 def hypothesis_statuses(
@@ -54,7 +54,7 @@ def hypothesis_statuses(
     *,
     resolved: bool,
 ) -> tuple[HypothesisStatus, ...]:
-    """Of members (as screened before they were added) and of all others screened at the final model.
+    """Of members (as screened before they were added) and of all others screened at the last model.
 
     critical: |z| that a hypothesis must reach among so many. resolved: whether the model holds, so that what
     it does not see can be excluded.

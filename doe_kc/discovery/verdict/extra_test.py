@@ -25,11 +25,14 @@ from doe_kc.solver.result import NotConverged
 
 @dataclass(frozen=True)
 class ExtraTest:
-    """words: the load case. separation: standard deviations between the two explanations. case: to be run."""
+    """A further load case that would tell two explanations apart."""
 
     words: str
+    """The load case in words."""
     separation: float
+    """Standard deviations between the two explanations, the other one re-tuned."""
     case: LoadCase
+    """The load case to run."""
 
 
 def extra_tests(one: Fit, other: Fit) -> tuple[ExtraTest, ...]:

@@ -14,13 +14,15 @@ from doe_kc.ground.typing import FloatArray
 
 @dataclass(frozen=True)
 class HeldOutScore:
-    """rms: of the held-out records' deviations in standard deviations of the prediction, those of its
-    parameters among them; 1 is as good as predicted. score: ln of the predictive density, relative. size:
-    number of records."""
+    """How well a load case held out is predicted."""
 
     rms: float
+    """RMS of the records' deviations in standard deviations of the prediction, that of its parameters among
+    them; 1 is as good as predicted."""
     score: float
+    """ln of the predictive density, relative to constants that all models share."""
     size: int
+    """Number of records."""
 
     @property
     def excess(self) -> float:
@@ -30,15 +32,16 @@ class HeldOutScore:
 
 @dataclass(frozen=True)
 class HeldOut:
-    """One load case, predicted by the re-tuned model without the effects and by the one with them.
-
-    law_granted: by that, what the laws of its effects leave open among the records' errors.
-    """
+    """One load case, predicted by models that were fitted to all the others."""
 
     load_case: str
+    """Its id."""
     tuned: HeldOutScore
+    """By the re-tuned model without an effect."""
     with_effect: HeldOutScore
+    """By the re-tuned model with the effects."""
     law_granted: HeldOutScore
+    """By that, the discrepancy of its effects' laws among the errors of the records."""
 
     @property
     def gain(self) -> float:

@@ -179,7 +179,7 @@ def _component_words(status: HypothesisStatus) -> str:
     if test is None:
         return ""
     return (
-        f"; or measure {', '.join(test.parts)} on a workers, after which its typical size stands out by "
+        f"; or measure {', '.join(test.parts)} on a bench, after which its typical size stands out by "
         f"{test.separation:.0f} standard deviations"
     )
 

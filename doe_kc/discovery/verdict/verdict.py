@@ -22,10 +22,12 @@ from doe_kc.discovery.verdict.held_out import HeldOut
 
 @dataclass(frozen=True)
 class Verdict:
-    """kind, and what speaks against a name, in sentences."""
+    """The verdict and its objections."""
 
     kind: VerdictKind
+    """named, class, none or unexplained."""
     objections: tuple[str, ...] = ()
+    """What speaks against a name, in clauses; empty unless unexplained."""
 
 
 def verdict(
