@@ -12,14 +12,13 @@ INPUT_GAIN = 0.003
 """-, standard deviation of the scale of a rig's input. Accuracy class of its load cells, travel and angle
 sensors."""
 NOISE_SIZE_DOUBT = 0.2
-"""-, share added to every variance of a map. Few repeats leave the noise's own size open: three of them by
-a fifth."""
+"""-, share added to every variance of a map. Few repeats leave the noise's own size open: three of them by a
+fifth."""
 NOISE_SD_SHARE = 0.02
-"""-, standard deviation of the noise's own size in a prediction. Taken from three runs of every load
-case."""
+"""-, standard deviation of the noise's own size in a prediction. Taken from three runs of every load case."""
 TRACE_SD = 0.03
-"""typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some
-of each: a choice, small beside the tenth that is worth a name."""
+"""typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some of
+each: a choice, small beside the tenth that is worth a name."""
 
 SIDE_POSITION = 0.25
 """mm, standard deviation of right minus left of a hardpoint. Tolerance of drilled and welded parts."""
@@ -54,11 +53,10 @@ REFIT_STEPS = 8
 CHORD_STEPS = 6
 """-, steps along known derivatives at most. More would not end there."""
 CHORD_DECREASE = 10.0
-"""ln likelihood times 2, decrease up to which a load case held out is followed on known derivatives. At 30
-an RMS was off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
+"""ln likelihood times 2, decrease up to which a load case held out is followed on known derivatives. At 30 an
+RMS was off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
 FIT_POOR_RATIO = 0.25
-"""-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint
-2000)."""
+"""-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint 2000)."""
 FIT_GOOD_RATIO = 0.75
 """-, decrease over its prediction, above which the trust radius grows. Usual (Conn, Gould, Toint 2000)."""
 LEAST_STEP = 0.0001
@@ -66,30 +64,28 @@ LEAST_STEP = 0.0001
 LARGEST_RADIUS = 2.0
 """prior standard deviations, trust radius at most. Beyond, no axle is linear: a choice."""
 AMPLITUDE_LIMIT = 2.0
-"""times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is
-too large."""
+"""times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is too
+large."""
 NUISANCE_LIMIT = 6.0
 """standard deviations, nuisance that a fit does not go beyond. A fault of the rig so large is an effect of
 its own."""
 AMPLITUDE_STEP = 0.001
-"""typical sizes, step of amplitudes for their derivatives. Near the cube root of rounding, the best of
-central ones."""
+"""typical sizes, step of amplitudes for their derivatives, forward differences. Measured on five effects:
+columns were off by 0.07 % at most, by 0.7 % at 0.01 and by 0.2 % at 0.00001."""
 CALIBRATION_STEP = 0.1
 """standard deviations, step of the calibrations of inputs for their derivatives. They are linear far beyond
 it."""
 SHARE_AT_BOUNDS = 0.05
-"""-, share of the parameters at a bound from which wider ranges are tried. A single one is a tolerance, not
-a series."""
+"""-, share of the parameters at a bound from which wider ranges are tried. A single one is a tolerance, not a
+series."""
 BOUND_ROUNDING = 1e-09
 """-, share of a range within which a value is at its bound. Rounding."""
 BOUND_FACTORS = (1.5, 2.0)
-"""-, by how much wider ranges are tried. A choice: a series off nominal by more than that is another
-axle."""
+"""-, by how much wider ranges are tried. A choice: a series off nominal by more than that is another axle."""
 BOUND_EVIDENCE = 7.0
 """ln evidence, from which wider ranges are taken. A thousand to one: all parameters change at once."""
 LOOP_EVIDENCE = 2.3
-"""ln evidence, from which the loops before the record are changed. Ten to one: a loop more takes its
-time."""
+"""ln evidence, from which the loops before the record are changed. Ten to one: a loop more takes its time."""
 
 # Map of disagreement
 
@@ -109,8 +105,8 @@ DISAGREEMENTS_LISTED = 8
 # Screening
 
 PROBE = 0.3
-"""typical sizes, first size at which an effect is solved for. Small enough to be nearly linear, large
-enough to open a clearance."""
+"""typical sizes, first size at which an effect is solved for. Small enough to be nearly linear, large enough
+to open a clearance."""
 PROBE_FACTOR = 0.1
 """-, factor of the first size where the effect is not linear below it. A choice: a tenth brings it to 0.03
 typical sizes, where effects that level off are still linear."""
@@ -145,8 +141,8 @@ REFIT_SHARE = 0.2
 PLACES_REFITTED = 2
 """-, places of the same effect that are refitted at most. So that one effect does not fill the list."""
 ABSORBED_SHARE = 0.95
-"""-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes
-are missed by a screening of first order in the parameters."""
+"""-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes are
+missed by a screening of first order in the parameters."""
 TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01
@@ -172,8 +168,8 @@ middle."""
 # Verdict
 
 NAME_PROBABILITY = 0.9
-"""-, probability against its rivals, from which an effect is named by itself. A choice: nine names of ten
-are right where it is just met."""
+"""-, probability against its rivals, from which an effect is named by itself. A choice: nine names of ten are
+right where it is just met."""
 NAME_LEVEL = 6.0
 """standard deviations, below which an effect is not named by them alone. One in a billion: the library is
 large and the noise not exactly normal."""
@@ -181,13 +177,13 @@ NAME_ALWAYS_LEVEL = 10.0
 """standard deviations, from which an effect is named beside any other. A choice: far above the six of
 `NAME_LEVEL`."""
 GAP_CLOSURE = 0.9
-"""-, share of the gap that a name must close where the gap is clear of noise. A choice: a tenth is what
-laws leave."""
+"""-, share of the gap that a name must close where the gap is clear of noise. A choice: a tenth is what laws
+leave."""
 GAP_CLEAR = 5.0
 """standard deviations of a sum of squares, beyond which a gap is clear of noise. Beyond all chance."""
 HARM = 6.0
-"""ln predictive density, that a held-out load case may lose to chance. One in four hundred, over eight
-cases and several effects."""
+"""ln predictive density, that a held-out load case may lose to chance. One in four hundred, over eight cases
+and several effects."""
 HARM_SHARE = 0.02
 """-, share of the total gain that a held-out load case may lose. The shape of an effect's law is not
 exact."""
@@ -203,7 +199,7 @@ of most effects."""
 CONFIDENT = 2.0
 """standard deviations, by which a size must be beyond a limit to count as beyond it. The usual level."""
 BESIDE_SHARE = 0.01
-"""-, share of the largest gain, from which an effect beside it is named where laws had to be opened. Less
+"""-, share of the largest gain, from which an effect beside it is named where a law has a discrepancy. Less
 is what a law a tenth off leaves behind, in squares."""
 WRONG_NAME_CHANCE = 0.05
 """-, chance of a wrong name, from which two effects are alike to the records. The usual level."""
@@ -231,8 +227,8 @@ ALIKE_CORRELATION = 0.8
 """-, |correlation| after re-tuning, from which two effects are listed as alike. A choice: two thirds of the
 squares are shared."""
 UNSURE_SHARE = 0.005
-"""-, share of a change's square below which what re-tuning leaves of it is not believed. A choice:
-parameters that follow so far are no longer linear."""
+"""-, share of a change's square below which what re-tuning leaves of it is not believed. A choice: parameters
+that follow so far are no longer linear."""
 HIDING_LISTED = 3
 """-, parameters listed that hide an effect. Room on a page."""
 
@@ -257,8 +253,8 @@ TESTS_ADVISED = 6
 PARAMETERS_LISTED = 8
 """-, parameters that are listed. Room on a page."""
 DETECTION_LEVEL = 10.0
-"""standard deviations at typical size, up to which parts are advised to be measured. A size then is good to
-a tenth."""
+"""standard deviations at typical size, up to which parts are advised to be measured. A size then is good to a
+tenth."""
 PARTS_MOST = 4
 """-, parts to be measured for one effect. More is a tear-down of the axle."""
 BENCH_ACCURACY = 0.02

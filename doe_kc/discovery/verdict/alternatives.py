@@ -1,7 +1,7 @@
-"""What could be in the place of each effect of the final set, all others in it: nothing, or another effect.
+"""What could be in the place of each effect of the last set, all others in it: nothing, or another effect.
 
 The step that brought an effect in says nothing of that: other effects were missing then, and what looked like
-a rival may have come in beside it. So each is taken out of the final set, and each plausible rival that would
+a rival may have come in beside it. So each is taken out of the last set, and each plausible rival that would
 explain the same is put in its place, all else refitted.
 """
 
@@ -59,7 +59,7 @@ class Alternatives:
 
 
 def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
-    """Of every member of the final set, in its order."""
+    """Of every member of the last set, in its order."""
     members = search.with_law_discrepancy.model.members
     bases = [_without_own_law(search, h) for h in members]
     steps = [_same_set(search, base) for base in bases]
@@ -80,7 +80,7 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
 
 
 def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
-    """The final set, the member last, under errors that do not grant its own law."""
+    """The last set, the member last, under errors that do not grant its own law."""
     errors = search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
     return last_member(refit_to_errors(search.with_law_discrepancy, errors), member)
 
@@ -99,7 +99,7 @@ def _same_set(search: EffectSearch, base: Fit) -> Step | None:
 
 
 def _from_step(base: Fit, step: Step, temper: float, workers: DiscoveryWorkers) -> Alternatives:
-    """From refits of the search; what has friction is driven by as many loops as the final set."""
+    """From refits of the search; what has friction is driven by as many loops as the last set."""
     own = _own(base, step.before)
     kept = [t for t in step.trials if plausible(t) and _may_replace(base, t.hypothesis)]
     axle = base.model.axle
@@ -122,7 +122,7 @@ def _from_step(base: Fit, step: Step, temper: float, workers: DiscoveryWorkers) 
 def _at_final_set(
     search: EffectSearch, base: Fit, without: Fit, temper: float, workers: DiscoveryWorkers
 ) -> Alternatives:
-    """From refits of the final set without the member and with each rival in its place."""
+    """From refits of the last set without the member and with each rival in its place."""
     own, project = _own(base, without), without.projection
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     first = score_test(without, known.pop(own.hypothesis.name))

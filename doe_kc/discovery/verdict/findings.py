@@ -1,4 +1,4 @@
-"""From the final set of effects to findings: sizes with their uncertainty, probabilities, rivals."""
+"""From the last set of effects to findings: sizes with their uncertainty, probabilities, rivals."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def _with_law(
 
 
 def log_probabilities(own: Alternatives, library: Sequence[Hypothesis]) -> dict[str, float]:
-    """Effect id -> ln of its probability in this place of the final set; NOTHING: of none at all.
+    """Effect id -> ln of its probability in this place of the last set; NOTHING: of none at all.
 
     Prior odds are those of the effects, shared between the places that each has in the library.
     """
@@ -233,7 +233,7 @@ def _unit(seen: FloatArray) -> FloatArray:
 
 
 def unseen_effect_sd(search: EffectSearch) -> FloatArray:
-    """(m,) standard deviation of the final model's amplitudes by all effects that are not in it.
+    """(m,) standard deviation of the last model's amplitudes by all effects that are not in it.
 
     To first order: each at PRESENT of its typical size, less where more would have been seen, independently.
     """

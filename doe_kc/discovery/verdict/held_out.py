@@ -54,14 +54,14 @@ def held_out(tuned: Fit, with_effects: Fit, with_discrepancy: Fit, case: str) ->
 
     with_effects: fitted to the records' own errors; with_discrepancy: to errors that hold that of the laws.
     """
-    with_effect = law_granted = _prediction(_without(with_effects, case))
+    with_effect = law_granted = held_out_score(fit_without(with_effects, case))
     if with_discrepancy.model.likelihood is not with_effects.model.likelihood:
         model = replace(with_discrepancy.model, left_out=case)
-        law_granted = _prediction(chord_fit(with_discrepancy, model))
-    return HeldOut(case, _prediction(_without(tuned, case)), with_effect, law_granted)
+        law_granted = held_out_score(chord_fit(with_discrepancy, model))
+    return HeldOut(case, held_out_score(fit_without(tuned, case)), with_effect, law_granted)
 
 
-def _without(start: Fit, case: str) -> Fit:
+def fit_without(start: Fit, case: str) -> Fit:
     """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
     model = replace(start.model, left_out=case)
     near = chord_fit(start, model)
@@ -71,7 +71,7 @@ def _without(start: Fit, case: str) -> Fit:
     return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
 
 
-def _prediction(fit: Fit) -> HeldOutScore:
+def held_out_score(fit: Fit) -> HeldOutScore:
     """Of the rows that the fit did not look at, r with derivatives R.
 
     Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and

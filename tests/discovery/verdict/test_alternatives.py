@@ -1,4 +1,4 @@
-"""Each effect of the final set against its removal and its rivals, whatever the order they came in by."""
+"""Each effect of the last set against its removal and its rivals, whatever the order they came in by."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from scipy.stats import multivariate_normal
 from doe_kc.discovery.fit import chord_fit, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import HELD_OUT_LIMIT
-from doe_kc.discovery.verdict.held_out import HeldOutScore, _prediction, _without, held_out
+from doe_kc.discovery.verdict.held_out import HeldOutScore, fit_without, held_out, held_out_score
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import LOAD_CASES, discovery
 
@@ -49,28 +49,28 @@ def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch
         return tuning(self, *at)
 
     monkeypatch.setattr(EffectModel, "tuning_columns", counted)
-    near = _without(search.with_effects, "steer")
+    near = fit_without(search.with_effects, "steer")
     assert not taken and near.converged
     anew = fit(near.model, search.with_effects.z)
     assert np.linalg.norm((near.z - anew.z) / np.sqrt(np.diag(anew.covariance))) < 0.1
     taken.clear()
-    assert _without(search.tuned, "steer").converged
+    assert fit_without(search.tuned, "steer").converged
     assert taken
 
 
 def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
-    plain = discovery("named").search.with_effects
-    false = replace(plain, jacobian=-plain.jacobian, z=plain.z)
-    assert not chord_fit(false, replace(plain.model, left_out="steer")).converged
+    with_effects = discovery("named").search.with_effects
+    false = replace(with_effects, jacobian=-with_effects.jacobian, z=with_effects.z)
+    assert not chord_fit(false, replace(with_effects.model, left_out="steer")).converged
 
 
 def test_a_prediction_has_the_density_of_its_covariance() -> None:
-    found = _without(discovery("named").search.with_effects, "lateral")
-    hidden = np.flatnonzero(~found.model.used)
-    residual, rows = found.residual[hidden], found.jacobian[hidden]
-    covariance = np.eye(hidden.size) + rows @ found.covariance @ rows.T
-    own = _prediction(found)
-    density = multivariate_normal(np.zeros(hidden.size), covariance).logpdf(residual)
-    assert own.score == pytest.approx(density + 0.5 * hidden.size * np.log(2.0 * np.pi), abs=1e-5)
-    whole = float(residual @ np.linalg.solve(covariance, residual))
-    assert own.rms == pytest.approx(np.sqrt(whole / hidden.size), rel=1e-8)
+    found = fit_without(discovery("named").search.with_effects, "lateral")
+    predicted = np.flatnonzero(~found.model.used)
+    residual, rows = found.residual[predicted], found.jacobian[predicted]
+    covariance = np.eye(predicted.size) + rows @ found.covariance @ rows.T
+    own = held_out_score(found)
+    density = multivariate_normal(np.zeros(predicted.size), covariance).logpdf(residual)
+    assert own.score == pytest.approx(density + 0.5 * predicted.size * np.log(2.0 * np.pi), abs=1e-5)
+    square = float(residual @ np.linalg.solve(covariance, residual))
+    assert own.rms == pytest.approx(np.sqrt(square / predicted.size), rel=1e-8)
