@@ -145,7 +145,7 @@ def _statuses(
         members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in search.steps[-1].screened if s.hypothesis.name not in names]
-    return hypothesis_statuses(last, last.tuning_projection, others, members, critical, resolved=resolved)
+    return hypothesis_statuses(last, others, members, critical, resolved=resolved)
 
 
 def gaps(

@@ -14,7 +14,6 @@ import numpy as np
 from scipy.optimize import nnls
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.thresholds import COLUMN_SHARE, PLACE_PROBABILITY
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.interface_columns import law_columns
@@ -79,11 +78,9 @@ def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
     """At a model without the effect. temper: ln evidence is divided by it. NotConverged as `solve`."""
     axle = tuned.model.axle_at(tuned.z)
     influences = interface_influences(axle, tuned.model.solutions(axle))
-    residual = tuned.remainder
-    project = tuned.projection
     scored: list[tuple[Place, float]] = []
     for law in LAWS:
-        scored += _of_law(law, influences, tuned, project, residual)
+        scored += _of_law(law, influences, tuned)
     scored.sort(key=lambda item: -item[1])
     logs = np.array([gain for _, gain in scored]) / temper
     shares = np.exp(logs - logs.max()) / np.exp(logs - logs.max()).sum()
@@ -103,9 +100,7 @@ def _sure(places: Sequence[Place], level: str) -> str | None:
     return best if sums[best] > PLACE_PROBABILITY else None
 
 
-def _of_law(
-    law: str, influences: Influences, tuned: Fit, project: Projection, residual: FloatArray
-) -> Iterator[tuple[Place, float]]:
+def _of_law(law: str, influences: Influences, tuned: Fit) -> Iterator[tuple[Place, float]]:
     gradients = law_columns(influences, law)
     probes = {p.name: p for p in influences.probes}
     chosen = [probes[name] for name in gradients.paths]
@@ -117,7 +112,7 @@ def _of_law(
         for side in ("both", "L", "R"):
             dofs, block = _block(chosen, members, columns, side)
             if dofs:
-                yield _place(interface, law, side, dofs, block, project, residual)
+                yield _place(interface, law, side, dofs, block, tuned)
 
 
 def _block(
@@ -141,11 +136,10 @@ def _place(
     side: str,
     dofs: Sequence[str],
     block: FloatArray,
-    project: Projection,
-    residual: FloatArray,
+    tuned: Fit,
 ) -> tuple[Place, float]:
     """The place with its ln evidence: ln(1 + score^2) / 2 is taken off for each degree of freedom."""
-    seen = project(block)
+    seen, residual = tuned.projection(block), tuned.remainder
     before, left = np.linalg.norm(block, axis=0), np.linalg.norm(seen, axis=0)
     use = (left > COLUMN_SHARE * before) & (left > 0.0)
     if not use.any():

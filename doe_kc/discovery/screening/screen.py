@@ -241,9 +241,9 @@ def score_test(fit: Fit, known: Screened) -> Screened:
     """
     if known.failed:
         return known
-    project = fit.projection
-    seen = project(known.change)
-    columns = project(known.columns if known.amplitudes.size else known.change[:, None])
+    projection = fit.projection
+    seen = projection(known.change)
+    columns = projection(known.columns if known.amplitudes.size else known.change[:, None])
     hessian = columns.T @ columns + np.eye(columns.shape[1])
     slope = columns.T @ fit.remainder
     amplitudes = np.asarray(-np.linalg.solve(hessian, slope), dtype=np.float64)

@@ -46,7 +46,7 @@ class HypothesisFit:
     """ln of the evidence over the model without it, times the effect's odds."""
 
 
-def leaders(screened: Sequence[Screened], project: Projection, least: float) -> list[Screened]:
+def leaders(screened: Sequence[Screened], projection: Projection, least: float) -> list[Screened]:
     """The best and its rivals, which would explain the same; a decoy of another kind is among them.
 
     Effects that explain something else are no rivals: they have their own step.
@@ -55,12 +55,12 @@ def leaders(screened: Sequence[Screened], project: Projection, least: float) -> 
         return []
     best = screened[0]
     out = [best]
-    own = _explained(best, project)
+    own = _explained(best, projection)
     for s in screened[1:]:
         if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == REFITS_MOST:
             break
         kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
-        if kind < PLACES_REFITTED and abs(float(own @ _explained(s, project))) > RIVAL_CORRELATION:
+        if kind < PLACES_REFITTED and abs(float(own @ _explained(s, projection))) > RIVAL_CORRELATION:
             out.append(s)
     small = (
         best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT
@@ -76,10 +76,10 @@ def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
     return [s for s in screened if not s.failed and s.absorbed >= ABSORBED_SHARE and s.detectability >= shows]
 
 
-def _explained(screened: Screened, project: Projection) -> FloatArray:
+def _explained(screened: Screened, projection: Projection) -> FloatArray:
     """(M + d,) direction of what the effect does at its size, after re-tuning."""
     change = screened.columns @ screened.amplitudes if screened.amplitudes.size else screened.change
-    seen = project(change)
+    seen = projection(change)
     length = float(np.linalg.norm(seen))
     return np.asarray(seen / length if length > 0.0 else seen)
 

@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from doe_kc.discovery.fit import Fit, last_member, refit_to_errors
-from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, score_test
 from doe_kc.discovery.search.refits import (
@@ -123,22 +122,22 @@ def _at_final_set(
     search: EffectSearch, base: Fit, without: Fit, temper: float, workers: DiscoveryWorkers
 ) -> Alternatives:
     """From refits of the last set without the member and with each rival in its place."""
-    own, project = _own(base, without), without.projection
+    own = _own(base, without)
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     first = score_test(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
     there = [score_test(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
-    near = _near([first, *there], project, threshold(len(known) + 1), without, workers)
+    near = _near([first, *there], threshold(len(known) + 1), without, workers)
     rivals = [t for t in joint_refits(without, near, workers) if plausible(t)]
     return Alternatives(without, (first, *there), (own, *rivals), temper)
 
 
 def _near(
-    screened: Sequence[Screened], project: Projection, least: float, without: Fit, workers: DiscoveryWorkers
+    screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers
 ) -> list[Screened]:
     """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
-    chosen = [s.hypothesis for s in leaders(screened, project, least / 2.0)[1:]]
+    chosen = [s.hypothesis for s in leaders(screened, without.projection, least / 2.0)[1:]]
     return [s for s in workers.screenings(without, chosen) if not s.failed]
 
 

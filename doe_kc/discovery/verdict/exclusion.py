@@ -11,7 +11,6 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.thresholds import ALIKE_CORRELATION, HIDING_LISTED, ONE_SIDED, POWER, UNSURE_SHARE
 from doe_kc.discovery.verdict.component_test import ComponentTest, component_tests
@@ -47,7 +46,6 @@ class HypothesisStatus:
 
 def hypothesis_statuses(
     fit: Fit,
-    project: Projection,
     screened: Sequence[Screened],
     members: Sequence[tuple[Screened, Status]],
     critical: float,
@@ -61,7 +59,7 @@ def hypothesis_statuses(
     """
     everything = [s for s, _ in members] + list(screened)
     known = dict(enumerate(status for _, status in members))
-    changes = project(np.array([s.change for s in everything]).T)
+    changes = fit.tuning_projection(np.array([s.change for s in everything]).T)
     length = np.linalg.norm(changes, axis=0)
     safe = np.where(length > 0, length, 1.0)
     correlation = (changes / safe).T @ (changes / safe)

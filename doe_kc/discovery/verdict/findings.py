@@ -165,14 +165,14 @@ def _detectability(fit: Fit, place: slice) -> float:
 
 def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:
     """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
-    project = own.without.projection
+    projection = own.without.projection
     first, *others = own.screened
-    direction = _unit(project(first.change))
+    direction = _unit(projection(first.change))
     out: dict[str, float] = {}
     for s in others:
         effect = s.hypothesis.effect
         if effect != own.hypothesis.effect and not s.failed:
-            chance = wrong_name_chance(detectability, float(direction @ _unit(project(s.change))))
+            chance = wrong_name_chance(detectability, float(direction @ _unit(projection(s.change))))
             out[effect] = max(out.get(effect, 0.0), chance)
     return out
 

@@ -51,9 +51,9 @@ def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned:
 
 def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
-    project = tuned.projection
+    projection = tuned.projection
     found = screen(tuned, hub)
-    columns = project(found.columns)
+    columns = projection(found.columns)
     for own, other in ((0, 1), (1, 0)):
         share = columns[:, own] @ columns[:, other] / (columns[:, other] @ columns[:, other])
         rest = columns[:, own] - share * columns[:, other]
@@ -72,16 +72,16 @@ def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
 
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
-    project = tuned.projection
+    projection = tuned.projection
     clear = screen(tuned, friction)
     followed = tuned.jacobian @ np.full(tuned.z.size, 0.3)  # what parameters do, and a trace besides
     followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
-    hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(project(followed))))
+    hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(projection(followed))))
     assert hidden.detectability > 10.0
-    shown, unsure = hypothesis_statuses(tuned, project, [clear, hidden], [], 4.0, resolved=True)
+    shown, unsure = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=True)
     least = max(4.84 / clear.detectability, abs(clear.amplitudes[0]) + 1.645 * clear.sd[0])
     assert shown.status == "excluded" and shown.limits[0] == pytest.approx(least)
-    open_, _ = hypothesis_statuses(tuned, project, [clear, hidden], [], 4.0, resolved=False)
+    open_, _ = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=False)
     assert open_.status == "unresolved" and open_.limits[0] == shown.limits[0]
     assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
 
