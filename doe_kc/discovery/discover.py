@@ -102,7 +102,7 @@ def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) ->
 def _separating(
     compared: Sequence[Alternatives], ambiguous: Sequence[Sequence[str]]
 ) -> dict[tuple[str, str], tuple[ExtraTest, ...]]:
-    """Of every class, the load cases that tell its first effect from each other one."""
+    """The load cases that tell the first effect of every class from each other one."""
     out: dict[tuple[str, str], tuple[ExtraTest, ...]] = {}
     trials = {c.hypothesis.effect: c.trials for c in compared}
     for first, *others in ambiguous:
@@ -151,7 +151,7 @@ def _statuses(
 def gaps(
     likelihood: Likelihood, nominal: FloatArray, tuned: Fit, with_effects: Fit, decoy: Fit | None
 ) -> tuple[Gap, tuple[CurveGap, ...]]:
-    """Of all records together, and of each load case and response."""
+    """The gap of all records together, and of each load case and response."""
     rows: dict[tuple[str, str], list[int]] = {}
     for curve, place in likelihood.slices():
         at = rows.setdefault((curve.load_case, curve.response), [])

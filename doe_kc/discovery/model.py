@@ -30,25 +30,28 @@ NO_CHARACTERISTICS = np.zeros(0)
 
 @dataclass(frozen=True)
 class EffectModel:
-    """axle: nominal, without the hypotheses. space: tunable parameters. members: effects in it.
-
-    left_out: load case whose records are held back from fits, None for none. sides: (M, k) change of the
-    residual by each difference between the sides, in its standard deviation. solutions: solves its axles, the
-    same for all models that come of one another.
+    """An axle with effects of unknown size against the records of one car.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides, which are linear), d together, then m amplitudes of all members'
-    sizes. The priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot
-    be negative.
+    sizes. The priors of b and a are Gaussian with standard deviation 1, that of an amplitude cut at zero
+    where it cannot be negative.
     """
 
     axle: Axle
+    """The nominal axle, without the members."""
     space: Space
+    """Tunable parameters with their bounds and priors."""
     likelihood: Likelihood
+    """The records as data with their errors."""
     members: tuple[Hypothesis, ...] = ()
+    """Effects in the model."""
     left_out: str | None = None
+    """Load case whose records are held back from fits, None for none."""
     sides: FloatArray | None = None
+    """(M, k) change of the residual by each difference between the sides, per its standard deviation."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
+    """Solver of its axles, the same for all models that come of one another."""
 
     @cached_property
     def used(self) -> NDArray[np.bool_]:
@@ -60,7 +63,7 @@ class EffectModel:
 
     @cached_property
     def contrasts(self) -> Contrasts:
-        """Of the data."""
+        """Contrasts of the data."""
         return contrasts(self.likelihood)
 
     @cached_property

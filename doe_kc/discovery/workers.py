@@ -154,7 +154,7 @@ def _packed_fit(fit: Fit) -> Arrays:
 
 
 def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
-    """None for one without an equilibrium."""
+    """The stored fit, None for one without an equilibrium."""
     if not known["z"].size:
         return None
     z, residual = known["z"], known["residual"]

@@ -36,30 +36,36 @@ MEAN_SHAPES: Mapping[Shape, Callable[[FloatArray], FloatArray]] = {
     "progression": lambda u: u**3 - 0.6 * u,
     "dead band": lambda u: np.tanh(u / 0.1) - 1.5 * u,
 }
-"""Of the mean of both branches; a curve that is a change from static has no offset."""
+"""Shapes of the mean of both branches; a curve that is a change from static has no offset."""
 LOOP_SHAPES: Mapping[Shape, Callable[[FloatArray], FloatArray]] = {
     "loop width": lambda u: 1.0 - u**2,
     "loop tilt": lambda u: u * (1.0 - u**2),
 }
-"""Of the half-width."""
+"""Shapes of the half-width curve."""
 
 
 @dataclass(frozen=True)
 class Contrast:
-    """load_case `static` for the alignment figures."""
+    """One shape in which one response of one load case can disagree."""
 
     load_case: str
+    """Id of the load case, `static` for the alignment figures."""
     response: str
+    """Id of the response."""
     shape: Shape
+    """The curve's shape."""
     wheels: Wheels
+    """both: sum of the wheels; left/right: their difference."""
 
 
 @dataclass(frozen=True)
 class Contrasts:
-    """rows: (M, k) whitened, of unit length; each is of one curve and its twin."""
+    """All contrasts of the data."""
 
     names: tuple[Contrast, ...]
+    """(k,)."""
     rows: csc_array
+    """(M, k) whitened, of unit length; each is of one curve and its twin."""
 
 
 def contrasts(likelihood: Likelihood) -> Contrasts:

@@ -63,12 +63,12 @@ class Map:
 
 
 def raw_map(contrasts: Contrasts, residual: FloatArray) -> Map:
-    """Of a residual (M,) as it is, in units of the records' noise."""
+    """The map of a residual (M,) as it is, in units of the records' noise."""
     return _map(contrasts, (contrasts.rows.T @ contrasts.rows).toarray(), contrasts.rows.T @ residual)
 
 
 def residual_map(contrasts: Contrasts, residual: FloatArray, projection: Projection) -> Map:
-    """Of a fitted residual (M,): what re-tuning cannot absorb."""
+    """The map of a fitted residual (M,): what re-tuning cannot absorb."""
     return _map(contrasts, *projection.products(contrasts.rows, residual))
 
 

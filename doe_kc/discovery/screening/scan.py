@@ -75,7 +75,7 @@ class Scan:
 
 
 def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
-    """At a model without the effect. temper: ln evidence is divided by it. NotConverged as `solve`."""
+    """The scan at a model without effects. temper: ln evidence is divided by it. NotConverged as `solve`."""
     axle = tuned.model.axle_at(tuned.z)
     influences = interface_influences(axle, tuned.model.solutions(axle))
     scored: list[tuple[Place, float]] = []

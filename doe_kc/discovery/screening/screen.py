@@ -102,7 +102,7 @@ def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray
 
 
 def effort(hypothesis: Hypothesis) -> int:
-    """About how much work its screening is, relative to others: starts times solutions of a step."""
+    """Work of its screening, relative to others: starts times solutions of a step."""
     return len(_starts(hypothesis, PROBE)) * (1 + len(hypothesis.sizes))
 
 

@@ -28,7 +28,7 @@ class EffectSignal:
     """What one member makes of the curves."""
 
     changes: tuple[FloatArray, ...]
-    """Of every curve its change (n,), in the curve's unit."""
+    """Change (n,) of every curve, in the curve's unit."""
     largest: Mapping[tuple[str, Branches], float]
     """Response and branches -> the largest |change| of their curves."""
     friction: bool
@@ -61,7 +61,7 @@ def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
 
 
 def without_own_discrepancy(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
-    """Of each member with a discrepancy, the records' errors with the discrepancies of all others."""
+    """Name of each member with a discrepancy -> the records' errors with the discrepancies of all others."""
     if not any(shares.values()):
         return {}
     signals, names = effect_signals(exact), [h.name for h in exact.model.members]

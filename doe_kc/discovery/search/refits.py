@@ -71,7 +71,7 @@ def leaders(screened: Sequence[Screened], projection: Projection, least: float) 
 
 
 def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
-    """Those that a screening may have missed though a typical one would show by `least` of ln likelihood."""
+    """Hypotheses that a screening may have missed; a typical one would show by `least` of ln likelihood."""
     shows = float(np.sqrt(2.0 * least))
     return [s for s in screened if not s.failed and s.absorbed >= ABSORBED_SHARE and s.detectability >= shows]
 
@@ -100,12 +100,12 @@ def _bushing(hypothesis: Hypothesis) -> str:
 
 
 def believable(sizes: Sized) -> bool:
-    """Whether none is surely beyond what such a part has."""
+    """Whether no size is surely beyond what such a part has."""
     return not any(abs(a) - CONFIDENT * sd > size.most for size, a, sd in sizes)
 
 
 def more_than_trace(sizes: Sized) -> bool:
-    """Whether one is surely more than a trace; an effect without a size does when it is there."""
+    """Whether a size is surely more than a trace; an effect without a size counts when it is there."""
     counted = list(sizes)
     return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)
 

@@ -58,7 +58,7 @@ class Alternatives:
 
 
 def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
-    """Of every member of the last set, in its order."""
+    """The alternatives of every member of the last set, in its order."""
     members = search.with_law_discrepancy.model.members
     bases = [_without_own_law(search, h) for h in members]
     steps = [_same_set(search, base) for base in bases]
@@ -98,7 +98,7 @@ def _same_set(search: EffectSearch, base: Fit) -> Step | None:
 
 
 def _from_step(base: Fit, step: Step, temper: float, workers: DiscoveryWorkers) -> Alternatives:
-    """From refits of the search; what has friction is driven by as many loops as the last set."""
+    """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
     own = _own(base, step.before)
     kept = [t for t in step.trials if plausible(t) and _may_replace(base, t.hypothesis)]
     axle = base.model.axle
@@ -121,7 +121,7 @@ def _from_step(base: Fit, step: Step, temper: float, workers: DiscoveryWorkers) 
 def _at_final_set(
     search: EffectSearch, base: Fit, without: Fit, temper: float, workers: DiscoveryWorkers
 ) -> Alternatives:
-    """From refits of the last set without the member and with each rival in its place."""
+    """The alternatives from refits of the last set without the member and with each rival in its place."""
     own = _own(base, without)
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     first = score_test(without, known.pop(own.hypothesis.name))

@@ -41,7 +41,7 @@ class HypothesisStatus:
     in 80 % of cars whatever the others are and that is above the 95 % limit of what the records say of it, if
     the model is right but for this size; inf when re-tuning absorbs nearly all, nan for a shape."""
     component_test: ComponentTest | None = None
-    """Of one that hardly shows: parts to measure that would show it."""
+    """Parts to measure that would show it, where it hardly shows; None otherwise."""
 
 
 def hypothesis_statuses(
@@ -52,7 +52,7 @@ def hypothesis_statuses(
     *,
     resolved: bool,
 ) -> tuple[HypothesisStatus, ...]:
-    """Of members (as screened before they were added) and of all others screened at the last model.
+    """The status of members (as screened before they were added) and of all others, screened at the end.
 
     critical: |z| that a hypothesis must reach among so many. resolved: whether the model holds, so that what
     it does not see can be excluded.

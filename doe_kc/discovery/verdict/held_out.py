@@ -72,7 +72,7 @@ def fit_without(start: Fit, case: str) -> Fit:
 
 
 def held_out_score(fit: Fit) -> HeldOutScore:
-    """Of the rows that the fit did not look at, r with derivatives R.
+    """The score of the rows that the fit did not look at, r with derivatives R.
 
     Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
     det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
