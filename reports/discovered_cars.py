@@ -134,10 +134,10 @@ def _on_customer(found: Discovery) -> str:
     assert found.scan is not None
     return CUSTOMERS_CAR.format(
         sentences="\n".join(f"> {s}" for s in found.sentences),
-        tuned=number(found.tuned.largest, 2),
+        tuned=number(found.tuned_map.largest, 2),
         bounds=at_bound,
-        largest=number(found.final.largest, 2),
-        chance=number(found.final.chance, 2),
+        largest=number(found.residual_map.largest, 2),
+        chance=number(found.residual_map.chance, 2),
         held=number(after, 2),
         held_tuned=number(before, 2),
         decoy=found.decoy.hypothesis.name,

@@ -149,3 +149,26 @@ def test_the_readmes_python_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     for block in re.findall(r"```python\n(.*?)```", text, re.DOTALL):
         exec(compile(block, "README.md", "exec"), {})
         assert capsys.readouterr().out.strip()
+
+
+def test_the_floors_on_the_page_are_those_of_the_package() -> None:
+    from tests.test_architecture import FLOORS
+
+    assert list(table_rows("architecture.md")) == FLOORS
+
+
+@pytest.mark.parametrize("page", ["architecture.md", "discovery.md", "report_page.md", "campaigns.md"])
+def test_files_that_a_page_names_are_there(page: str) -> None:
+    text = (ROOT / "docs" / page).read_text("utf-8")
+    named = set(re.findall(r"`((?:doe_kc|tests|reports|benchmarks)/[\w/.]+)`", text))
+    assert named or page not in ("architecture.md", "discovery.md")
+    assert not [n for n in sorted(named) if not (ROOT / n).exists()]
+
+
+def test_the_python_of_the_report_page_runs() -> None:
+    text = (ROOT / "docs" / "report_page.md").read_text("utf-8")
+    (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+    names: dict[str, object] = {}
+    exec(block, names)
+    assert str(names["more"].html) == "<p>strut friction: evidence 12.3</p>"
+    assert all(callable(names[n]) for n in ("correlation_sections", "write_page"))

@@ -13,7 +13,7 @@ from benchmarks.discovery.car import CleanRecords
 from benchmarks.discovery.chance import stream
 from benchmarks.discovery.generator import HiddenCar
 from doe_kc.axle import Axle, parameter_value
-from doe_kc.discovery.component_test import accuracy
+from doe_kc.discovery.verdict.component_test import accuracy
 from doe_kc.load_cases import LoadCase
 from doe_kc.solver.result import NotConverged
 from doe_kc.variables import VariableOptions, build_space

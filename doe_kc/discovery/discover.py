@@ -3,82 +3,87 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from doe_kc.discovery.adequacy import Adequacy, adequacy
-from doe_kc.discovery.alternatives import Alternatives, alternatives
-from doe_kc.discovery.bound_check import beyond, search_within_bounds
-from doe_kc.discovery.disagreement import raw_map, remaining_map
-from doe_kc.discovery.exclusion import HypothesisStatus, Status, hypothesis_statuses
-from doe_kc.discovery.extra_test import ExtraTest, extra_tests
-from doe_kc.discovery.findings import findings
-from doe_kc.discovery.gaps import gaps, returned
-from doe_kc.discovery.law_discrepancy import sticks
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.screen import Screened
-from doe_kc.discovery.search import EffectSearch, accepted_at, threshold
-from doe_kc.discovery.sentences import next_tests, sentences
-from doe_kc.discovery.thresholds import WORST
-from doe_kc.discovery.trials import HypothesisFit
-from doe_kc.discovery.verdict import classes, verdict
+from doe_kc.discovery.result import CurveGap, Discovery, Finding, Gap, Returned
+from doe_kc.discovery.screening.disagreement import raw_map
+from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
+from doe_kc.discovery.search.law_discrepancy import is_friction
+from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.search.search import EffectSearch, accepted_at, threshold
+from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
+from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
+from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothesis_statuses
+from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
+from doe_kc.discovery.verdict.findings import findings
+from doe_kc.discovery.verdict.sentences import next_tests, sentences
+from doe_kc.discovery.verdict.verdict import classes, verdict
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 
 
 @one_thread()
 def discover(
-    model: EffectModel, library: Sequence[Hypothesis], bench: DiscoveryWorkers | None = None
+    model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers | None = None
 ) -> Discovery:
     """model: the axle without any effect, its tunable parameters and its records."""
     started = time.perf_counter()
-    bench = bench or DiscoveryWorkers()
-    found, widened = search_within_bounds(model, library, bench)
+    workers = workers or DiscoveryWorkers()
+    search, widened = search_within_bounds(model, library, workers)
     nominal = model.residual(model.centre)
-    final, tuned = found.final, found.tuned
-    remaining = remaining_map(final.model.contrasts, final.residual, final.projection)
-    before = remaining_map(tuned.model.contrasts, tuned.residual, tuned.projection)
-    compared = alternatives(found, max(1.0, remaining.mean_square), bench)
-    every = findings(found, compared)
-    relevant = tuple(sorted((f for f in every if f.relevant), key=lambda f: -f.detectability))
-    scanned = None if before.agrees else bench.scanned(tuned, max(1.0, remaining.mean_square))
-    predicted = bench.held_out(found.tuned, found.plain, found.final) if relevant else ()
-    judged = verdict(relevant, remaining, predicted, found.tuned, found.plain)
-    holds = adequacy(remaining, predicted)
-    somewhere = None if scanned is None else scanned()
+    tuned, with_effects = search.tuned, search.with_effects
+    tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
+    temper = max(1.0, residual_map.mean_square)
+    compared = alternatives(search, temper, workers)
+    members = findings(search, compared)
+    relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
+    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper)
+    predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()
+    outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
+    explained = adequacy(residual_map, predictions)
+    interface_scan = None if pending_scan is None else pending_scan()
     decoy = best_decoy(compared, relevant)
-    whole, each = gaps(model.likelihood, nominal, found.tuned, found.plain, decoy.fit if decoy else None)
-    traces = shown_traces(every, holds)
-    statuses = _standings(found, (*relevant, *traces), len(library), resolved=resolved(found, holds))
-    outside = beyond(model.space, found.plain)
-    ambiguous = classes(relevant) if judged.kind == "class" else ()
+    gap, curve_gaps = gaps(model.likelihood, nominal, tuned, with_effects, decoy.fit if decoy else None)
+    traces = shown_traces(members, explained)
+    limits_hold = resolved(search, explained)
+    statuses = _statuses(search, (*relevant, *traces), len(library), resolved=limits_hold)
+    outside = beyond(model.space, with_effects)
+    ambiguous = classes(relevant) if outcome.kind == "class" else ()
     separating = _separating(compared, ambiguous)
     return Discovery(
-        verdict=judged.kind,
-        sentences=sentences(judged, relevant, holds, whole, remaining, somewhere, outside, widened),
+        verdict=outcome.kind,
+        sentences=sentences(
+            outcome, relevant, explained, gap, residual_map, interface_scan, outside, widened
+        ),
         findings=relevant,
         traces=traces,
         classes=ambiguous,
         statuses=statuses,
-        unexplained=tuple(remaining.worst(WORST)) if judged.kind == "unexplained" else (),
-        adequacy=holds,
-        search=found,
+        unexplained=tuple(residual_map.worst(DISAGREEMENTS_LISTED)) if outcome.kind == "unexplained" else (),
+        adequacy=explained,
+        search=search,
         decoy=decoy,
         nominal=nominal,
-        raw=raw_map(tuned.model.contrasts, nominal),
-        tuned=before,
-        final=remaining,
-        gap=whole,
-        gaps=each,
-        held_out=predicted,
-        returned=returned(found.tuned, found.plain) if relevant else (),
-        next_tests=next_tests(judged, relevant, ambiguous, statuses, separating),
+        nominal_map=raw_map(tuned.model.contrasts, nominal),
+        tuned_map=tuned_map,
+        residual_map=residual_map,
+        gap=gap,
+        gaps=curve_gaps,
+        held_out=predictions,
+        returned=returned(tuned, with_effects) if relevant else (),
+        next_tests=next_tests(outcome, relevant, ambiguous, statuses, separating),
         seconds=time.perf_counter() - started,
-        scan=somewhere,
+        scan=interface_scan,
         widened=widened,
         beyond=outside,
         separating=separating,
@@ -97,7 +102,7 @@ def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) ->
 def _separating(
     compared: Sequence[Alternatives], ambiguous: Sequence[Sequence[str]]
 ) -> dict[tuple[str, str], tuple[ExtraTest, ...]]:
-    """Of every class, the load cases that tell its first effect from each other one."""
+    """The load cases that tell the first effect of every class from each other one."""
     out: dict[tuple[str, str], tuple[ExtraTest, ...]] = {}
     trials = {c.hypothesis.effect: c.trials for c in compared}
     for first, *others in ambiguous:
@@ -109,35 +114,92 @@ def _separating(
     return out
 
 
-def resolved(search: EffectSearch, holds: Adequacy) -> bool:
+def resolved(search: EffectSearch, adequacy: Adequacy) -> bool:
     """Whether limits of effects that are not in the model mean anything.
 
     They take the model for right. Where what remains is not noise it is not; where the law of a friction is
     not the model's, what is missing of that hides effects larger than any such limit.
     """
-    final = search.final
-    open_ = (search.shares.get(h.name, 0.0) > 0.0 and sticks(final, h) for h in final.model.members)
-    return holds.holds and not any(open_)
+    fit, shares = search.with_law_discrepancy, search.discrepancy_shares
+    other_law = (shares.get(h.name, 0.0) > 0.0 and is_friction(fit, h) for h in fit.model.members)
+    return adequacy.holds and not any(other_law)
 
 
-def shown_traces(every: Sequence[Finding], holds: Adequacy) -> tuple[Finding, ...]:
+def shown_traces(members: Sequence[Finding], adequacy: Adequacy) -> tuple[Finding, ...]:
     """Effects too small to matter; of the rig only where the set holds: else they stand for anything."""
-    small = (f for f in every if not f.relevant)
-    return tuple(f for f in small if holds.holds or not EFFECTS[f.hypothesis.effect].on_rig)
+    small = (f for f in members if not f.relevant)
+    return tuple(f for f in small if adequacy.holds or not EFFECTS[f.hypothesis.effect].on_rig)
 
 
-def _standings(
+def _statuses(
     search: EffectSearch, named: Sequence[Finding], count: int, *, resolved: bool
 ) -> tuple[HypothesisStatus, ...]:
-    """named: findings and traces that are given."""
+    """named: the findings and traces that are reported."""
     critical, last = float(np.sqrt(2.0 * threshold(count))), search.steps[-1].before
     members: list[tuple[Screened, Status]] = []
     statuses: dict[str, Status] = {f.hypothesis.name: "found" if f.relevant else "trace" for f in named}
-    for hypothesis in search.final.model.members:
+    for hypothesis in search.with_law_discrepancy.model.members:
         step = accepted_at(search, hypothesis)
         own = next(s for s in step.screened if s.hypothesis == hypothesis)
-        own = own.with_errors(step.before.model.likelihood, last.model.likelihood)
+        own = own.rewhitened(step.before.model.likelihood, last.model.likelihood)
         members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}
     others = [s for s in search.steps[-1].screened if s.hypothesis.name not in names]
-    return hypothesis_statuses(last, last.tuning_projection, others, members, critical, resolved=resolved)
+    return hypothesis_statuses(last, others, members, critical, resolved=resolved)
+
+
+def gaps(
+    likelihood: Likelihood, nominal: FloatArray, tuned: Fit, with_effects: Fit, decoy: Fit | None
+) -> tuple[Gap, tuple[CurveGap, ...]]:
+    """The gap of all records together, and of each load case and response."""
+    rows: dict[tuple[str, str], list[int]] = {}
+    for curve, place in likelihood.slices():
+        at = rows.setdefault((curve.load_case, curve.response), [])
+        at.extend(range(place.start, place.stop))
+    residuals: Mapping[str, FloatArray | None] = {
+        "nominal": nominal,
+        "tuned": tuned.residual,
+        "with_effect": with_effects.residual,
+        "best_decoy": None if decoy is None else decoy.residual,
+    }
+
+    def gap(places: slice | list[int], floor: float) -> Gap:
+        rms = {k: float("nan") if r is None else _rms(r[places]) for k, r in residuals.items()}
+        return Gap(noise_floor=floor, **rms)
+
+    total = gap(slice(None), noise_floor(with_effects))
+    return total, tuple(CurveGap(c, r, gap(at, 1.0)) for (c, r), at in rows.items())
+
+
+def noise_floor(fit: Fit) -> float:
+    """Whitened RMS expected of the right model: sqrt(1 - parameters used / data)."""
+    used = float(np.sum(1.0 - np.diag(fit.covariance) / fit.model.prior_sd**2))
+    return float(np.sqrt(max(0.0, 1.0 - used / fit.residual.size)))
+
+
+def _rms(residual: FloatArray) -> float:
+    return float(np.sqrt(np.mean(residual**2)))
+
+
+def returned(tuned: Fit, with_effects: Fit) -> tuple[Returned, ...]:
+    """Parameters that the re-tuned model had moved and that go back once the effects are there."""
+    model = with_effects.model
+    count = model.parameters
+    before = (tuned.z[:count] - model.centre[:count]) / model.prior_sd[:count]
+    after = (with_effects.z[:count] - model.centre[:count]) / model.prior_sd[:count]
+    nominal = model.space.values(model.centre[:count])
+    one, two = model.space.values(tuned.z[:count]), model.space.values(with_effects.z[:count])
+    out = [
+        Returned(
+            v.path,
+            nominal[v.path],
+            one[v.path],
+            two[v.path],
+            v.unit,
+            float(before[i]),
+            float(after[i]),
+        )
+        for i, v in enumerate(model.space.variables)
+        if abs(before[i]) >= RETURNS_FROM and abs(after[i]) < abs(before[i])
+    ]
+    return tuple(sorted(out, key=lambda r: abs(r.with_effect_distance) - abs(r.tuned_distance)))

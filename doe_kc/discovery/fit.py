@@ -17,14 +17,16 @@ from scipy.special import log_ndtr
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
 from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.screening.disagreement import Map, residual_map
 from doe_kc.discovery.thresholds import (
+    CHORD_STEPS,
     FIT_DECREASE,
     FIT_GOOD_RATIO,
     FIT_POOR_RATIO,
     FIT_STEPS,
-    FOLLOW_STEPS,
-    FRESH,
+    FRESH_DECREASE,
     LARGEST_RADIUS,
     LAST_STEP_DECREASE,
     LEAST_STEP,
@@ -37,19 +39,22 @@ from doe_kc.solver.result import NotConverged
 
 @dataclass(frozen=True)
 class Fit:
-    """A model at its most probable point z (d + m,).
-
-    residual: (M,). jacobian: (M, d + m). cost: sum of squares with the prior's. covariance: (d + m, d + m).
-    evaluations: solved suites. converged: False when the steps ran out.
-    """
+    """A model at its most probable point."""
 
     model: EffectModel
+    """The model, its members and the errors of the records."""
     z: FloatArray
+    """(d + m,) the point: parameters, nuisances, amplitudes."""
     residual: FloatArray
+    """(M,) model minus records, in standard deviations of the records."""
     jacobian: FloatArray
+    """(M, d + m) derivative of the residual to z; of a point nearby where a fit ended on that."""
     cost: float
+    """Sum of squares of the data that the fit looks at, with the prior's."""
     evaluations: int
+    """Suites of load cases that were solved for it."""
     converged: bool
+    """Whether the predicted decrease fell below its limit before the steps ran out."""
 
     @cached_property
     def hessian(self) -> FloatArray:
@@ -71,7 +76,7 @@ class Fit:
 
     @cached_property
     def projection(self) -> Projection:
-        """What can be explained neither by tuning nor by the sizes of the effects."""
+        """Complement of what tuning and the sizes of the effects can explain."""
         return self._projection(self.z.size)
 
     @cached_property
@@ -80,8 +85,13 @@ class Fit:
         return self.projection.residual(self.residual)
 
     @cached_property
+    def residual_map(self) -> Map:
+        """Where model and records disagree beyond what re-tuning could absorb."""
+        return residual_map(self.model.contrasts, self.residual, self.projection)
+
+    @cached_property
     def tuning_projection(self) -> Projection:
-        """What tuning cannot explain, the sizes of the effects held."""
+        """Complement of what tuning can explain, the sizes of the effects held."""
         return self._projection(self.model.dimension)
 
     def _projection(self, count: int) -> Projection:
@@ -138,7 +148,7 @@ def fit(
         high = np.minimum(model.upper - current.z, radius)
         step = bounded_step(hessian, gradient, low, high)
         predicted = float(-(2.0 * gradient @ step + step @ hessian @ step))
-        if predicted < LAST_STEP_DECREASE and aged > FRESH:
+        if predicted < LAST_STEP_DECREASE and aged > FRESH_DECREASE:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
             continue
         if predicted < FIT_DECREASE:
@@ -162,7 +172,7 @@ def fit(
             aged = aged + gained if gained < REUSE_DECREASE else 0.0
             kept = current.jacobian[:, : model.dimension] if aged else None
             current = _expanded(model, trial, residual, current.evaluations, kept)
-        elif aged > FRESH:
+        elif aged > FRESH_DECREASE:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
         if radius < LEAST_STEP:
             return current
@@ -175,7 +185,7 @@ def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     return float(seen @ seen + np.sum(((z - model.centre) / model.prior_sd) ** 2))
 
 
-def with_errors(fit: Fit, model: EffectModel) -> Fit:
+def rewhitened_fit(fit: Fit, model: EffectModel) -> Fit:
     """The fit's point against the same records with other errors, those of `model`; nothing is solved."""
     errors = fit.model.likelihood, model.likelihood
     residual, jacobian = rewhitened(fit.residual, *errors), rewhitened(fit.jacobian, *errors)
@@ -184,12 +194,28 @@ def with_errors(fit: Fit, model: EffectModel) -> Fit:
     )
 
 
-def to_errors(fit: Fit, likelihood: Likelihood) -> Fit:
-    """The fit followed to the same records with other errors, from where it is."""
+def refit_to_errors(fit: Fit, likelihood: Likelihood) -> Fit:
+    """The fit to the same records with other errors, by the chord method from where it is."""
     if fit.model.likelihood is likelihood:
         return fit
-    model = fit.model.with_errors(likelihood)
-    return followed(with_errors(fit, model), model)
+    model = fit.model.with_likelihood(likelihood)
+    return chord_fit(rewhitened_fit(fit, model), model)
+
+
+def amplitude_estimates(fit: Fit, hypothesis: Hypothesis) -> tuple[FloatArray, FloatArray]:
+    """(m,) amplitudes of a member, in typical sizes, and (m,) their standard deviations.
+
+    The records show only the sum of a wrong input and of its load case's calibration: that is what counts.
+    """
+    model = fit.model
+    place = next(p for h, p in model.places() if h == hypothesis)
+    weights = np.eye(fit.z.size)[place]
+    if hypothesis.effect == INPUT_EFFECT and hypothesis.location in model.cases:
+        (size,) = hypothesis.sizes
+        calibration = model.calibrations.start + model.cases.index(hypothesis.location)
+        weights[0, calibration] = input_gain_amplitude(size)
+    covariance = weights @ fit.covariance @ weights.T
+    return np.asarray(weights @ fit.z), np.asarray(np.sqrt(np.diag(covariance)))
 
 
 def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:
@@ -209,22 +235,22 @@ def _expanded(
     evaluations: int,
     tuning: FloatArray | None = None,
 ) -> Fit:
-    growth = model.growth(z, residual)
-    jacobian = np.hstack([model.tuning(z, residual) if tuning is None else tuning, growth])
+    columns = model.amplitude_columns(z, residual)
+    jacobian = np.hstack([model.tuning_columns(z, residual) if tuning is None else tuning, columns])
     cost = cost_of(model, z, residual)
-    return Fit(model, z, residual, jacobian, cost, evaluations + growth.shape[1], False)
+    return Fit(model, z, residual, jacobian, cost, evaluations + columns.shape[1], False)
 
 
-def followed(fit: Fit, model: EffectModel) -> Fit:
-    """The fit of the same model to other data, by steps along the derivatives at `found`.
+def chord_fit(fit: Fit, model: EffectModel) -> Fit:
+    """The fit of the same model to other data, by the chord method: steps along the derivatives of `fit`.
 
     For small changes, such as a load case left out: no new derivatives are taken. Not `converged` where those
-    at `found` did not lead to an end.
+    of `fit` did not lead to an end.
     """
     cost = cost_of(model, fit.z, fit.residual)
     current = replace(fit, model=model, cost=cost, converged=False)
     hessian = current.hessian
-    for _ in range(FOLLOW_STEPS):
+    for _ in range(CHORD_STEPS):
         low, high = model.lower - current.z, model.upper - current.z
         gradient = current.gradient
         step = bounded_step(hessian, gradient, low, high)

@@ -14,10 +14,10 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
-from doe_kc.discovery.calibration import calibrated
-from doe_kc.discovery.contrasts import Contrasts, contrasts
+from doe_kc.discovery.nuisances import calibrated
+from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
-from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, CALIBRATION_STEP, DIFFERENCE, RIG
+from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, AMPLITUDE_STEP, CALIBRATION_STEP, NUISANCE_LIMIT
 from doe_kc.effects import apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -30,25 +30,28 @@ NO_CHARACTERISTICS = np.zeros(0)
 
 @dataclass(frozen=True)
 class EffectModel:
-    """axle: nominal, without the hypotheses. space: tunable parameters. members: effects in it.
-
-    left_out: load case whose records are held back from fits, None for none. sides: (M, k) change of the
-    residual by each difference between the sides, in its standard deviation. solutions: solves its axles, the
-    same for all models that come of one another.
+    """An axle with effects of unknown size against the records of one car.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides, which are linear), d together, then m amplitudes of all members'
-    sizes. The priors of b and a are Gaussian with standard deviation 1, that of a cut at zero where it cannot
-    be negative.
+    sizes. The priors of b and a are Gaussian with standard deviation 1, that of an amplitude cut at zero
+    where it cannot be negative.
     """
 
     axle: Axle
+    """The nominal axle, without the members."""
     space: Space
+    """Tunable parameters with their bounds and priors."""
     likelihood: Likelihood
+    """The records as data with their errors."""
     members: tuple[Hypothesis, ...] = ()
+    """Effects in the model."""
     left_out: str | None = None
+    """Load case whose records are held back from fits, None for none."""
     sides: FloatArray | None = None
+    """(M, k) change of the residual by each difference between the sides, per its standard deviation."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
+    """Solver of its axles, the same for all models that come of one another."""
 
     @cached_property
     def used(self) -> NDArray[np.bool_]:
@@ -60,7 +63,7 @@ class EffectModel:
 
     @cached_property
     def contrasts(self) -> Contrasts:
-        """Of the data."""
+        """Contrasts of the data."""
         return contrasts(self.likelihood)
 
     @cached_property
@@ -105,13 +108,13 @@ class EffectModel:
     def lower(self) -> FloatArray:
         """(d + m,) lower bounds."""
         free = [-AMPLITUDE_LIMIT * s.most if s.signed or s.shape else 0.0 for s in self.sizes]
-        rig = np.full(self.dimension - self.parameters, -RIG)
+        rig = np.full(self.dimension - self.parameters, -NUISANCE_LIMIT)
         return np.concatenate([np.zeros(self.parameters), rig, free])
 
     @cached_property
     def upper(self) -> FloatArray:
         """(d + m,) upper bounds."""
-        rig = np.full(self.dimension - self.parameters, RIG)
+        rig = np.full(self.dimension - self.parameters, NUISANCE_LIMIT)
         return np.concatenate([np.ones(self.parameters), rig, [AMPLITUDE_LIMIT * s.most for s in self.sizes]])
 
     def extended(self, hypothesis: Hypothesis) -> EffectModel:
@@ -122,7 +125,7 @@ class EffectModel:
         """The model with one effect less."""
         return replace(self, members=tuple(h for h in self.members if h != hypothesis))
 
-    def with_errors(self, likelihood: Likelihood) -> EffectModel:
+    def with_likelihood(self, likelihood: Likelihood) -> EffectModel:
         """The model against the same records with other errors."""
         sides = None if self.sides is None else rewhitened(self.sides, self.likelihood, likelihood)
         return replace(self, likelihood=likelihood, sides=sides)
@@ -167,20 +170,20 @@ class EffectModel:
 
     def residual_of(self, axle: Axle, z: FloatArray) -> FloatArray:
         """(M,) of any axle, the rig's calibrations and the differences between the sides as at z."""
-        plain = self.likelihood.residual(self._read(axle, z), NO_CHARACTERISTICS)
+        residual = self.likelihood.residual(self._read(axle, z), NO_CHARACTERISTICS)
         if self.sides is None:
-            return plain
-        return np.asarray(plain + self.sides @ z[self.calibrations.stop : self.dimension])
+            return residual
+        return np.asarray(residual + self.sides @ z[self.calibrations.stop : self.dimension])
 
-    def tuning(self, z: FloatArray, residual: FloatArray) -> FloatArray:
+    def tuning_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, d) derivative of the residual to parameters (exact) and nuisances. residual: at z."""
         axle = self._driven(self.with_effects(z), z)
         expansion = linearize(axle, self.space, z[: self.parameters], solve=self.solutions)
-        found = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
-        columns = [found, self._stretched(z, residual)]
+        parameters = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
+        columns = [parameters, self._calibration_columns(z, residual)]
         return np.hstack(columns if self.sides is None else [*columns, self.sides])
 
-    def _stretched(self, z: FloatArray, residual: FloatArray) -> FloatArray:
+    def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""
         moved = z.copy()
         moved[self.calibrations] += CALIBRATION_STEP
@@ -190,11 +193,13 @@ class EffectModel:
             out[place, self.cases.index(curve.load_case)] = change[place]
         return out
 
-    def growth(self, z: FloatArray, residual: FloatArray, *, which: slice | None = None) -> FloatArray:
+    def amplitude_columns(
+        self, z: FloatArray, residual: FloatArray, *, which: slice | None = None
+    ) -> FloatArray:
         """(M, m) derivative to the amplitudes by forward differences. residual: at z."""
         columns = []
         for i in range(*(which or slice(self.dimension, z.size)).indices(z.size)):
-            step = DIFFERENCE if z[i] + DIFFERENCE <= self.upper[i] else -DIFFERENCE
+            step = AMPLITUDE_STEP if z[i] + AMPLITUDE_STEP <= self.upper[i] else -AMPLITUDE_STEP
             moved = z.copy()
             moved[i] += step
             columns.append((self.residual(moved) - residual) / step)

@@ -18,13 +18,14 @@ class Projection:
 
     In the rows of the data, (M,), followed by those of the prior, (d,). Inner products of projected rows
     are those of C^-1, C = S + J P P J' the covariance of the data with the parameters marginalized.
-    jacobian: (M, d) of what can be moved; parameters held at a bound still count as free. prior_sd: (d,).
-    offset: (d,) of the fitted point from the prior's mean, in its sd.
     """
 
     jacobian: FloatArray
+    """(M, d) derivative to what can be moved; parameters held at a bound still count as free."""
     prior_sd: FloatArray
+    """(d,) standard deviations of the prior."""
     offset: FloatArray
+    """(d,) of the fitted point from the prior's mean, in its standard deviations."""
 
     @cached_property
     def _root(self) -> FloatArray:

@@ -20,11 +20,12 @@ from doe_kc.ground.typing import FloatArray
 
 Arrays = Mapping[str, FloatArray]
 BYTES = 8
-"""Of a number."""
+"""Size of a number in the store."""
 TABLE = "packed_results"
 FORMAT = "2"
-"""Of what is stored: raise it with every change of what a result means, of how it is computed so far that its
-numbers differ, or of what is packed. Results of another format are not taken up, and computed anew."""
+"""Format of what is stored: raise it with every change of what a result means, of how it is computed so far
+that its numbers differ, or of what is packed. Results of another format are not taken up, and computed
+anew."""
 
 
 class ResultCache:
@@ -95,7 +96,7 @@ def unpacked(data: bytes) -> dict[str, FloatArray]:
 
 
 def fingerprint(model: EffectModel) -> str:
-    """Of everything that the model's answers depend on: axle, parameters, records, version, FORMAT."""
+    """Digest of everything that the model's answers depend on: axle, parameters, records, version, FORMAT."""
     digest = hashlib.sha256(f"{__version__} {FORMAT}".encode())
     axle = model.axle
     for text in (sorted(axle.values.items()), axle.topology, axle.load_cases, model.space, model.left_out):

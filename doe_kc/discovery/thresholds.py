@@ -11,26 +11,26 @@ from __future__ import annotations
 INPUT_GAIN = 0.003
 """-, standard deviation of the scale of a rig's input. Accuracy class of its load cells, travel and angle
 sensors."""
-DOUBT = 0.2
-"""-, share added to every variance of a map. Few repeats leave the noise's own size open: three of them by
-a fifth."""
+NOISE_SIZE_DOUBT = 0.2
+"""-, share added to every variance of a map. Few repeats leave the noise's own size open: three of them by a
+fifth."""
 NOISE_SD_SHARE = 0.02
-"""-, standard deviation of the noise's own size in a prediction. Taken from three runs of every load
-case."""
-PRESENT = 0.03
-"""typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some
-of each: a choice, small beside the tenth that is worth a name."""
+"""-, standard deviation of the noise's own size in a prediction. Taken from three runs of every load case."""
+TRACE_SD = 0.03
+"""typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some of
+each: a choice, small beside the tenth that is worth a name."""
 
 SIDE_POSITION = 0.25
 """mm, standard deviation of right minus left of a hardpoint. Tolerance of drilled and welded parts."""
 SIDE_CLEARANCE = 1.0
-"""mm, the same of a bump stop's clearance. Rubber and spring seats of one batch."""
+"""mm, standard deviation of right minus left of a bump stop's clearance. Rubber and spring seats of one
+batch."""
 SIDE_ANGLE = 0.07
-"""deg, the same of a static angle. Setting on an alignment bench."""
+"""deg, standard deviation of right minus left of a static angle. Setting on an alignment bench."""
 SIDE_BUSHING = 0.03
-"""-, the same of a bushing's stiffness, relative. Rubber of one batch."""
+"""-, standard deviation of right minus left of a bushing's stiffness, relative. Rubber of one batch."""
 SIDE_RATE = 0.02
-"""-, the same of a rate, relative. Springs are paired by rate."""
+"""-, standard deviation of right minus left of a rate, relative. Springs are paired by rate."""
 
 # Fit
 
@@ -40,8 +40,9 @@ less than any decision turns on."""
 LAST_STEP_DECREASE = 1.0
 """ln likelihood times 2, predicted decrease below which a step is the last and keeps the derivatives before
 it. One standard deviation; the quadratic convergence of Gauss-Newton leaves a hundredth of it."""
-FRESH = 3.0
-"""ln likelihood times 2, decrease since derivatives were taken up to which they may end a fit. A choice."""
+FRESH_DECREASE = 3.0
+"""ln likelihood times 2, decrease since derivatives were taken up to which they may end a fit. A choice: less
+than two standard deviations, over which derivatives hardly change."""
 REUSE_DECREASE = 3000.0
 """ln likelihood times 2, decrease below which old derivatives still lead on. A choice that saves
 solutions."""
@@ -49,50 +50,48 @@ FIT_STEPS = 24
 """-, steps of a fit at most. A choice: a fit that takes more is lost."""
 REFIT_STEPS = 8
 """-, steps of a refit with a load case held out at most. It begins close to where it ends."""
-FOLLOW_STEPS = 6
+CHORD_STEPS = 6
 """-, steps along known derivatives at most. More would not end there."""
-FOLLOW_DECREASE = 10.0
-"""ln likelihood times 2, decrease up to which a load case held out is followed on known derivatives. At 30
-an RMS was off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
+CHORD_DECREASE = 10.0
+"""ln likelihood times 2, decrease up to which a load case held out is followed on known derivatives. At 30 an
+RMS was off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
 FIT_POOR_RATIO = 0.25
-"""-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint
-2000)."""
+"""-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint 2000)."""
 FIT_GOOD_RATIO = 0.75
-"""-, the same, above which it grows."""
+"""-, decrease over its prediction, above which the trust radius grows. Usual (Conn, Gould, Toint 2000)."""
 LEAST_STEP = 0.0001
 """prior standard deviations, trust radius below which a fit is given up. A choice, beyond any use."""
 LARGEST_RADIUS = 2.0
 """prior standard deviations, trust radius at most. Beyond, no axle is linear: a choice."""
 AMPLITUDE_LIMIT = 2.0
-"""times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is
-too large."""
-RIG = 6.0
-"""standard deviations, the same for the nuisances of the rig. A fault so large is an effect of its own."""
-DIFFERENCE = 0.001
-"""typical sizes, step of amplitudes for their derivatives. Near the cube root of rounding, the best of
-central ones."""
+"""times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is too
+large."""
+NUISANCE_LIMIT = 6.0
+"""standard deviations, nuisance that a fit does not go beyond. A fault of the rig so large is an effect of
+its own."""
+AMPLITUDE_STEP = 0.001
+"""typical sizes, step of amplitudes for their derivatives, forward differences. Measured on five effects:
+columns were off by 0.07 % at most, by 0.7 % at 0.01 and by 0.2 % at 0.00001."""
 CALIBRATION_STEP = 0.1
 """standard deviations, step of the calibrations of inputs for their derivatives. They are linear far beyond
 it."""
-HELD = 0.05
-"""-, share of the parameters at a bound from which wider ranges are tried. A single one is a tolerance, not
-a series."""
-AT = 1e-09
+SHARE_AT_BOUNDS = 0.05
+"""-, share of the parameters at a bound from which wider ranges are tried. A single one is a tolerance, not a
+series."""
+BOUND_ROUNDING = 1e-09
 """-, share of a range within which a value is at its bound. Rounding."""
-FACTORS = (1.5, 2.0)
-"""-, by how much wider ranges are tried. A choice: a series off nominal by more than that is another
-axle."""
+BOUND_FACTORS = (1.5, 2.0)
+"""-, by how much wider ranges are tried. A choice: a series off nominal by more than that is another axle."""
 BOUND_EVIDENCE = 7.0
 """ln evidence, from which wider ranges are taken. A thousand to one: all parameters change at once."""
 LOOP_EVIDENCE = 2.3
-"""ln evidence, from which the loops before the record are changed. Ten to one: a loop more takes its
-time."""
+"""ln evidence, from which the loops before the record are changed. Ten to one: a loop more takes its time."""
 
 # Map of disagreement
 
 FALSE_ALARM_CHANCE = 0.05
 """-, chance that noise alone passes the threshold somewhere on the map. The usual level."""
-NOISE = 0.01
+NOISE_CHANCE = 0.01
 """-, chance of a map's largest disagreement below which noise does not explain it. A name must not rest on
 one in twenty."""
 NOISE_DRAWS = 1000
@@ -100,20 +99,22 @@ NOISE_DRAWS = 1000
 CONTRAST_SHARE = 0.0001
 """-, share of a contrast's square below which re-tuning absorbs it wholly. What is left is rounding of
 derivatives."""
-WORST = 8
+DISAGREEMENTS_LISTED = 8
 """-, disagreements that are listed. Room on a page."""
 
 # Screening
 
 PROBE = 0.3
-"""typical sizes, first size at which an effect is solved for. Small enough to be nearly linear, large
-enough to open a clearance."""
-SMALLER = 0.1
-"""-, factor of the first size where the effect is not linear below it. A choice."""
+"""typical sizes, first size at which an effect is solved for. Small enough to be nearly linear, large enough
+to open a clearance."""
+PROBE_FACTOR = 0.1
+"""-, factor of the first size where the effect is not linear below it. A choice: a tenth brings it to 0.03
+typical sizes, where effects that level off are still linear."""
 SCREEN_STEPS = 4
 """-, steps of a screening at most. A ranking needs no more: the leaders are refitted."""
 SCREEN_STEP_SHARES = (1.0, 0.5, 0.2, 0.05)
-"""-, shares of a step, tried one after the other until one gains. A choice."""
+"""-, shares of a step, tried one after the other until one gains. A choice: four solutions at most, down to a
+twentieth."""
 HOPELESS = 1.0
 """ln likelihood, that a step must promise over the model without the effect. Less is what noise gives any
 column."""
@@ -121,7 +122,7 @@ SCREEN_DECREASE = 0.1
 """ln likelihood times 2, decrease below which an amplitude is settled. A third of a standard deviation."""
 NULL_SHARE = 1e-12
 """-, share of what all sizes of an effect do, in squares, that is nothing. Rounding."""
-SHAPES = (0.0, -2.0, 2.0)
+SHAPE_STARTS = (0.0, -2.0, 2.0)
 """prior standard deviations, starts of a shape. It does not exist where the effect is absent (Davies
 1977)."""
 PROMISING = 1.0
@@ -131,27 +132,28 @@ CHUNKS = 4
 
 # Refits
 
-LEADERS = 5
+REFITS_MOST = 5
 """-, hypotheses that are refitted at each step. A choice: each costs a refit."""
-RIVAL = 0.3
+RIVAL_CORRELATION = 0.3
 """-, |correlation| of what two effects explain, from which they are rivals. Below, both would be needed."""
 REFIT_SHARE = 0.2
-"""-, share of the best screened gain below which a hypothesis is not refitted. A choice."""
-OF_ONE_KIND = 2
+"""-, share of the best screened gain below which a hypothesis is not refitted. A choice that saves refits."""
+PLACES_REFITTED = 2
 """-, places of the same effect that are refitted at most. So that one effect does not fill the list."""
 ABSORBED_SHARE = 0.95
-"""-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes
-are missed by a screening of first order in the parameters."""
-TIED = 1.0
+"""-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes are
+missed by a screening of first order in the parameters."""
+TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01
-"""-, chance that noise alone brings in any effect at a step, shared by the whole library (Bonferroni)."""
+"""-, chance that noise alone brings in any effect at a step. The usual level of one in a hundred, shared by
+the whole library (Bonferroni)."""
 EFFECTS_MOST = 6
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six."""
 MOST_STEPS = 12
 """-, steps after which the search ends although effects still come in and out. Twice the number of
 effects."""
-DOUBTFUL = 10.0
+REMOVAL_FACTOR = 10.0
 """times the threshold of acceptance, beyond which a member is not tried without. It would come in again."""
 
 # Laws
@@ -159,49 +161,51 @@ DOUBTFUL = 10.0
 DISCREPANCY_SHARES = (0.0, 0.01, 0.02, 0.05, 0.1)
 """-, standard deviations of the discrepancy of a law, relative to what it makes of a curve, that are tried.
 Above a tenth a law is another law."""
-LENGTH = 0.5
+DISCREPANCY_LENGTH = 0.5
 """amplitudes, correlation length of that discrepancy over the input. Smooth laws differ at the ends and the
 middle."""
 
 # Verdict
 
 NAME_PROBABILITY = 0.9
-"""-, probability against its rivals, from which an effect is named by itself. A choice: nine names of ten
-are right where it is just met."""
+"""-, probability against its rivals, from which an effect is named by itself. A choice: nine names of ten are
+right where it is just met."""
 NAME_LEVEL = 6.0
 """standard deviations, below which an effect is not named by them alone. One in a billion: the library is
 large and the noise not exactly normal."""
 NAME_ALWAYS_LEVEL = 10.0
-"""standard deviations, from which an effect is named beside any other. A choice."""
-CLOSED = 0.9
-"""-, share of the gap that a name must close where the gap is clear of noise. A choice: a tenth is what
-laws leave."""
-CLEAR = 5.0
+"""standard deviations, from which an effect is named beside any other. A choice: far above the six of
+`NAME_LEVEL`."""
+GAP_CLOSURE = 0.9
+"""-, share of the gap that a name must close where the gap is clear of noise. A choice: a tenth is what laws
+leave."""
+GAP_CLEAR = 5.0
 """standard deviations of a sum of squares, beyond which a gap is clear of noise. Beyond all chance."""
 HARM = 6.0
-"""ln predictive density, that a held-out load case may lose to chance. One in four hundred, over eight
-cases and several effects."""
+"""ln predictive density, that a held-out load case may lose to chance. One in four hundred, over eight cases
+and several effects."""
 HARM_SHARE = 0.02
 """-, share of the total gain that a held-out load case may lose. The shape of an effect's law is not
 exact."""
-LIMIT = 4.0
+HELD_OUT_LIMIT = 4.0
 """standard deviations, by which the RMS of a load case held out may be above 1. One in thirty thousand, for
 each of eight load cases."""
 UNLISTED = 0.02
 """-, odds before the records that an effect outside the library is at work. An assumption, stated with the
 result."""
 RELEVANT = 0.1
-"""typical sizes, below which an effect is a trace: seen, but not worth a name. A choice."""
+"""typical sizes, below which an effect is a trace: seen, but not worth a name. A choice: every car has traces
+of most effects."""
 CONFIDENT = 2.0
 """standard deviations, by which a size must be beyond a limit to count as beyond it. The usual level."""
-BESIDE = 0.01
-"""-, share of the largest gain, from which an effect beside it is named where laws had to be opened. Less
+BESIDE_SHARE = 0.01
+"""-, share of the largest gain, from which an effect beside it is named where a law has a discrepancy. Less
 is what a law a tenth off leaves behind, in squares."""
 WRONG_NAME_CHANCE = 0.05
 """-, chance of a wrong name, from which two effects are alike to the records. The usual level."""
-DECISIVE = 4.6
+DECISIVE_EVIDENCE = 4.6
 """ln evidence, that settles even between effects that are alike. A hundred to one."""
-MENTIONED = 0.01
+RIVAL_LISTED = 0.01
 """-, probability from which a rival is listed. A hundred to one."""
 CERTAIN = 6.0
 """log10 odds, beyond which no more is said. What all models share is less sure than a million to one."""
@@ -218,13 +222,14 @@ POWER = 0.84
 """standard deviations above the critical value, at which an effect is found in 80 % of cars. Normal
 quantile."""
 ONE_SIDED = 1.645
-"""standard deviations of a one-sided 95 % limit. Normal quantile."""
+"""standard deviations, one-sided 95 % limit of a size. Normal quantile."""
 ALIKE_CORRELATION = 0.8
-"""-, |correlation| after re-tuning, from which two effects are listed as alike. A choice."""
-UNSURE = 0.005
-"""-, share of a change's square below which what re-tuning leaves of it is not believed. A choice:
-parameters that follow so far are no longer linear."""
-HIDING = 3
+"""-, |correlation| after re-tuning, from which two effects are listed as alike. A choice: two thirds of the
+squares are shared."""
+UNSURE_SHARE = 0.005
+"""-, share of a change's square below which what re-tuning leaves of it is not believed. A choice: parameters
+that follow so far are no longer linear."""
+HIDING_LISTED = 3
 """-, parameters listed that hide an effect. Room on a page."""
 
 # Scan of interfaces
@@ -237,27 +242,27 @@ PLACE_PROBABILITY = 0.9
 
 # Further tests
 
-LARGER = 1.5
+AMPLITUDE_FACTOR = 1.5
 """-, times the amplitude that was measured, of an advised load case. What rigs and tyres allow."""
 TEST_WORTH = 3.0
 """standard deviations, from which a load case is worth running. One in four hundred by chance."""
 TESTS_LISTED = 2
 """-, tests that are listed for a pair. Room on a page."""
-ADVISED = 6
+TESTS_ADVISED = 6
 """-, tests that are listed in all. Room on a page."""
 PARAMETERS_LISTED = 8
 """-, parameters that are listed. Room on a page."""
 DETECTION_LEVEL = 10.0
-"""standard deviations at typical size, up to which parts are advised to be measured. A size then is good to
-a tenth."""
+"""standard deviations at typical size, up to which parts are advised to be measured. A size then is good to a
+tenth."""
 PARTS_MOST = 4
 """-, parts to be measured for one effect. More is a tear-down of the axle."""
 BENCH_ACCURACY = 0.02
 """-, standard deviation of a measured stiffness or rate. Test benches of bushings and springs."""
-RADIUS = 0.005
-"""-, the same of a bar's radius, whose fourth power is its rate. Half a tenth of a millimetre: a
-calliper."""
-POSITION = 0.1
+BENCH_RADIUS = 0.005
+"""-, standard deviation of a measured bar's radius, whose fourth power is its rate. Half a tenth of a
+millimetre: a calliper."""
+BENCH_POSITION = 0.1
 """mm, standard deviation of a point. Coordinate measuring machine with the parts' own seats."""
-ANGLE = 0.02
+BENCH_ANGLE = 0.02
 """deg, standard deviation of an angle. Alignment bench."""

@@ -1,4 +1,4 @@
-"""Where the work of a discovery is done: in worker processes, each result remembered in the ledger."""
+"""Where the work of a discovery is done: in worker processes, each result kept in the cache."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import numpy as np
 
 from doe_kc.campaign.in_process import InProcess
 from doe_kc.discovery.fit import Fit, cost_of, fit
-from doe_kc.discovery.held_out import HeldOut, held_out
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
-from doe_kc.discovery.scan import Scan, scan
-from doe_kc.discovery.screen import Screened, effort, screen
+from doe_kc.discovery.screening.scan import Scan, scan
+from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS
+from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
@@ -26,29 +26,29 @@ T = TypeVar("T")
 
 
 class DiscoveryWorkers:
-    """executor: where tasks run, default this process. ledger: what is known already."""
+    """executor: where tasks run, default this process. cache: results of earlier runs, default none."""
 
     def __init__(
         self,
         executor: Executor | None = None,
-        ledger: ResultCache | None = None,
+        cache: ResultCache | None = None,
         watch: Watch = lambda *_: None,
         *,
         workers: int = 1,
     ) -> None:
         self._executor = executor or InProcess()
-        self._ledger = ledger or ResultCache(None)
+        self._cache = cache or ResultCache(None)
         self.watch = watch
         self._workers = workers
 
-    def screened(self, fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
+    def screenings(self, fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
         """Every hypothesis added to a fitted model, in their order."""
         base = fingerprint(fit.model)
         keys = [key_of("screen", base, fit.z, repr(h)) for h in hypotheses]
         out: dict[int, Screened] = {}
         missing: list[int] = []
         for i, (key, h) in enumerate(zip(keys, hypotheses, strict=True)):
-            known = self._ledger.get(key)
+            known = self._cache.get(key)
             if known is None:
                 missing.append(i)
             else:
@@ -60,12 +60,12 @@ class DiscoveryWorkers:
         for at, results in self._run(_screen_many, tasks):
             part = groups[at]
             for i, result in zip(part, results, strict=True):
-                self._ledger.put(keys[i], _packed(result))
+                self._cache.put(keys[i], _packed(result))
                 out[i] = result
             self.watch("screening effects", len(part))
         return [out[i] for i in range(len(hypotheses))]
 
-    def fitted(
+    def fits(
         self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
     ) -> list[Fit | None]:
         """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step.
@@ -74,7 +74,7 @@ class DiscoveryWorkers:
         same errors is asked by identity.
         """
         keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
-        stored = {i: self._ledger.get(key) for i, key in enumerate(keys)}
+        stored = {i: self._cache.get(key) for i, key in enumerate(keys)}
         known: dict[int, Arrays] = {i: arrays for i, arrays in stored.items() if arrays is not None}
         if known:
             self.watch(what, len(known))
@@ -83,20 +83,22 @@ class DiscoveryWorkers:
         for at, arrays in self._run(_fit_one, tasks):
             i = missing[at]
             known[i] = arrays
-            self._ledger.put(keys[i], arrays)
+            self._cache.put(keys[i], arrays)
             self.watch(what, 1)
         return [_unpacked_fit(m, known[i]) for i, (m, _) in enumerate(starts)]
 
-    def held_out(self, tuned: Fit, plain: Fit, final: Fit) -> tuple[HeldOut, ...]:
+    def held_out(self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
-        found: dict[int, HeldOut] = {}
-        for i, result in self._run(held_out, [(tuned, plain, final, case) for case in cases]):
-            found[i] = result
+        predictions: dict[int, HeldOut] = {}
+        for i, result in self._run(
+            held_out, [(tuned, with_effects, with_discrepancy, case) for case in cases]
+        ):
+            predictions[i] = result
             self.watch("load cases held out", 1)
-        return tuple(found[i] for i in range(len(cases)))
+        return tuple(predictions[i] for i in range(len(cases)))
 
-    def scanned(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
+    def scan(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
         """Begins the generic scan at a model; what is returned waits for it.
 
         None when its axle has no equilibrium with the instruments in.
@@ -104,19 +106,19 @@ class DiscoveryWorkers:
         future = self._executor.submit(_scan, tuned, temper)
 
         def waited() -> Scan | None:
-            found = future.result()
+            result = future.result()
             self.watch("scanning every interface", 1)
-            return found
+            return result
 
         return waited
 
     def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
         """(place, result) of every task as it is done; in this process one is done before the next begins."""
         if isinstance(self._executor, InProcess):
-            for i, given in enumerate(arguments):
-                yield i, task(*given)
+            for i, call in enumerate(arguments):
+                yield i, task(*call)
             return
-        futures = {self._executor.submit(task, *given): i for i, given in enumerate(arguments)}
+        futures = {self._executor.submit(task, *call): i for i, call in enumerate(arguments)}
         for future in as_completed(futures):
             yield futures[future], future.result()
 
@@ -152,7 +154,7 @@ def _packed_fit(fit: Fit) -> Arrays:
 
 
 def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
-    """None for one without an equilibrium."""
+    """The stored fit, None for one without an equilibrium."""
     if not known["z"].size:
         return None
     z, residual = known["z"], known["residual"]
@@ -169,7 +171,7 @@ def _packed(screening: Screened) -> Arrays:
         "numbers": np.array([screening.gain, screening.score, screening.detectability, screening.absorbed]),
         "columns": screening.columns,
         "change": screening.change,
-        "visible": screening.visible,
+        "visible": screening.size_detectability,
         "failed": np.frombuffer(screening.failed.encode(), dtype=np.uint8).astype(float),
     }
 

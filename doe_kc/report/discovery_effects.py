@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import pandas as pd
 
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.sentences import against_words
 from doe_kc.discovery.thresholds import CERTAIN, NAME_PROBABILITY
+from doe_kc.discovery.verdict.sentences import against_words
 from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_sizes import FoundSize, found_sizes
 from doe_kc.report.discovery_words import effect_label, mistaken_words, place_of

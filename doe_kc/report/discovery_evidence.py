@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.search import Step, threshold
+from doe_kc.discovery.search.search import Step, threshold
 from doe_kc.report import style
 from doe_kc.report.discovery_words import hypothesis_label
 from doe_kc.report.panel import PageBox, Panel

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from matplotlib.lines import Line2D
 
-from doe_kc.discovery.held_out import HeldOut
+from doe_kc.discovery.verdict.held_out import HeldOut
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
 from doe_kc.report.names import case_label
 from doe_kc.report.panel import Panel

@@ -11,8 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.correlation.likelihood import rewhitened
-from doe_kc.discovery.exclusion import Status
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.verdict.exclusion import Status
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report import style

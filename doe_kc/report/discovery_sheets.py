@@ -12,8 +12,8 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.curves import RESPONSE_LABELS
-from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.ground.numbers import sd_format
 from doe_kc.report.discovery_effects import effect_frame
 from doe_kc.report.discovery_gaps import gap_rows
@@ -51,13 +51,17 @@ def disagreement_sheet(book: Workbook, discovery: Discovery, study: str) -> None
     """Every contrast of the records with the model, what re-tuning explains worst first."""
     ws = book.create_sheet("Disagreement")
     below = (
-        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} "
-        f"(nominal ±{discovery.raw.threshold:.1f}) "
+        f"Standard deviations; beyond ±{discovery.tuned_map.threshold:.1f} "
+        f"(nominal ±{discovery.nominal_map.threshold:.1f}) "
         "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
         "Empty: absorbed by re-tuning."
     )
     title(ws, f"Disagreement: {study}", below)
-    maps = {"nominal": discovery.raw, "re-tuned": discovery.tuned, "with effect": discovery.final}
+    maps = {
+        "nominal": discovery.nominal_map,
+        "re-tuned": discovery.tuned_map,
+        "with effect": discovery.residual_map,
+    }
     rows = [
         (
             case_label(r.load_case), RESPONSE_LABELS[r.response], r.shape, _wheels(r.wheels), r.z_nominal,

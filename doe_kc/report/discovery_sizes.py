@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from doe_kc.discovery.amplitudes import amplitudes
+from doe_kc.discovery.fit import amplitude_estimates
 from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate
 from doe_kc.discovery.thresholds import ONE_SIDED
 from doe_kc.effects.hypothesis import Size
@@ -44,7 +44,7 @@ class FoundSize:
 
 def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
-    known = zip(*amplitudes(discovery.fitted, finding.hypothesis), strict=True)
+    known = zip(*amplitude_estimates(discovery.fitted, finding.hypothesis), strict=True)
     for size, estimate, (amplitude, sd) in zip(
         finding.hypothesis.sizes, finding.estimates, known, strict=True
     ):

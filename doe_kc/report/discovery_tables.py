@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
-from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_words import (
     STATUS_WORDS,
@@ -42,14 +42,16 @@ class DisagreementRow:
 def disagreement_rows(discovery: Discovery) -> list[DisagreementRow]:
     """Every contrast of the records."""
     after = (
-        discovery.final.z if discovery.fitted.model.members else np.full(len(discovery.final.names), np.nan)
+        discovery.residual_map.z
+        if discovery.fitted.model.members
+        else np.full(len(discovery.residual_map.names), np.nan)
     )
     return [
         DisagreementRow(
             c.load_case, c.response, c.shape, c.wheels,
-            float(discovery.raw.z[i]), float(discovery.tuned.z[i]), float(after[i]),
+            float(discovery.nominal_map.z[i]), float(discovery.tuned_map.z[i]), float(after[i]),
         )
-        for i, c in enumerate(discovery.raw.names)
+        for i, c in enumerate(discovery.nominal_map.names)
     ]  # fmt: skip
 
 
@@ -107,7 +109,7 @@ def hidden_words(standing: HypothesisStatus) -> str:
 
 def bench_words(standing: HypothesisStatus) -> str:
     """Parts that a bench has to measure for the effect to show, and by how much it then does."""
-    test = standing.bench
+    test = standing.component_test
     return "" if test is None else f"{', '.join(test.parts)} ({test.separation:.0f} sd)"
 
 

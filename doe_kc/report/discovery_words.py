@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
-from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.discovery.result import Discovery, VerdictKind
+from doe_kc.discovery.screening.contrasts import Contrast
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.numbers import number, unit_words

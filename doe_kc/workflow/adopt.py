@@ -8,8 +8,8 @@ from typing import Any
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.record import EffectRecord
-from doe_kc.discovery.contrasts import LOOP_SHAPES, Contrast
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.screening.contrasts import LOOP_SHAPES, Contrast
 from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.report.discovery_words import effect_label
 from doe_kc.study import Study
@@ -118,7 +118,7 @@ def _without(discovery: Discovery, any_effect: bool) -> frozenset[tuple[str, str
     if discovery.verdict != "unexplained":
         return frozenset()
     left: Sequence[tuple[Contrast, float]] = (
-        discovery.unexplained if any_effect else discovery.tuned.worst(PLACES_LISTED)
+        discovery.unexplained if any_effect else discovery.tuned_map.worst(PLACES_LISTED)
     )
     return frozenset((c.load_case, c.response) for c, _ in left if c.shape not in LOOP_SHAPES)
 

@@ -53,8 +53,8 @@ def discover_study(
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
     count = workers or available_cores()
-    with processes(count) as executor, ResultCache(study.discovery_store) as ledger:
-        return discover(model, library, DiscoveryWorkers(executor, ledger, watch, workers=count))
+    with processes(count) as executor, ResultCache(study.discovery_store) as cache:
+        return discover(model, library, DiscoveryWorkers(executor, cache, watch, workers=count))
 
 
 def recorded(axle: Axle, measurement: Measurement) -> Axle:
@@ -114,6 +114,6 @@ def discover_folder(
     library = effect_library(axle, exclude)
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
-    with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as ledger:
-        found = discover(model, library, DiscoveryWorkers(executor, ledger, workers=workers))
+    with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as cache:
+        found = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
     return dict(discovery_document(found, None))

@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from doe_kc.discovery.adequacy import Adequacy
-from doe_kc.discovery.exclusion import HypothesisStatus, exclusion_limit
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.sentences import adequacy_words, odds_words
 from doe_kc.discovery.thresholds import CERTAIN
+from doe_kc.discovery.verdict.adequacy import Adequacy
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, exclusion_limit
+from doe_kc.discovery.verdict.sentences import adequacy_words, odds_words
 from doe_kc.effects.hypothesis import Size
 from doe_kc.report.discovery_sizes import size_words
 from doe_kc.report.discovery_words import HEADLINES, contrast_words, effect_label, hypothesis_label
@@ -142,11 +142,11 @@ def further_tests(discovery: Discovery) -> list[dict[str, Any]]:
             "kind": "component",
             "effects": [s.hypothesis.effect],
             "location": s.hypothesis.location,
-            "parts": list(s.bench.parts),
-            "separation": s.bench.separation,
+            "parts": list(s.component_test.parts),
+            "separation": s.component_test.separation,
         }
         for s in discovery.statuses
-        if s.bench is not None
+        if s.component_test is not None
     ]
     return [*runs, *parts]
 

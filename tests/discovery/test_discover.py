@@ -95,10 +95,12 @@ def test_limits_mean_nothing_where_the_model_or_a_friction_s_law_does_not_hold()
     hub, friction = discovery("named").search, discovery("friction").search
     assert resolved(hub, good)
     assert not resolved(hub, bad)
-    name = friction.final.model.members[0].name
-    assert resolved(replace(friction, shares={name: 0.0}), good)
-    assert not resolved(replace(friction, shares={name: 0.02}), good)
-    assert resolved(replace(hub, shares={hub.final.model.members[0].name: 0.02}), good)
+    name = friction.with_law_discrepancy.model.members[0].name
+    assert resolved(replace(friction, discrepancy_shares={name: 0.0}), good)
+    assert not resolved(replace(friction, discrepancy_shares={name: 0.02}), good)
+    assert resolved(
+        replace(hub, discrepancy_shares={hub.with_law_discrepancy.model.members[0].name: 0.02}), good
+    )
 
 
 def test_records_of_other_load_cases_are_noticed() -> None:
@@ -123,21 +125,21 @@ def test_white_noise_assumed_where_it_is_not_does_not_pass_for_agreement() -> No
     }
     likelihood = record_likelihood(nominal(), replace(measured, noise=noise))
     found = discover(EffectModel(nominal(), space(), likelihood), library())
-    assert found.tuned.mean_square > 1.5
-    assert not found.tuned.agrees
+    assert found.tuned_map.mean_square > 1.5
+    assert not found.tuned_map.agrees
 
 
-def test_with_a_ledger_nothing_is_computed_twice(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_with_a_cache_nothing_is_computed_twice(tmp_path) -> None:  # type: ignore[no-untyped-def]
     path = tmp_path / "discovery.sqlite"
     told: list[str] = []
     car, few = model("named", LATERAL), library("hub_compliance")
-    with ResultCache(path) as ledger:
-        first = discover(car, few, DiscoveryWorkers(ledger=ledger))
-    with ResultCache(path) as ledger:
+    with ResultCache(path) as cache:
+        first = discover(car, few, DiscoveryWorkers(cache=cache))
+    with ResultCache(path) as cache:
         again = discover(
             model("named", LATERAL),
             few,
-            DiscoveryWorkers(ledger=ledger, watch=lambda words, _: told.append(words)),
+            DiscoveryWorkers(cache=cache, watch=lambda words, _: told.append(words)),
         )
     assert "screening effects" not in told
     assert again.sentences == first.sentences

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
-from doe_kc.discovery.fit import Fit, cost_of, fit, followed
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import FIT_DECREASE
 from tests.discovery.cases import library, model
@@ -26,7 +26,9 @@ def test_residual_and_its_derivatives_agree(with_hub: Fit) -> None:
     rng = np.random.default_rng(2)
     step = 1e-4 * rng.standard_normal(z.size) * model.prior_sd
     change = model.residual(z + step) - model.residual(z - step)
-    jacobian = np.hstack([model.tuning(z, with_hub.residual), model.growth(z, with_hub.residual)])
+    jacobian = np.hstack(
+        [model.tuning_columns(z, with_hub.residual), model.amplitude_columns(z, with_hub.residual)]
+    )
     expected = 2.0 * jacobian @ step
     assert np.linalg.norm(change - expected) < 0.01 * np.linalg.norm(expected)
 
@@ -70,7 +72,7 @@ def test_evidence_is_that_of_the_linear_gaussian_model() -> None:
 
 def test_followed_goes_most_of_the_way_of_a_fit(with_hub: Fit) -> None:
     without = replace(with_hub.model, left_out="lateral")
-    near, full = followed(with_hub, without), fit(without, with_hub.z)
+    near, full = chord_fit(with_hub, without), fit(without, with_hub.z)
     start = cost_of(without, with_hub.z, with_hub.residual)
     assert full.cost <= near.cost + FIT_DECREASE < start
     assert near.cost - full.cost < 0.2 * (start - full.cost) + 0.5

@@ -35,8 +35,8 @@ def counted(self, key, arrays):
     put(self, key, arrays)
 
 ResultCache.put = counted
-with ResultCache(Path(sys.argv[1])) as ledger:
-    discover(model("named", LATERAL), library("hub_compliance"), DiscoveryWorkers(ledger=ledger))
+with ResultCache(Path(sys.argv[1])) as cache:
+    discover(model("named", LATERAL), library("hub_compliance"), DiscoveryWorkers(cache=cache))
 """
 """Of a process that stores as many results as it is told, then kills itself."""
 
@@ -49,8 +49,8 @@ def results(store: Path) -> int:
 
 
 def searched(store: Path) -> Discovery:
-    with ResultCache(store) as ledger:
-        return discover(model("named", LATERAL), library("hub_compliance"), DiscoveryWorkers(ledger=ledger))
+    with ResultCache(store) as cache:
+        return discover(model("named", LATERAL), library("hub_compliance"), DiscoveryWorkers(cache=cache))
 
 
 def test_killed_in_the_middle_it_goes_on_and_ends_the_same(

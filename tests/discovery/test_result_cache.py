@@ -1,4 +1,4 @@
-"""The ledger: exact, refuses what is no ledger, and tells models apart."""
+"""The cache: exact, refuses what is no cache, and tells models apart."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from tests.discovery.cases import library, model
 
 def test_arrays_come_back_exactly(tmp_path: Path) -> None:
     arrays = {"a": np.array([np.pi, np.inf, -0.0]), "b": np.zeros((0, 3))}
-    with ResultCache(tmp_path / "sub" / "discovery.sqlite") as ledger:
-        assert ledger.get("k") is None
-        ledger.put("k", arrays)
-    with ResultCache(tmp_path / "sub" / "discovery.sqlite") as ledger:
-        found = ledger.get("k")
+    with ResultCache(tmp_path / "sub" / "discovery.sqlite") as cache:
+        assert cache.get("k") is None
+        cache.put("k", arrays)
+    with ResultCache(tmp_path / "sub" / "discovery.sqlite") as cache:
+        found = cache.get("k")
     assert found is not None
     assert all(np.array_equal(found[k], v) and found[k].shape == v.shape for k, v in arrays.items())
 
@@ -39,8 +39,8 @@ def test_a_jacobian_takes_less_than_half_of_its_bytes() -> None:
 def test_a_file_that_is_none_is_refused_with_a_remedy(tmp_path: Path) -> None:
     path = tmp_path / "discovery.sqlite"
     path.write_bytes(b"not a database, surely not one at all" * 40)
-    with pytest.raises(InputError, match=r"discovery\.sqlite.*move it away"), ResultCache(path) as ledger:
-        ledger.get("k")
+    with pytest.raises(InputError, match=r"discovery\.sqlite.*move it away"), ResultCache(path) as cache:
+        cache.get("k")
 
 
 def test_whatever_changes_the_answer_changes_the_fingerprint() -> None:

@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from doe_kc.campaign.executors import processes
-from doe_kc.discovery import result_cache as ledgers
+from doe_kc.discovery import result_cache
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.result_cache import ResultCache
-from doe_kc.discovery.screen import effort
-from doe_kc.discovery.search import tune
-from doe_kc.discovery.workers import DiscoveryWorkers, _packed_fit, _unpacked_fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.result_cache import Arrays, ResultCache
+from doe_kc.discovery.screening.screen import effort
+from doe_kc.discovery.search.search import tune
+from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import library, model
 
 
@@ -22,7 +23,7 @@ def tuned() -> Fit:
     return tune(model("named"))
 
 
-def start(tuned: Fit) -> tuple[object, np.ndarray]:
+def start(tuned: Fit) -> tuple[EffectModel, np.ndarray]:
     (hub,) = library("hub_compliance")
     return tuned.model.extended(hub), np.concatenate([tuned.z, [0.5, 0.5]])
 
@@ -30,8 +31,8 @@ def start(tuned: Fit) -> tuple[object, np.ndarray]:
 def test_a_fit_of_a_worker_is_of_the_very_model_and_errors_of_its_start(tuned: Fit) -> None:
     extended, z = start(tuned)
     with processes(2) as executor:
-        (there,) = DiscoveryWorkers(executor, workers=2).fitted([(extended, z)], "", tuned.jacobian)
-    (here,) = DiscoveryWorkers().fitted([(extended, z)], "", tuned.jacobian)
+        (there,) = DiscoveryWorkers(executor, workers=2).fits([(extended, z)], "", tuned.jacobian)
+    (here,) = DiscoveryWorkers().fits([(extended, z)], "", tuned.jacobian)
     assert there is not None and here is not None
     assert there.model is extended and there.model.likelihood is tuned.model.likelihood
     assert np.array_equal(there.z, here.z) and np.array_equal(there.jacobian, here.jacobian)
@@ -41,9 +42,9 @@ def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
     begun, steps = [start(tuned)], []
     fits = []
     for _ in range(2):
-        with ResultCache(tmp_path / "discovery.sqlite") as ledger:
-            bench = DiscoveryWorkers(ledger=ledger, watch=lambda *step: steps.append(step))
-            fits += bench.fitted(begun, "refitting", tuned.jacobian)
+        with ResultCache(tmp_path / "discovery.sqlite") as cache:
+            workers = DiscoveryWorkers(cache=cache, watch=lambda *step: steps.append(step))
+            fits += workers.fits(begun, "refitting", tuned.jacobian)
     computed, stored = fits
     for name in ("z", "residual", "jacobian", "cost", "evaluations", "converged", "evidence"):
         assert np.array_equal(getattr(computed, name), getattr(stored, name)), name
@@ -51,13 +52,19 @@ def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
 
 
 def test_what_the_model_says_is_not_stored_and_comes_back_in_its_place(tuned: Fit) -> None:
-    packed = _packed_fit(tuned)
-    sides = tuned.model.sides
-    assert sides is not None
-    assert packed["jacobian"].shape[1] == tuned.z.size - sides.shape[1]
-    again = _unpacked_fit(tuned.model, packed)
-    assert again is not None
-    assert np.array_equal(again.jacobian, tuned.jacobian)
+    widths: list[int] = []
+
+    class Widths(ResultCache):
+        def put(self, key: str, arrays: Arrays) -> None:
+            widths.append(arrays["jacobian"].shape[1])
+            super().put(key, arrays)
+
+    workers = DiscoveryWorkers(cache=Widths(None))
+    model, z = start(tuned)
+    computed, stored = (workers.fits([(model, z)], "", tuned.jacobian)[0] for _ in range(2))
+    assert computed is not None and stored is not None and model.sides is not None
+    assert widths == [z.size - model.sides.shape[1]]
+    assert np.array_equal(stored.jacobian, computed.jacobian)
 
 
 def test_results_of_another_format_are_not_taken_up(
@@ -66,11 +73,11 @@ def test_results_of_another_format_are_not_taken_up(
     hypotheses = library("hub_compliance")
     stored: list[int] = []
     for tag in ("one", "one", "two"):
-        monkeypatch.setattr(ledgers, "FORMAT", tag)
-        with ResultCache(tmp_path / "discovery.sqlite") as ledger:
-            put = ledger.put
-            monkeypatch.setattr(ledger, "put", lambda *a, put=put, tag=tag: (stored.append(tag), put(*a)))
-            DiscoveryWorkers(ledger=ledger).screened(tuned, hypotheses)
+        monkeypatch.setattr(result_cache, "FORMAT", tag)
+        with ResultCache(tmp_path / "discovery.sqlite") as cache:
+            put = cache.put
+            monkeypatch.setattr(cache, "put", lambda *a, put=put, tag=tag: (stored.append(tag), put(*a)))
+            DiscoveryWorkers(cache=cache).screenings(tuned, hypotheses)
     assert stored == ["one", "two"]
 
 
@@ -84,11 +91,11 @@ def test_the_longest_screenings_begin_first(tuned: Fit) -> None:
     hypotheses = library("rig_channel_gain", "steering_friction")
     efforts = [effort(h) for h in hypotheses]
     assert efforts[-1] > max(efforts[:-1])
-    bench = DiscoveryWorkers(ledger=Order(None))
-    found = bench.screened(tuned, hypotheses)
+    workers = DiscoveryWorkers(cache=Order(None))
+    found = workers.screenings(tuned, hypotheses)
     assert [s.hypothesis for s in found] == hypotheses
     alone = Order(None)
     first = begun[0]
     begun.clear()
-    DiscoveryWorkers(ledger=alone).screened(tuned, hypotheses[-1:])
+    DiscoveryWorkers(cache=alone).screenings(tuned, hypotheses[-1:])
     assert begun == [first]

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.exclusion import HypothesisStatus
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.report.discovery_effects import effect_frame, effect_rows
@@ -31,9 +31,9 @@ from tests.discovery.cases import LOAD_CASES, discovery, records
 def test_disagreement_has_every_contrast_and_every_map() -> None:
     found = discovery("named")
     frame = disagreement_frame(found)
-    assert len(frame) == len(found.raw.names)
-    np.testing.assert_array_equal(frame["z_tuned"], found.tuned.z)
-    np.testing.assert_array_equal(frame["z_with_effect"], found.final.z)
+    assert len(frame) == len(found.nominal_map.names)
+    np.testing.assert_array_equal(frame["z_tuned"], found.tuned_map.z)
+    np.testing.assert_array_equal(frame["z_with_effect"], found.residual_map.z)
     assert disagreement_frame(discovery("none"))["z_with_effect"].isna().all()
 
 

@@ -36,7 +36,7 @@ def column(ws: Worksheet, head: str) -> list[object]:
 def test_sheets_and_rows(car: str, tmp_path: Path) -> None:
     book, found = written(tmp_path, car), discovery(car)
     assert book.sheetnames == SHEETS
-    assert len(column(book["Disagreement"], "z re-tuned")) == len(found.raw.names)
+    assert len(column(book["Disagreement"], "z re-tuned")) == len(found.nominal_map.names)
     status = column(book["Library"], "Status")
     assert len(status) == len(found.statuses)
     assert set(status) <= set(STATUS_WORDS.values())

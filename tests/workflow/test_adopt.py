@@ -47,7 +47,7 @@ def test_where_nothing_is_named_nothing_is_added_and_what_is_unexplained_is_left
     assert found.verdict == "unexplained"
     adoption = adopt(plain, found)
     assert adoption.axle is plain.axle and not adoption.effects
-    worst = {(c.load_case, c.response) for c, _ in found.tuned.worst(8)}
+    worst = {(c.load_case, c.response) for c, _ in found.tuned_map.worst(8)}
     assert adoption.without <= worst
     assert all(f"{c} {r}: left out" in " ".join(adoption.sentences) for c, r in adoption.without)
 

@@ -12,9 +12,9 @@ import pandas as pd
 import pytest
 
 from doe_kc.axle_file import read_axle
-from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Finding, ParameterEstimate
-from doe_kc.discovery.sentences import odds_words
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
+from doe_kc.discovery.verdict.sentences import odds_words
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.errors import RunError
 from doe_kc.report.discovery_effects import effect_frame
@@ -81,7 +81,7 @@ def test_the_axle_is_the_fitted_one(written: list[Path]) -> None:
 def test_tables_hold_the_numbers(written: list[Path]) -> None:
     found = discovery("two")
     tables = {p.name: pd.read_csv(p) for p in written if p.suffix == ".csv"}
-    assert len(tables["disagreement.csv"]) == len(found.raw.names)
+    assert len(tables["disagreement.csv"]) == len(found.nominal_map.names)
     assert len(tables["library.csv"]) == len(found.statuses)
     assert tables["gap.csv"]["tuned"][0] == pytest.approx(found.gap.tuned, rel=1e-9)
     assert list(tables["held_out.csv"]["load_case"]) == list(LOAD_CASES)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.sentences import against_words, odds_number
+from doe_kc.discovery.verdict.sentences import against_words, odds_number
 from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_effects import kind_of, rival_words
 from doe_kc.report.discovery_sizes import found_sizes

@@ -1,0 +1,171 @@
+"""The generic scan: a law at every interface and degree of freedom, so that naming is not limited to a list.
+
+Columns come from reactions and influences of one solved axle, without a further solution. Left and right are
+taken alike, or one side alone; the degrees of freedom of an interface together, their amplitudes of the sign
+that physics allows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.thresholds import COLUMN_SHARE, PLACE_PROBABILITY
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.interface_columns import law_columns
+from doe_kc.solver.interface_laws import LAWS
+from doe_kc.solver.interfaces import Influences, interface_influences
+from doe_kc.solver.probe import Probe
+
+SIGNED = ("offset", "stiffness")
+"""Laws whose amplitude may be negative."""
+AXIS_WORDS = {
+    "x": "along x",
+    "y": "along y",
+    "z": "along z",
+    "rx": "about x",
+    "ry": "about y",
+    "rz": "about z",
+}
+
+
+@dataclass(frozen=True)
+class Place:
+    """A law at an interface."""
+
+    interface: str
+    """Names of its two bodies as `one|other`, or of a bushing."""
+    law: str
+    """compliance, offset, clearance, stiffness, progression or friction."""
+    side: str
+    """both, L or R."""
+    dofs: tuple[str, ...]
+    """Degrees of freedom that count, the largest first."""
+    score: float
+    """Standard deviations by which it improves the fit."""
+    explained: float
+    """Share of what re-tuning leaves that it explains, 0 to 1."""
+    probability: float
+    """Among all places of the scan."""
+
+    @property
+    def words(self) -> str:
+        """e.g. an unlisted compliance about x between wheel and knuckle."""
+        one, _, other = self.interface.partition("|")
+        between = f"between {one} and {other}" if other else f"at {one}"
+        axes = " and ".join(AXIS_WORDS.get(d, d) for d in self.dofs)
+        side = {"L": ", left", "R": ", right"}.get(self.side, "")
+        return f"an unlisted {self.law} {axes} {between}{side}"
+
+
+@dataclass(frozen=True)
+class Scan:
+    """All places of the generic scan."""
+
+    places: tuple[Place, ...]
+    """Best first."""
+    interface: str | None
+    """The interface whose summed probability is above PLACE_PROBABILITY, None without one."""
+    law: str | None
+    """The law whose summed probability is above PLACE_PROBABILITY, None without one."""
+
+
+def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
+    """The scan at a model without effects. temper: ln evidence is divided by it. NotConverged as `solve`."""
+    axle = tuned.model.axle_at(tuned.z)
+    influences = interface_influences(axle, tuned.model.solutions(axle))
+    scored: list[tuple[Place, float]] = []
+    for law in LAWS:
+        scored += _of_law(law, influences, tuned)
+    scored.sort(key=lambda item: -item[1])
+    logs = np.array([gain for _, gain in scored]) / temper
+    shares = np.exp(logs - logs.max()) / np.exp(logs - logs.max()).sum()
+    places = tuple(
+        Place(p.interface, p.law, p.side, p.dofs, p.score, p.explained, float(share))
+        for (p, _), share in zip(scored, shares, strict=True)
+    )
+    return Scan(places, _sure(places, "interface"), _sure(places, "law"))
+
+
+def _sure(places: Sequence[Place], level: str) -> str | None:
+    sums: dict[str, float] = {}
+    for p in places:
+        key = getattr(p, level)
+        sums[key] = sums.get(key, 0.0) + p.probability
+    best = max(sums, key=lambda k: sums[k])
+    return best if sums[best] > PLACE_PROBABILITY else None
+
+
+def _of_law(law: str, influences: Influences, tuned: Fit) -> Iterator[tuple[Place, float]]:
+    gradients = law_columns(influences, law)
+    probes = {p.name: p for p in influences.probes}
+    chosen = [probes[name] for name in gradients.paths]
+    columns = tuned.model.likelihood.jacobian(gradients, np.zeros((0, len(chosen))))
+    groups: dict[str, list[int]] = {}
+    for i, p in enumerate(chosen):
+        groups.setdefault(p.interface, []).append(i)
+    for interface, members in groups.items():
+        for side in ("both", "L", "R"):
+            dofs, block = _block(chosen, members, columns, side)
+            if dofs:
+                yield _place(interface, law, side, dofs, block, tuned)
+
+
+def _block(
+    probes: Sequence[Probe], members: Sequence[int], columns: FloatArray, side: str
+) -> tuple[list[str], FloatArray]:
+    """(dofs, (M, k)) of an interface; both sides alike are added up, what has one side only is `both`."""
+    by_dof: dict[str, FloatArray] = {}
+    for i in members:
+        p = probes[i]
+        if p.side in ("", side) or (side == "both" and p.side):
+            if side != "both" and not p.side:
+                continue
+            by_dof[p.dof] = by_dof.get(p.dof, 0.0) + columns[:, i]
+    empty = np.zeros((columns.shape[0], 0))
+    return list(by_dof), np.column_stack(list(by_dof.values())) if by_dof else empty
+
+
+def _place(
+    interface: str,
+    law: str,
+    side: str,
+    dofs: Sequence[str],
+    block: FloatArray,
+    tuned: Fit,
+) -> tuple[Place, float]:
+    """The place with its ln evidence: ln(1 + score^2) / 2 is taken off for each degree of freedom."""
+    seen, residual = tuned.projection(block), tuned.remainder
+    before, left = np.linalg.norm(block, axis=0), np.linalg.norm(seen, axis=0)
+    use = (left > COLUMN_SHARE * before) & (left > 0.0)
+    if not use.any():
+        return Place(interface, law, side, (), 0.0, 0.0, 0.0), 0.0
+    unit = seen[:, use] / left[use]
+    amplitudes = _amplitudes(unit, residual, signed=law in SIGNED)
+    explained = unit @ amplitudes
+    gained = max(0.0, float(2.0 * -residual @ explained - explained @ explained))
+    order = np.argsort(-np.abs(amplitudes))
+    names = np.array(list(dofs))[use]
+    strongest = float(np.abs(amplitudes).max())
+    counted = tuple(str(names[i]) for i in order if strongest > 0 and abs(amplitudes[i]) > 0.2 * strongest)
+    gain = 0.5 * gained - 0.5 * len(counted) * float(np.log1p(gained))
+    explained_share = gained / max(float(residual @ residual) - residual.size, 1.0)
+    return Place(interface, law, side, counted, float(np.sqrt(gained)), min(1.0, explained_share), 0.0), gain
+
+
+def _amplitudes(unit: FloatArray, residual: FloatArray, *, signed: bool) -> FloatArray:
+    """(k,) that bring residual + unit a nearest to zero."""
+    gram, slope = unit.T @ unit, unit.T @ residual
+    if signed:
+        return np.asarray(-np.linalg.lstsq(gram, slope, rcond=1e-10)[0])
+    # the normal equations' square root keeps the size of the problem at the degrees of freedom
+    values, vectors = np.linalg.eigh(gram)
+    keep = values > 1e-10 * values.max()
+    root = (vectors[:, keep] * np.sqrt(values[keep])).T
+    target = -(vectors[:, keep] / np.sqrt(values[keep])).T @ slope
+    amplitudes: FloatArray = nnls(root, target)[0]
+    return amplitudes

@@ -1,0 +1,261 @@
+"""Screening: what each hypothesis would gain, re-tuning projected out, without refitting the parameters.
+
+The parameters follow to first order (their Jacobian at the tuned axle), the effect is solved for at its own
+size: with Q an orthonormal basis of the tuning, residual and columns are reduced to what it cannot absorb,
+and the amplitudes follow by Gauss-Newton steps on true solutions. That is the score test, followed beyond
+its linear range, where effects that are large or have a dead band would mislead it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import (
+    HOPELESS,
+    NULL_SHARE,
+    PROBE,
+    PROBE_FACTOR,
+    SCREEN_DECREASE,
+    SCREEN_STEP_SHARES,
+    SCREEN_STEPS,
+    SHAPE_STARTS,
+)
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.result import NotConverged
+
+
+@dataclass(frozen=True)
+class Screened:
+    """One hypothesis added to a fitted model, the parameters following to first order."""
+
+    hypothesis: Hypothesis
+    """The effect in its place."""
+    amplitudes: FloatArray
+    """(m,) most probable amplitudes, in typical sizes."""
+    sd: FloatArray
+    """(m,) standard deviations of them, after re-tuning and the prior."""
+    gain: float
+    """ln of the evidence over the model without it; -inf where it has no equilibrium."""
+    score: float
+    """Standard deviations by which the fit improves."""
+    columns: FloatArray
+    """(M, m) derivative of the residual to the amplitudes, at `amplitudes`."""
+    change: FloatArray
+    """(M,) whitened change of the data at typical size."""
+    detectability: float
+    """Standard deviations of that change after re-tuning."""
+    absorbed: float
+    """Share of its square that re-tuning hides, 0 to 1."""
+    size_detectability: FloatArray
+    """(m,) detectability of each size alone, whatever the others are; nan for a shape."""
+    failed: str = ""
+    """Why the axle with it has no equilibrium; empty where it has."""
+
+    def rewhitened(self, before: Likelihood, after: Likelihood) -> Screened:
+        """Its changes in units of other errors of the same records; what was concluded stays."""
+        change = rewhitened(self.change, before, after)
+        return replace(self, change=change, columns=rewhitened(self.columns, before, after))
+
+
+def screen(fit: Fit, hypothesis: Hypothesis) -> Screened:
+    """The hypothesis on its own; one without equilibria comes back as failed."""
+    model = fit.model.extended(hypothesis)
+    try:
+        starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, PROBE_FACTOR * PROBE), strict=True)
+        results = [amplitude_solution(model, fit, *s) for s in starts]
+        change = _typical(model, fit, hypothesis)
+    except NotConverged as error:
+        empty = np.zeros(len(hypothesis.sizes))
+        nothing = np.zeros((fit.residual.size, 1 + empty.size))
+        return Screened(
+            hypothesis,
+            empty,
+            empty + np.inf,
+            -np.inf,
+            0.0,
+            nothing[:, 1:],
+            nothing[:, 0],
+            0.0,
+            0.0,
+            empty,
+            str(error),
+        )
+    best = min(results, key=lambda r: r.cost)
+    return _summary(fit, hypothesis, best, change)
+
+
+def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
+    """(M,) change of the data at typical size; to first order where the axle has no equilibrium there."""
+    amplitudes = np.array([0.0 if s.shape else 1.0 for s in hypothesis.sizes])
+    try:
+        return model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual
+    except NotConverged:
+        small = model.residual(np.concatenate([fit.z, PROBE * amplitudes])) - fit.residual
+        return np.asarray(small / PROBE)
+
+
+def effort(hypothesis: Hypothesis) -> int:
+    """Work of its screening, relative to others: starts times solutions of a step."""
+    return len(_starts(hypothesis, PROBE)) * (1 + len(hypothesis.sizes))
+
+
+def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
+    base = np.array([0.0 if s.shape or s.signed else first for s in hypothesis.sizes])
+    shapes = [i for i, s in enumerate(hypothesis.sizes) if s.shape]
+    out = []
+    for shape in SHAPE_STARTS if shapes else (0.0,):
+        start = base.copy()
+        start[shapes] = shape
+        out.append(start)
+    return out
+
+
+@dataclass(frozen=True)
+class _AmplitudeSolution:
+    """A point of the search for the amplitudes."""
+
+    amplitudes: FloatArray
+    """(m,)."""
+    columns: FloatArray
+    """(M, m) derivative of the residual to them."""
+    projected: FloatArray
+    """(M + d, m) what re-tuning leaves of the columns."""
+    change: FloatArray
+    """(M,) of the residual, from the model without the effect."""
+    reduced: FloatArray
+    """(M + d,) what re-tuning leaves of the residual."""
+    cost: float
+    """Sum of squares of that and of the amplitudes."""
+    solved: bool = True
+    """False where amplitudes and cost are those that a first step promises, which is nothing."""
+
+
+def amplitude_solution(
+    model: EffectModel, fit: Fit, start: FloatArray, smaller: FloatArray
+) -> _AmplitudeSolution:
+    """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing.
+
+    A promise that is worse than the model without the effect is none: along a straight line the effect could
+    be absent. Then the search begins anew, from `smaller`, where the effect is closer to linear.
+    """
+    place = slice(fit.z.size, fit.z.size + start.size)
+    low, high = model.lower[place], model.upper[place]
+    without = float(fit.remainder @ fit.remainder)
+    best = _derived(model, fit, _solved(model, fit, start), place)
+    for k in range(SCREEN_STEPS if start.size else 0):
+        hessian = best.projected.T @ best.projected + np.eye(start.size)
+        slope = best.projected.T @ best.reduced + best.amplitudes
+        step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
+        predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
+        if k == 0 and predicted > without + 2.0 * HOPELESS and not np.array_equal(start, smaller):
+            return amplitude_solution(model, fit, smaller, smaller)
+        if without - predicted < 2.0 * HOPELESS:
+            return replace(best, amplitudes=best.amplitudes + step, cost=predicted, solved=False)
+        trial = _better(model, fit, best, step)
+        if trial is None:
+            break
+        gained, best = best.cost - trial.cost, trial
+        if gained < SCREEN_DECREASE:
+            break
+        best = _derived(model, fit, best, place)
+    return best
+
+
+def _better(
+    model: EffectModel, fit: Fit, best: _AmplitudeSolution, step: FloatArray
+) -> _AmplitudeSolution | None:
+    """The longest of the shortened steps that gains, None when none does or has an equilibrium."""
+    for share in SCREEN_STEP_SHARES:
+        try:
+            trial = _solved(model, fit, best.amplitudes + share * step, best)
+        except NotConverged:
+            continue
+        if trial.cost < best.cost:
+            return trial
+    return None
+
+
+def _solved(
+    model: EffectModel, fit: Fit, amplitudes: FloatArray, near: _AmplitudeSolution | None = None
+) -> _AmplitudeSolution:
+    """The true solution at some amplitudes, its columns those of a point that is near or still none."""
+    residual = model.residual(np.concatenate([fit.z, amplitudes]))
+    reduced = fit.projection.residual(residual)
+    cost = float(reduced @ reduced + amplitudes @ amplitudes)
+    none = np.zeros((0, amplitudes.size))
+    columns, projected = (none, none) if near is None else (near.columns, near.projected)
+    return _AmplitudeSolution(amplitudes, columns, projected, residual - fit.residual, reduced, cost)
+
+
+def _derived(model: EffectModel, fit: Fit, best: _AmplitudeSolution, place: slice) -> _AmplitudeSolution:
+    """The same with columns taken there. place: of the amplitudes in z."""
+    z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change
+    columns = model.amplitude_columns(z, residual, which=place)
+    return replace(best, columns=columns, projected=fit.projection(columns))
+
+
+def _summary(fit: Fit, hypothesis: Hypothesis, best: _AmplitudeSolution, change: FloatArray) -> Screened:
+    hessian = best.projected.T @ best.projected + np.eye(best.amplitudes.size)
+    seen, square = fit.projection(change), float(change @ change)
+    without = float(fit.remainder @ fit.remainder)
+    fitted = best.cost - float(best.amplitudes @ best.amplitudes)
+    return Screened(
+        hypothesis,
+        best.amplitudes,
+        np.sqrt(np.diag(np.linalg.inv(hessian))),
+        0.5 * (without - best.cost) - 0.5 * float(np.linalg.slogdet(hessian)[1]),
+        float(np.sqrt(max(0.0, without - fitted))),
+        best.columns,
+        change,
+        float(np.linalg.norm(seen)),
+        1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
+        size_detectability(hypothesis, best.projected, seen),
+    )
+
+
+def size_detectability(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> FloatArray:
+    """(m,) see `Screened`. columns: (M + d, m) and change (M + d,) of the effect, re-tuning projected out."""
+    out = np.full(len(hypothesis.sizes), np.nan)
+    amounts = [i for i, s in enumerate(hypothesis.sizes) if not s.shape]
+    if len(amounts) == 1:
+        out[amounts] = np.linalg.norm(change)
+    elif amounts:
+        gram = columns[:, amounts].T @ columns[:, amounts]
+        least = NULL_SHARE * max(float(np.trace(gram)), NULL_SHARE)
+        out[amounts] = 1.0 / np.sqrt(np.diag(np.linalg.inv(gram + least * np.eye(len(amounts)))))
+    return out
+
+
+def score_test(fit: Fit, known: Screened) -> Screened:
+    """The score test at another model with the columns known from an earlier one: no new solution.
+
+    known: its changes in the other model's errors. amplitudes and gain to first order; hypotheses without
+    sizes keep their amplitude, there or not.
+    """
+    if known.failed:
+        return known
+    projection = fit.projection
+    seen = projection(known.change)
+    columns = projection(known.columns if known.amplitudes.size else known.change[:, None])
+    hessian = columns.T @ columns + np.eye(columns.shape[1])
+    slope = columns.T @ fit.remainder
+    amplitudes = np.asarray(-np.linalg.solve(hessian, slope), dtype=np.float64)
+    gain = 0.5 * float(-slope @ amplitudes) - 0.5 * float(np.linalg.slogdet(hessian)[1])
+    square = float(known.change @ known.change)
+    return replace(
+        known,
+        amplitudes=amplitudes if known.amplitudes.size else known.amplitudes,
+        sd=np.sqrt(np.diag(np.linalg.inv(hessian)))[: known.amplitudes.size],
+        gain=gain,
+        score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
+        detectability=float(np.linalg.norm(seen)),
+        absorbed=1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
+        size_detectability=size_detectability(known.hypothesis, columns, seen),
+    )

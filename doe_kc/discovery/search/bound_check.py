@@ -1,0 +1,83 @@
+"""Bounds that the records ask to be wider: a whole series off nominal, or scattering more than thought.
+
+What parameters at their bounds leave open, re-tuning would absorb: it must not count as a missing effect.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.search import EffectSearch, search
+from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, SHARE_AT_BOUNDS
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+from doe_kc.variables import Space
+
+
+def search_within_bounds(
+    model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers
+) -> tuple[EffectSearch, float]:
+    """The search, and by how much all ranges are wider in it than the model's: 1 where that is not asked for.
+
+    Wider ranges are tried only where what re-tuning could not absorb agrees with noise, so that they
+    cannot bend parameters in place of an effect; then the search begins anew between them.
+    NotConverged when the nominal axle has no equilibrium.
+    """
+    first = search(model, library, workers)
+    factor = bound_evidence(first.with_law_discrepancy, workers)
+    if factor == 1.0:
+        return first, factor
+    wider = search(replace(model, space=model.space.widened(factor)), library, workers)
+    gain = wider.with_effects.evidence - first.with_effects.evidence
+    return (wider, factor) if gain > BOUND_EVIDENCE else (first, 1.0)
+
+
+def bound_evidence(fit: Fit, workers: DiscoveryWorkers) -> float:
+    """By how much wider the ranges are with the largest evidence, 1 unless it is clear."""
+    few = np.mean(at_bounds(fit)) < SHARE_AT_BOUNDS
+    if few or not fit.residual_map.agrees:
+        return 1.0
+    best, most = 1.0, fit.evidence + BOUND_EVIDENCE
+    for factor in BOUND_FACTORS:
+        model, z = with_wider_bounds(fit, factor)
+        (wider,) = workers.fits([(model, z)], "wider bounds", fit.jacobian * _stretch(fit, model, z))
+        if wider is None or wider.evidence < most:
+            break
+        best, most = factor, wider.evidence
+    return best
+
+
+def at_bounds(fit: Fit) -> NDArray[np.bool_]:
+    """(d,) whether each tunable parameter is held at a bound."""
+    model = fit.model
+    u, low, high = (a[: model.parameters] for a in (fit.z, model.lower, model.upper))
+    return np.asarray((u <= low) | (u >= high))
+
+
+def with_wider_bounds(fit: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
+    """The model with wider ranges, and the fit's point in it."""
+    model = fit.model
+    space, count = model.space.widened(factor), model.parameters
+    z = np.concatenate([space.unit(model.space.values(fit.z[:count])), fit.z[count:]])
+    return replace(model, space=space), z
+
+
+def _stretch(fit: Fit, wider: EffectModel, z: FloatArray) -> FloatArray:
+    """(d + m,) by what derivatives grow from the one model's places to the wider one's."""
+    count = wider.parameters
+    own = fit.model.space.slopes(fit.z[:count])
+    return np.concatenate([wider.space.slopes(z[:count]) / own, np.ones(z.size - count)])
+
+
+def beyond(space: Space, fit: Fit) -> tuple[str, ...]:
+    """Paths of the parameters that the fit puts outside the bounds of `space`."""
+    values = fit.model.space.values(fit.z[: fit.model.parameters])
+    places = {v.path: v.place(values[v.path]) for v in space.variables}
+    return tuple(path for path, u in places.items() if not -BOUND_ROUNDING <= u <= 1.0 + BOUND_ROUNDING)

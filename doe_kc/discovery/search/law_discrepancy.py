@@ -1,0 +1,147 @@
+"""The model discrepancy of an effect's law, a further error of the records.
+
+An effect that is in the model follows a law of its own in the car: a compliance stiffens, a friction breaks
+away more softly. Without this, the difference would be taken for another effect (M. C. Kennedy, A. O'Hagan,
+Journal of the Royal Statistical Society B 63, 2001).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve, cholesky
+
+from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
+from doe_kc.curves import TYRE_LOAD
+from doe_kc.discovery.fit import Fit, chord_fit, rewhitened_fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, DISCREPANCY_SHARES
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+from doe_kc.measurement.noise import smooth_correlation
+
+
+@dataclass(frozen=True)
+class EffectSignal:
+    """What one member makes of the curves."""
+
+    changes: tuple[FloatArray, ...]
+    """Change (n,) of every curve, in the curve's unit."""
+    largest: Mapping[tuple[str, Branches], float]
+    """Response and branches -> the largest |change| of their curves."""
+    friction: bool
+    """Whether it is a friction, whose smaller loops hang on the shape of its law, so that each curve's scale
+    is open too. An elastic law's scale is the same in every curve, which is what tells effects apart."""
+    square: float
+    """Sum of squares of all changes, in the records' errors."""
+
+
+def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
+    """The fit with the discrepancy of its effects' laws that the records ask for, and each member's share.
+
+    exact: to the records' own errors. The share of each effect is the one of DISCREPANCY_SHARES with the
+    largest evidence, one effect after the other, largest first: the errors of the records grow by what its
+    law may do to the curves, and with them their determinant, so that a law that fits is left as it is.
+    """
+    signals = effect_signals(exact)
+    shares = [0.0] * len(signals)
+    best, most = exact, marginal(exact)
+    for i in sorted(range(len(signals)), key=lambda i: -signals[i].square):
+        for share in DISCREPANCY_SHARES[1:]:
+            candidate = [share if k == i else s for k, s in enumerate(shares)]
+            wider = rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate))
+            evidence = marginal(wider)
+            if evidence > most:
+                best, most, shares[i] = wider, evidence, share
+    names = [h.name for h in exact.model.members]
+    settled = chord_fit(best, best.model) if any(shares) else exact
+    return settled, dict(zip(names, shares, strict=True))
+
+
+def without_own_discrepancy(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
+    """Name of each member with a discrepancy -> the records' errors with the discrepancies of all others."""
+    if not any(shares.values()):
+        return {}
+    signals, names = effect_signals(exact), [h.name for h in exact.model.members]
+    return {
+        name: with_discrepancy(exact.model, signals, [shares[n] * (n != name) for n in names]).likelihood
+        for name in names
+        if shares[name]
+    }
+
+
+def marginal(fit: Fit) -> float:
+    """ln density of the records under a model of effects, those of different errors comparable.
+
+    At the minimum of the quadratic through the fit's point.
+    """
+    gradient, hessian = fit.gradient, fit.hessian
+    lower = 0.5 * float(gradient @ cho_solve(cho_factor(hessian), gradient))
+    roots = sum(float(np.sum(np.log(np.diag(c.root)))) for c in fit.model.likelihood.curves)
+    return fit.evidence + lower - roots
+
+
+def with_discrepancy(
+    model: EffectModel, signals: Sequence[EffectSignal], shares: Sequence[float]
+) -> EffectModel:
+    """The model, its records' errors its own and those of the laws of its effects.
+
+    signals: what each member makes, see `effect_signals`. shares: one a member.
+    """
+    likelihood = model.likelihood
+    curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
+    return model.with_likelihood(replace(likelihood, curves=tuple(curves)))
+
+
+def effect_signals(exact: Fit) -> list[EffectSignal]:
+    """What each member of a fit to the records' own errors makes of their curves."""
+    model = exact.model
+    return [_signal(model, member, place, exact.residual, exact.z) for member, place in model.places()]
+
+
+def _signal(
+    model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray
+) -> EffectSignal:
+    without = model.without(member)
+    whitened = residual - without.residual(np.delete(z, np.r_[place]))
+    changes = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
+    largest: dict[tuple[str, Branches], float] = {}
+    for curve, change in zip(model.likelihood.curves, changes, strict=True):
+        key = (curve.response, curve.branches)
+        largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
+    return EffectSignal(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
+
+
+def is_friction(fit: Fit, member: Hypothesis) -> bool:
+    """Whether a member of a fit is a friction."""
+    return _frictional(fit.model, member, fit.z)
+
+
+def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
+    place = next(p for h, p in model.places() if h == member)
+    alone = replace(model, members=(member,))
+    return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
+
+
+def _widened(
+    curve: CurveData, at: int, signals: Sequence[EffectSignal], shares: Sequence[float]
+) -> CurveData:
+    if not any(shares):
+        return curve
+    relative = curve.input / np.abs(curve.input).max()
+    smooth = smooth_correlation(relative, DISCREPANCY_LENGTH)
+    centred = np.eye(curve.size) - 1.0 / curve.size
+    covariance = curve.root @ curve.root.T
+    for one, share in zip(signals, shares, strict=True):
+        change = one.changes[at]
+        ratio = smooth if one.friction else centred @ smooth @ centred
+        covariance = covariance + share**2 * ratio * np.outer(change, change)
+        if one.friction:
+            level = share * one.largest[curve.response, curve.branches]
+            left_open = level * (1.0 - relative**2 if curve.branches == "half_width" else relative)
+            covariance = covariance + smooth * np.outer(left_open, left_open)
+            if curve.response == TYRE_LOAD:
+                covariance = covariance + level**2
+    return replace(curve, root=np.asarray(cholesky(covariance, lower=True)))

@@ -1,0 +1,51 @@
+"""Backward elimination: effects that later ones have made needless."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.fit import Fit, refit_to_errors
+from doe_kc.discovery.thresholds import REMOVAL_FACTOR
+from doe_kc.discovery.workers import DiscoveryWorkers
+
+
+def backward_elimination(
+    fit: Fit, least: float, workers: DiscoveryWorkers, without_own: Mapping[str, Likelihood]
+) -> Fit:
+    """The fit without the members, but the latest, that cost more evidence than they bring.
+
+    without_own: of a member whose law has a discrepancy, errors that do not hold it: with it, what the member
+    makes would pass for an error of the records.
+    """
+    while len(fit.model.members) > 1:
+        losses = {h.name: _loss(fit, place) for h, place in list(fit.model.places())[:-1]}
+        members = [
+            (h, p) for h, p in fit.model.places() if losses.get(h.name, np.inf) < REMOVAL_FACTOR * least
+        ]
+        withs = [refit_to_errors(fit, without_own.get(h.name, fit.model.likelihood)) for h, _ in members]
+        starts = [
+            (w.model.without(h), np.delete(w.z, np.r_[place]))
+            for w, (h, place) in zip(withs, members, strict=True)
+        ]
+        tuning = fit.jacobian[:, : fit.model.dimension]
+        fewer = workers.fits(starts, "taking effects out", tuning)
+        for (h, _), w, f in zip(members, withs, fewer, strict=True):
+            if f is not None:
+                losses[h.name] = w.evidence - f.evidence
+        kept = {h.name: f for (h, _), f in zip(members, fewer, strict=True) if f is not None}
+        least_lost = min(kept, key=lambda name: losses[name], default="")
+        if not least_lost or losses[least_lost] > least:
+            break
+        fit = refit_to_errors(kept[least_lost], fit.model.likelihood)
+    return fit
+
+
+def _loss(fit: Fit, place: slice) -> float:
+    """ln likelihood that a member's sizes carry, to second order (Wald); 0 for one without sizes."""
+    amplitudes = fit.z[place]
+    if not amplitudes.size:
+        return 0.0
+    return 0.5 * float(amplitudes @ np.linalg.inv(fit.covariance[place, place]) @ amplitudes)

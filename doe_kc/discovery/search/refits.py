@@ -1,0 +1,159 @@
+"""The joint refits of the leading hypotheses: which are worth one, which are believed, which one leads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.thresholds import (
+    ABSORBED_SHARE,
+    CONFIDENT,
+    PLACES_REFITTED,
+    REFIT_SHARE,
+    REFITS_MOST,
+    RELEVANT,
+    RIVAL_CORRELATION,
+    TIED_EVIDENCE,
+)
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.typing import FloatArray
+
+SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
+"""Effects that a model may have in several places at once."""
+
+
+Sized = Iterable[tuple[Size, float, float]]
+"""Amplitude of a size in typical ones, and its standard deviation."""
+
+
+@dataclass(frozen=True)
+class HypothesisFit:
+    """A hypothesis refitted jointly with parameters, nuisances and the other members."""
+
+    hypothesis: Hypothesis
+    """The effect in its place."""
+    fit: Fit
+    """The model with it as the last member."""
+    gain: float
+    """ln of the evidence over the model without it, times the effect's odds."""
+
+
+def leaders(screened: Sequence[Screened], projection: Projection, least: float) -> list[Screened]:
+    """The best and its rivals, which would explain the same; a decoy of another kind is among them.
+
+    Effects that explain something else are no rivals: they have their own step.
+    """
+    if not screened or screened[0].gain <= least:
+        return []
+    best = screened[0]
+    out = [best]
+    own = _explained(best, projection)
+    for s in screened[1:]:
+        if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == REFITS_MOST:
+            break
+        kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
+        if kind < PLACES_REFITTED and abs(float(own @ _explained(s, projection))) > RIVAL_CORRELATION:
+            out.append(s)
+    small = (
+        best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT
+    )  # a trace needs no decoy
+    if not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
+        out += [s for s in screened if s.hypothesis.effect != best.hypothesis.effect and not s.failed][:1]
+    return out
+
+
+def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
+    """Hypotheses that a screening may have missed; a typical one would show by `least` of ln likelihood."""
+    shows = float(np.sqrt(2.0 * least))
+    return [s for s in screened if not s.failed and s.absorbed >= ABSORBED_SHARE and s.detectability >= shows]
+
+
+def _explained(screened: Screened, projection: Projection) -> FloatArray:
+    """(M + d,) direction of what the effect does at its size, after re-tuning."""
+    change = screened.columns @ screened.amplitudes if screened.amplitudes.size else screened.change
+    seen = projection(change)
+    length = float(np.linalg.norm(seen))
+    return np.asarray(seen / length if length > 0.0 else seen)
+
+
+def compatible(model: EffectModel, hypothesis: Hypothesis) -> bool:
+    """Whether the model can take the effect besides those it has."""
+    for member in model.members:
+        if member.effect == hypothesis.effect:
+            if member.effect not in SEVERAL_PLACES:
+                return False
+            if _bushing(member) == _bushing(hypothesis):
+                return False
+    return True
+
+
+def _bushing(hypothesis: Hypothesis) -> str:
+    return (hypothesis.location or "").partition("_")[0]
+
+
+def believable(sizes: Sized) -> bool:
+    """Whether no size is surely beyond what such a part has."""
+    return not any(abs(a) - CONFIDENT * sd > size.most for size, a, sd in sizes)
+
+
+def more_than_trace(sizes: Sized) -> bool:
+    """Whether a size is surely more than a trace; an effect without a size counts when it is there."""
+    counted = list(sizes)
+    return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)
+
+
+def joint_refits(
+    current: Fit, screened: Sequence[Screened], workers: DiscoveryWorkers
+) -> list[HypothesisFit]:
+    """The joint refits from the screened sizes, best first; those without a solution are left out."""
+    starts = [
+        (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
+    ]
+    fits = workers.fits(starts, "refitting leaders", current.jacobian)
+    trials = []
+    for s, refit in zip(screened, fits, strict=True):
+        if refit is not None:
+            gain = refit.evidence - current.evidence + log_odds(s.hypothesis)
+            trials.append(HypothesisFit(s.hypothesis, refit, gain))
+    return sorted(trials, key=lambda t: -t.gain)
+
+
+def log_odds(hypothesis: Hypothesis) -> float:
+    """ln of how much likelier its effect is than others before any measurement."""
+    return float(np.log(EFFECTS[hypothesis.effect].odds))
+
+
+def plausible(trial: HypothesisFit) -> bool:
+    """Whether the effect's sizes are believed."""
+    return believable(amounts(trial))
+
+
+def amounts(trial: HypothesisFit) -> list[tuple[Size, float, float]]:
+    """Sizes of the trial's effect that say how much, in typical ones, with their standard deviations."""
+    sizes = trial.hypothesis.sizes
+    sd = np.sqrt(np.diag(trial.fit.covariance))
+    known = [(s, float(trial.fit.z[i]), float(sd[i])) for i, s in enumerate(sizes, start=-len(sizes))]
+    return [item for item in known if not item[0].shape]
+
+
+def stiffer_first(trials: list[HypothesisFit]) -> list[HypothesisFit]:
+    """Of one signed effect at two places that say the same, the one of positive size leads, by convention.
+
+    A bushing that is stiffer on the left is, with both re-tuned, one that is softer on the right.
+    """
+    if len(trials) < 2:
+        return trials
+    first, second, *rest = trials
+    same = first.hypothesis.effect == second.hypothesis.effect and first.gain - second.gain < TIED_EVIDENCE
+    one = len(first.hypothesis.sizes) == len(second.hypothesis.sizes) == 1
+    if same and one and first.fit.z[-1] < 0.0 < second.fit.z[-1]:
+        return [second, first, *rest]
+    return trials

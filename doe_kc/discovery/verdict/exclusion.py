@@ -1,0 +1,166 @@
+"""The status of every hypothesis of the library: found, excluded above a size, not testable or unresolved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import ndtr
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.thresholds import ALIKE_CORRELATION, HIDING_LISTED, ONE_SIDED, POWER, UNSURE_SHARE
+from doe_kc.discovery.verdict.component_test import ComponentTest, component_tests
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.typing import FloatArray
+
+Status = Literal["found", "trace", "excluded", "unresolved", "not testable", "no solution"]
+
+
+@dataclass(frozen=True)
+class HypothesisStatus:
+    """What the records say of one hypothesis."""
+
+    hypothesis: Hypothesis
+    """The effect in its place."""
+    status: Status
+    """excluded from its limits on where the model holds; unresolved where it does not."""
+    detectable: float
+    """The smallest of the limits."""
+    absorbed: float
+    """Share of the effect's change, squared, that re-tuning hides, 0 to 1."""
+    hidden_by: tuple[tuple[str, float], ...]
+    """Tunable parameters that do so, with their move in standard deviations of the prior."""
+    alike: tuple[tuple[str, float], ...]
+    """Names of hypotheses whose remaining change is the same, with the correlation, -1 to 1."""
+    limits: tuple[float, ...] = ()
+    """(m,) of each of its sizes the smallest amplitude, as a multiple of the typical one, that would be found
+    in 80 % of cars whatever the others are and that is above the 95 % limit of what the records say of it, if
+    the model is right but for this size; inf when re-tuning absorbs nearly all, nan for a shape."""
+    component_test: ComponentTest | None = None
+    """Parts to measure that would show it, where it hardly shows; None otherwise."""
+
+
+def hypothesis_statuses(
+    fit: Fit,
+    screened: Sequence[Screened],
+    members: Sequence[tuple[Screened, Status]],
+    critical: float,
+    *,
+    resolved: bool,
+) -> tuple[HypothesisStatus, ...]:
+    """The status of members (as screened before they were added) and of all others, screened at the end.
+
+    critical: |z| that a hypothesis must reach among so many. resolved: whether the model holds, so that what
+    it does not see can be excluded.
+    """
+    everything = [s for s, _ in members] + list(screened)
+    known = dict(enumerate(status for _, status in members))
+    changes = fit.tuning_projection(np.array([s.change for s in everything]).T)
+    length = np.linalg.norm(changes, axis=0)
+    safe = np.where(length > 0, length, 1.0)
+    correlation = (changes / safe).T @ (changes / safe)
+    moves = _moves(fit, np.array([s.change for s in everything]).T)
+    out = []
+    for i, s in enumerate(everything):
+        by_bounds = float(np.linalg.norm(changes[fit.residual.size :, i]))
+        limits = _limits(s, by_bounds, critical)
+        limits = limits if i in known else np.maximum(limits, _upper(s))
+        amounts = limits[~np.isnan(limits)]
+        seen = trusted_detectability(s.detectability, float(np.linalg.norm(s.change)), by_bounds)
+        detectable = float(amounts.min()) if amounts.size else _limit(seen, critical)
+        status: Status = known.get(i) or _status(s, detectable, resolved=resolved)
+        alike = tuple(
+            (everything[j].hypothesis.name, float(correlation[i, j]))
+            for j in np.argsort(-np.abs(correlation[i]))
+            if j != i and abs(correlation[i, j]) >= ALIKE_CORRELATION and length[i] > 1.0 and length[j] > 1.0
+        )
+        hidden_by = _hiding(fit, moves[:, i], s)
+        out.append(
+            HypothesisStatus(s.hypothesis, status, detectable, s.absorbed, hidden_by, alike, tuple(limits))
+        )
+    untested = [i for i, s in enumerate(out) if s.status in ("not testable", "trace")]
+    tests = component_tests(fit, [everything[i] for i in untested], critical + POWER)
+    for i, test in zip(untested, tests, strict=True):
+        out[i] = replace(out[i], component_test=test)
+    return tuple(out)
+
+
+def exclusion_limit(size: Size, amplitude: float) -> float | None:
+    """The option's number at an amplitude from which it is excluded; None beyond any believed size."""
+    return size.value(amplitude) if amplitude <= size.most else None
+
+
+def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray:
+    """(m,) see `HypothesisStatus`. by_bounds: see `trusted_detectability`."""
+    sizes = screened.hypothesis.sizes
+    if sum(not s.shape for s in sizes) == 1:
+        seen = trusted_detectability(
+            screened.detectability, float(np.linalg.norm(screened.change)), by_bounds
+        )
+        return np.array([np.nan if s.shape else _limit(seen, critical) for s in sizes])
+    lengths = np.linalg.norm(screened.columns, axis=0)
+    return np.array(
+        [
+            _limit(trusted_detectability(v, w, 0.0), critical)
+            for v, w in zip(screened.size_detectability, lengths, strict=True)
+        ]
+    )
+
+
+def trusted_detectability(visible: float, before: float, by_bounds: float) -> float:
+    """Standard deviations that are believed of those that re-tuning leaves of an effect.
+
+    before: before re-tuning. by_bounds: the part that is left because parameters would have to move too far,
+    which no bend of theirs undoes; the rest are deviations of the records.
+    """
+    left = visible**2 - by_bounds**2
+    return by_bounds if left <= UNSURE_SHARE * before**2 else visible
+
+
+def _limit(visible: float, critical: float) -> float:
+    """Amplitude from which a size that makes `visible` standard deviations when typical would be found."""
+    return float("inf") if visible <= 0.0 else (critical + POWER) / visible
+
+
+def _upper(screened: Screened) -> FloatArray:
+    """(m,) amplitudes that the sizes pass with a chance of 5 %, to first order."""
+    return np.asarray(np.abs(screened.amplitudes) + ONE_SIDED * screened.sd)
+
+
+def _status(screened: Screened, detectable: float, *, resolved: bool) -> Status:
+    if screened.failed:
+        return "no solution"
+    if detectable > 1.0:
+        return "not testable"
+    return "excluded" if resolved else "unresolved"
+
+
+def _moves(fit: Fit, changes: FloatArray) -> FloatArray:
+    """(d, k) how the tunable parameters would follow each change, the sizes of the effects held."""
+    count = fit.model.dimension
+    hessian, jacobian = fit.hessian[:count, :count], fit.jacobian[:, :count]
+    return np.asarray(-cho_solve(cho_factor(hessian), jacobian.T @ changes))
+
+
+def _hiding(fit: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, float], ...]:
+    if screened.absorbed < 0.5:
+        return ()
+    paths = fit.model.space.paths
+    relative = move[: len(paths)] / fit.model.prior_sd[: len(paths)]
+    order = np.argsort(-np.abs(relative))[:HIDING_LISTED]
+    return tuple((paths[i], float(relative[i])) for i in order)
+
+
+def wrong_name_chance(detectability: float, correlation: float) -> float:
+    """Chance that noise names a rival of one parameter instead of the true effect of one parameter.
+
+    detectability: standard deviations of the effect after re-tuning. correlation: of both remaining
+    changes. P = Phi(-a) Phi(b) + Phi(a) Phi(-b), a, b = detectability sqrt((1 -+ |correlation|) / 2).
+    """
+    a = detectability * np.sqrt((1.0 - abs(correlation)) / 2.0)
+    b = detectability * np.sqrt((1.0 + abs(correlation)) / 2.0)
+    return float(ndtr(-a) * ndtr(b) + ndtr(a) * ndtr(-b))

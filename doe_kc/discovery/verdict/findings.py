@@ -1,0 +1,252 @@
+"""From the last set of effects to findings: sizes with their uncertainty, probabilities, rivals."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from scipy.linalg import cho_factor, cho_solve
+from scipy.special import log_ndtr, logsumexp, ndtr
+
+from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
+from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
+from doe_kc.discovery.search.search import EffectSearch
+from doe_kc.discovery.thresholds import (
+    BESIDE_SHARE,
+    DECISIVE_EVIDENCE,
+    NAME_ALWAYS_LEVEL,
+    NAME_LEVEL,
+    NOISE_CHANCE,
+    RIVAL_LISTED,
+    TRACE_LEVEL,
+    TRACE_SD,
+    WRONG_NAME_CHANCE,
+)
+from doe_kc.discovery.verdict.alternatives import Alternatives
+from doe_kc.discovery.verdict.exclusion import wrong_name_chance
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
+from doe_kc.ground.typing import FloatArray
+
+NO_EFFECT = ""
+"""In place of an effect's id: none at all."""
+
+
+def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
+    """Every member of the last set, each judged beside all the others. compared: in the set's order."""
+    trace_sd = unseen_effect_sd(search)
+    every = [
+        _finding(search, one, place, trace_sd[place.start - search.with_law_discrepancy.model.dimension :])
+        for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
+    ]
+    most = max((f.gain for f in every), default=0.0)
+    least = BESIDE_SHARE * most if any(search.discrepancy_shares.values()) else 0.0
+    return tuple(
+        replace(f, relevant=f.relevant and _stands_out(one, least))
+        for f, one in zip(every, compared, strict=True)
+    )
+
+
+def _stands_out(own: Alternatives, least: float) -> bool:
+    """Whether the effect is more than what the law of a much larger one could leave behind.
+
+    A weak one is named where noise does not explain what remains without it.
+    """
+    strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
+    if strength >= NAME_ALWAYS_LEVEL:
+        return True
+    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE_CHANCE)
+
+
+def _finding(search: EffectSearch, own: Alternatives, place: slice, trace_sd: FloatArray) -> Finding:
+    """trace_sd: standard deviations by effects that are not seen, of its sizes and those behind them."""
+    hypothesis = own.hypothesis
+    logs = log_probabilities(own, [s.hypothesis for s in search.steps[0].screened])
+    against, odds = best_alternative(logs, hypothesis.effect)
+    most_probable, _ = amplitude_estimates(search.with_effects, hypothesis)
+    sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
+    sd = _with_law(
+        hypothesis,
+        most_probable,
+        amplitude_estimates(search.with_law_discrepancy, hypothesis)[1],
+        search.discrepancy_shares,
+    )
+    detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
+    counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
+    chances = _wrong_name_chances(own, detectability)
+    for effect, chance in _confusion_chances(own).items():
+        chances[effect] = max(chances.get(effect, 0.0), chance)
+    rivals = tuple(
+        Rival(effect, float(np.exp(log)))
+        for effect, log in sorted(logs.items(), key=lambda item: -item[1])
+        if effect not in (hypothesis.effect, NO_EFFECT) and np.exp(log) >= RIVAL_LISTED
+    )
+    return Finding(
+        hypothesis=hypothesis,
+        estimates=tuple(
+            estimate(s, a, float(np.hypot(e, more)))
+            for (s, a), e, more in zip(sizes, sd, trace_sd[: len(sizes)], strict=True)
+        ),
+        probability=float(np.exp(logs[hypothesis.effect])),
+        log10_odds=odds,
+        against=against,
+        rivals=rivals,
+        gain=own.trials[0].gain,
+        detectability=detectability,
+        wrong_name=max(chances.values(), default=0.0),
+        alike=_alike(own, chances),
+        largest=max((a for _, a, _ in counted), default=1.0),
+        believed=believable(counted),
+        relevant=more_than_trace(counted) and not _trace_would_do(own),
+        elsewhere=_elsewhere(own),
+    )
+
+
+def _with_law(
+    hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray, shares: Mapping[str, float]
+) -> FloatArray:
+    """(m,) standard deviations; a stiffness whose law is another is not one number but a range."""
+    share = shares.get(hypothesis.name, 0.0)
+    own = [
+        share * a if s.growth == "compliance" else 0.0
+        for s, a in zip(hypothesis.sizes, most_probable, strict=True)
+    ]
+    return np.asarray(np.hypot(sd, own))
+
+
+def log_probabilities(own: Alternatives, library: Sequence[Hypothesis]) -> dict[str, float]:
+    """Effect id -> ln of its probability in this place of the last set; NOTHING: of none at all.
+
+    Prior odds are those of the effects, shared between the places that each has in the library.
+    """
+    places = Counter(h.effect for h in library)
+    logs: dict[str, float] = {NO_EFFECT: 0.0}
+    for t in own.trials:
+        effect = t.hypothesis.effect
+        log = t.gain / own.temper - float(np.log(max(places[effect], 1)))
+        logs[effect] = float(np.logaddexp(logs.get(effect, -np.inf), log))
+    total = float(logsumexp(list(logs.values())))
+    return {effect: log - total for effect, log in logs.items()}
+
+
+def best_alternative(logs: Mapping[str, float], effect: str) -> tuple[str, float]:
+    """What is likeliest in an effect's stead, and log10 of the effect's odds against that."""
+    others = {e: log for e, log in logs.items() if e != effect}
+    best = max(others, key=lambda e: others[e])
+    return best, float((logs[effect] - others[best]) / np.log(10.0))
+
+
+def estimate(size: Size, amplitude: float, sd: float) -> ParameterEstimate:
+    """A size at its value, with the standard deviation of the value to first order.
+
+    A size that cannot be negative is taken at the mean of its half-line's Gaussian, so that one that the
+    data do not see is not given as exactly nothing.
+    """
+    if not (size.signed or size.shape) and sd > 0.0:
+        inverse_mills = float(np.exp(-0.5 * (amplitude / sd) ** 2 - log_ndtr(amplitude / sd)))
+        amplitude += sd * inverse_mills / float(np.sqrt(2.0 * np.pi))
+    step = min(0.01, 0.1 * sd)
+    floor = 0.0 if size.signed or size.shape else step
+    at = max(amplitude, floor)
+    slope = (size.value(at + step) - size.value(at - step)) / (2.0 * step) if step > 0.0 else 0.0
+    return ParameterEstimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
+
+
+def _detectability(fit: Fit, place: slice) -> float:
+    """Standard deviations that the effect makes at its size, all else re-tuned."""
+    covariance = fit.covariance[place, place]
+    information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
+    sizes = fit.z[place]
+    return float(np.sqrt(max(0.0, float(sizes @ information @ sizes))))
+
+
+def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:
+    """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
+    projection = own.without.projection
+    first, *others = own.screened
+    direction = _unit(projection(first.change))
+    out: dict[str, float] = {}
+    for s in others:
+        effect = s.hypothesis.effect
+        if effect != own.hypothesis.effect and not s.failed:
+            chance = wrong_name_chance(detectability, float(direction @ _unit(projection(s.change))))
+            out[effect] = max(out.get(effect, 0.0), chance)
+    return out
+
+
+def _confusion_chances(own: Alternatives) -> dict[str, float]:
+    """Effect id -> chance that noise alone puts its refit before the effect's own, in truth the right one.
+
+    Phi(-d / 2), d the distance of what both predict in standard deviations of the records.
+    """
+    first, *rest = own.trials
+    out: dict[str, float] = {}
+    for t in rest:
+        effect = t.hypothesis.effect
+        if effect != first.hypothesis.effect and _has_needed_sizes(t):
+            apart = float(np.linalg.norm(t.fit.residual - first.fit.residual))
+            out[effect] = max(out.get(effect, 0.0), float(ndtr(-apart / 2.0)))
+    return out
+
+
+def _has_needed_sizes(trial: HypothesisFit) -> bool:
+    """Whether the sizes are there that make it: a free play without a gap is a compliance by another name."""
+    return all(abs(a) > max(ABSENT, sd) for s, a, sd in amounts(trial) if s.needed)
+
+
+def _alike(own: Alternatives, chances: Mapping[str, float]) -> tuple[str, ...]:
+    """Effects that the records hardly tell from this one and whose evidence is not decisively less."""
+    best = max(t.gain for t in own.trials if t.hypothesis.effect == own.hypothesis.effect)
+    rivals = (t for t in own.trials if t.hypothesis.effect != own.hypothesis.effect and _has_needed_sizes(t))
+    close = dict.fromkeys(
+        t.hypothesis.effect for t in rivals if (best - t.gain) / own.temper < DECISIVE_EVIDENCE
+    )
+    return tuple(e for e in close if chances.get(e, 0.0) > WRONG_NAME_CHANCE)
+
+
+def _trace_would_do(own: Alternatives) -> bool:
+    """Whether a trace of another effect explains the records about as well: every car has those."""
+    first, *rest = own.trials
+    return any(
+        t.hypothesis.effect != own.hypothesis.effect
+        and t.gain > 0.0
+        and (first.gain - t.gain) / own.temper < DECISIVE_EVIDENCE
+        and not more_than_trace(amounts(t))
+        for t in rest
+    )
+
+
+def _elsewhere(own: Alternatives) -> tuple[str, ...]:
+    """Other places of the same effect whose evidence is not decisively less."""
+    first, *rest = own.trials
+    others = (t for t in rest if t.hypothesis.effect == own.hypothesis.effect)
+    close = (t for t in others if (first.gain - t.gain) / own.temper < DECISIVE_EVIDENCE)
+    return tuple(t.hypothesis.location for t in close if t.hypothesis.location)
+
+
+def _unit(seen: FloatArray) -> FloatArray:
+    length = float(np.linalg.norm(seen))
+    return np.asarray(seen / length if length > 1e-9 else 0.0 * seen)
+
+
+def unseen_effect_sd(search: EffectSearch) -> FloatArray:
+    """(m,) standard deviation of the last model's amplitudes by all effects that are not in it.
+
+    To first order: each at PRESENT of its typical size, less where more would have been seen, independently.
+    """
+    fit = search.with_law_discrepancy
+    members = {h.name for h in fit.model.members}
+    others = [
+        s
+        for s in search.steps[-1].screened
+        if not s.failed and s.hypothesis.name not in members and not EFFECTS[s.hypothesis.effect].on_rig
+    ]
+    if not others:
+        return np.zeros(fit.amplitudes.size)
+    sizes = np.array([min(TRACE_SD, TRACE_LEVEL / max(s.detectability, 1e-9)) for s in others])
+    changes = np.array([s.change for s in others]).T * sizes
+    moves = cho_solve(cho_factor(fit.hessian), fit.jacobian.T @ changes)
+    return np.asarray(np.linalg.norm(moves[fit.model.dimension :], axis=1))

@@ -1,0 +1,87 @@
+"""Load cases held out: predicted by a model that was fitted to all the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cholesky, solve_triangular
+
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
+from doe_kc.discovery.thresholds import CHORD_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
+from doe_kc.ground.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class HeldOutScore:
+    """How well a load case held out is predicted."""
+
+    rms: float
+    """RMS of the records' deviations in standard deviations of the prediction, that of its parameters among
+    them; 1 is as good as predicted."""
+    score: float
+    """ln of the predictive density, relative to constants that all models share."""
+    size: int
+    """Number of records."""
+
+    @property
+    def excess(self) -> float:
+        """Standard deviations by which the RMS is above 1, of so many records and of the noise's size."""
+        return (self.rms - 1.0) / float(np.hypot(1.0 / np.sqrt(2.0 * self.size), NOISE_SD_SHARE))
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """One load case, predicted by models that were fitted to all the others."""
+
+    load_case: str
+    """Its id."""
+    tuned: HeldOutScore
+    """By the re-tuned model without an effect."""
+    with_effect: HeldOutScore
+    """By the re-tuned model with the effects."""
+    law_granted: HeldOutScore
+    """By that, the discrepancy of its effects' laws among the errors of the records."""
+
+    @property
+    def gain(self) -> float:
+        """ln predictive density won by the effects."""
+        return self.with_effect.score - self.tuned.score
+
+
+def held_out(tuned: Fit, with_effects: Fit, with_discrepancy: Fit, case: str) -> HeldOut:
+    """One load case of the records, predicted from all the others.
+
+    with_effects: fitted to the records' own errors; with_discrepancy: to errors that hold that of the laws.
+    """
+    with_effect = law_granted = held_out_score(fit_without(with_effects, case))
+    if with_discrepancy.model.likelihood is not with_effects.model.likelihood:
+        model = replace(with_discrepancy.model, left_out=case)
+        law_granted = held_out_score(chord_fit(with_discrepancy, model))
+    return HeldOut(case, held_out_score(fit_without(tuned, case)), with_effect, law_granted)
+
+
+def fit_without(start: Fit, case: str) -> Fit:
+    """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
+    model = replace(start.model, left_out=case)
+    near = chord_fit(start, model)
+    gained = cost_of(model, start.z, start.residual) - near.cost
+    if near.converged and gained <= CHORD_DECREASE:
+        return near
+    return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
+
+
+def held_out_score(fit: Fit) -> HeldOutScore:
+    """The score of the rows that the fit did not look at, r with derivatives R.
+
+    Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
+    det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
+    """
+    predicted = ~fit.model.used
+    residual, rows = fit.residual[predicted], fit.jacobian[predicted]
+    before = cholesky(fit.hessian, lower=True)
+    after = cholesky(fit.hessian + rows.T @ rows, lower=True)
+    pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)
+    square = float(residual @ residual - pulled @ pulled)
+    score = -0.5 * square - float(np.sum(np.log(np.diag(after) / np.diag(before))))
+    return HeldOutScore(float(np.sqrt(square / residual.size)), score, int(residual.size))

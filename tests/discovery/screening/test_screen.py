@@ -1,0 +1,149 @@
+"""Screening: the score test in closed form where effects are linear, sizes where they are not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen
+from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR
+from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
+from tests.discovery.cases import library, model
+
+
+@pytest.fixture(scope="module")
+def tuned() -> Fit:
+    car = model("named")
+    return fit(car, car.centre)
+
+
+def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
+    gains = {h.name: screen(tuned, h).gain for h in library("hub_compliance", "strut_friction")}
+    assert gains["hub_compliance"] > 50.0
+    assert gains["strut_friction"] < 3.0
+
+
+def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
+    (hub,) = library("hub_compliance")
+    found = screen(tuned, hub)
+    again = score_test(tuned, found)
+    prior = tuned.model.prior_sd
+    marginal = np.eye(tuned.residual.size) + (tuned.jacobian * prior**2) @ tuned.jacobian.T
+    weighted = np.linalg.solve(marginal, found.columns)
+    hessian = found.columns.T @ weighted + np.eye(2)
+    offset = tuned.residual - tuned.jacobian @ (tuned.z - tuned.model.centre)
+    expected = -np.linalg.solve(hessian, weighted.T @ offset)
+    assert np.allclose(again.amplitudes, expected, rtol=1e-5, atol=1e-6)
+
+
+def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned: Fit) -> None:
+    by_name = {h.name: screen(tuned, h) for h in library("bushing_progression")}
+    weak = by_name["bushing_progression SFR"]
+    assert weak.detectability < 1.0
+    assert 0.0 <= weak.absorbed <= 1.0
+
+
+def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) -> None:
+    (hub,) = library("hub_compliance")
+    projection = tuned.projection
+    found = screen(tuned, hub)
+    columns = projection(found.columns)
+    for own, other in ((0, 1), (1, 0)):
+        share = columns[:, own] @ columns[:, other] / (columns[:, other] @ columns[:, other])
+        rest = columns[:, own] - share * columns[:, other]
+        assert found.size_detectability[own] == pytest.approx(np.linalg.norm(rest), rel=1e-4)
+    assert (score_test(tuned, found).size_detectability == found.size_detectability).all()
+    assert found.size_detectability.min() < found.detectability
+
+
+def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
+    (friction,) = library("strut_friction")
+    found = screen(tuned, friction)
+    amounts = [not s.shape for s in friction.sizes]
+    assert found.size_detectability[amounts] == pytest.approx(found.detectability)
+    assert np.isnan(found.size_detectability[~np.array(amounts)]).all()
+
+
+def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
+    (friction,) = library("strut_friction")
+    projection = tuned.projection
+    clear = screen(tuned, friction)
+    followed = tuned.jacobian @ np.full(tuned.z.size, 0.3)  # what parameters do, and a trace besides
+    followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
+    hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(projection(followed))))
+    assert hidden.detectability > 10.0
+    shown, unsure = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=True)
+    least = max(4.84 / clear.detectability, abs(clear.amplitudes[0]) + 1.645 * clear.sd[0])
+    assert shown.status == "excluded" and shown.limits[0] == pytest.approx(least)
+    open_, _ = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=False)
+    assert open_.status == "unresolved" and open_.limits[0] == shown.limits[0]
+    assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
+
+
+@pytest.mark.parametrize(("strength", "correlation"), [(2.0, 0.5), (4.0, 0.9), (6.0, 0.95)])
+def test_wrong_name_chance_against_monte_carlo(strength: float, correlation: float) -> None:
+    rng = np.random.default_rng(2)
+    first = strength + rng.standard_normal(400_000)
+    rest = rng.standard_normal(first.size)
+    second = correlation * first + np.sqrt(1.0 - correlation**2) * rest
+    frequency = float(np.mean(np.abs(second) > np.abs(first)))
+    assert wrong_name_chance(strength, correlation) == pytest.approx(frequency, abs=0.003)
+
+
+def test_ninety_nine_per_cent_right_needs_the_strength_of_the_closed_form() -> None:
+    for correlation in (0.9, 0.95, 0.99):
+        strength = norm.ppf(0.99) * np.sqrt(2.0 / (1.0 - correlation))
+        assert wrong_name_chance(float(strength), correlation) == pytest.approx(0.01, abs=1e-3)
+
+
+class Saturating:
+    """A model of one effect that makes 200 a / (1 + 5 a) standard deviations of one datum, and a fit."""
+
+    lower, upper, z = np.zeros(1), np.full(1, 6.0), np.zeros(0)
+
+    def __init__(self, true: float) -> None:
+        self.residual_of = -self.made(true)
+
+    @staticmethod
+    def made(a: float) -> np.ndarray:
+        return np.array([200.0 * a / (1.0 + 5.0 * a)])
+
+    def residual(self, z: np.ndarray) -> np.ndarray:
+        return self.residual_of + self.made(float(z[0]))
+
+    def amplitude_columns(self, z: np.ndarray, residual: np.ndarray, *, which: slice) -> np.ndarray:
+        return np.array([[200.0 / (1.0 + 5.0 * float(z[0])) ** 2]])
+
+
+class Untuned:
+    """No parameter to project out."""
+
+    def __call__(self, columns: np.ndarray) -> np.ndarray:
+        return columns
+
+    def residual(self, residual: np.ndarray) -> np.ndarray:
+        return residual
+
+
+def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() -> None:
+    model: Any = Saturating(true=0.03)
+    found: Any = SimpleNamespace(
+        z=model.z, residual=model.residual_of, remainder=model.residual_of, projection=Untuned()
+    )
+    unsolved = amplitude_solution(model, found, np.array([PROBE]), np.array([PROBE]))
+    assert not unsolved.solved
+    followed = amplitude_solution(model, found, np.array([PROBE]), np.array([PROBE_FACTOR * PROBE]))
+    assert followed.solved
+    assert followed.amplitudes == pytest.approx([0.03], abs=1e-3)
+
+
+def test_what_is_left_of_a_large_change_is_trusted_where_bounds_leave_it() -> None:
+    assert trusted_detectability(visible=8.0, before=100.0, by_bounds=0.0) == 8.0
+    assert trusted_detectability(visible=6.0, before=100.0, by_bounds=1.0) == 1.0
+    assert trusted_detectability(visible=16.0, before=300.0, by_bounds=15.9) == 15.9

@@ -1,0 +1,52 @@
+"""Backward elimination: a member is judged by errors that do not hold its own law."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.discovery.fit import Fit, fit, refit_to_errors, rewhitened_fit
+from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
+from doe_kc.discovery.search.pruning import backward_elimination
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Hypothesis
+from tests.discovery.cases import library, model
+
+
+def two_fitted() -> tuple[Fit, Hypothesis]:
+    """A car with a compliant hub, fitted with that and a strut that bends; the hub."""
+    (hub,), (bent,) = library("hub_compliance"), library("strut_bending")
+    both = model("named").extended(hub).extended(bent)
+    return fit(both, np.append(both.centre[: both.dimension], np.ones(len(both.sizes)))), hub
+
+
+def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
+    """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
+    exact, hub = two_fitted()
+    wide = with_discrepancy(exact.model, effect_signals(exact), [0.5, 0.0])
+    found = fit(wide, exact.z, tuning=rewhitened_fit(exact, wide).jacobian[:, : wide.dimension])
+    fooled = _loss(found, hub)
+    own = _loss(refit_to_errors(found, exact.model.likelihood), hub)
+    assert own > 1.5 * fooled
+    between = float(np.sqrt(own * fooled))
+    assert hub not in backward_elimination(found, between, DiscoveryWorkers(), {}).model.members
+    judged = backward_elimination(found, between, DiscoveryWorkers(), {hub.name: exact.model.likelihood})
+    assert hub in judged.model.members
+    assert judged.model.likelihood is wide.likelihood
+
+
+def _loss(found: Fit, member: Hypothesis) -> float:
+    """ln evidence lost by a member's removal."""
+    place = next(p for h, p in found.model.places() if h == member)
+    return found.evidence - fit(found.model.without(member), np.delete(found.z, np.r_[place])).evidence
+
+
+def test_errors_without_one_law_hold_those_of_the_others() -> None:
+    exact, _ = two_fitted()
+    names = [h.name for h in exact.model.members]
+    assert without_own_discrepancy(exact, dict.fromkeys(names, 0.0)) == {}
+    found = without_own_discrepancy(exact, dict.fromkeys(names, 0.1))
+    made = effect_signals(exact)
+    for name, shares in zip(names, ([0.0, 0.1], [0.1, 0.0]), strict=True):
+        expected = with_discrepancy(exact.model, made, shares).likelihood
+        for one, other in zip(found[name].curves, expected.curves, strict=True):
+            np.testing.assert_array_equal(one.root, other.root)

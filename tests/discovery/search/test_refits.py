@@ -1,0 +1,113 @@
+"""Which hypotheses are refitted, which refit leads, which sizes are believed, which loop is tried."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.search.refits import (
+    HypothesisFit,
+    believable,
+    more_than_trace,
+    overlooked,
+    stiffer_first,
+)
+from doe_kc.discovery.search.search import with_conditioning
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Size
+from doe_kc.ground.typing import FloatArray
+from tests.discovery.cases import discovery, library
+
+
+def trial(place: str, gain: float, amplitude: float) -> HypothesisFit:
+    hypothesis = next(h for h in library("left_right_asymmetry") if h.location == place)
+    found = discovery("named").search.with_law_discrepancy
+    return HypothesisFit(hypothesis, replace(found, z=np.append(found.z, amplitude)), gain)
+
+
+@pytest.mark.parametrize(
+    ("gains", "sizes", "leads"),
+    [
+        ((30.0, 29.8), (-1.0, 1.0), "UPB_L"),
+        ((30.0, 29.8), (1.0, -1.0), "UPB_R"),
+        ((30.0, 25.0), (-1.0, 1.0), "UPB_R"),
+    ],
+    ids=["tied", "stiffer already", "clearly better"],
+)
+def test_of_two_places_that_say_the_same_the_stiffer_leads(
+    gains: tuple[float, float], sizes: tuple[float, float], leads: str
+) -> None:
+    trials = [trial("UPB_R", gains[0], sizes[0]), trial("UPB_L", gains[1], sizes[1])]
+    assert stiffer_first(trials)[0].hypothesis.location == leads
+    assert stiffer_first(trials[:1]) == trials[:1]
+
+
+def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
+    size = Size("k", 1.0, "-")
+    assert believable([(size, 3.5, 0.3)])
+    assert not believable([(size, 1.0, 0.1), (size, -3.5, 0.2)])
+    assert believable([(replace(size, most=4.0), -3.5, 0.2)])
+    assert more_than_trace([(size, 0.3, 0.09)]) and not more_than_trace([(size, 0.3, 0.11)])
+    assert more_than_trace([])
+
+
+class Asked(DiscoveryWorkers):
+    """Notes which axles are to be fitted, and fits none."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.loops: list[int] = []
+
+    def fits(
+        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
+    ) -> list[Fit | None]:
+        self.loops += [model.axle.conditioning for model, _ in starts]
+        return [None for _ in starts]
+
+
+@pytest.mark.parametrize(("own", "other"), [(0, 1), (1, 0), (2, 0)])
+def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -> None:
+    found = discovery("friction").search.with_law_discrepancy
+    model = replace(found.model, axle=found.model.axle.conditioned(own))
+    asked = Asked()
+    current = replace(found, model=model)
+    assert with_conditioning(current, model.axle, asked) is current
+    assert asked.loops == [other]
+
+
+def test_without_friction_the_loops_are_those_of_the_file() -> None:
+    found = discovery("named").search.with_law_discrepancy
+    assert not found.model.with_effects(found.z).topology.frictional
+    looped = replace(found, model=replace(found.model, axle=found.model.axle.conditioned(1)))
+    again = with_conditioning(looped, found.model.axle, Asked())
+    assert again.model.axle.conditioning == 0
+    np.testing.assert_allclose(again.model.residual(again.z), looped.residual, atol=1e-9)
+
+
+def screened(absorbed: float, detectability: float, failed: str = "") -> Screened:
+    (hypothesis,) = library("tie_rod_compliance")
+    none: Any = np.zeros(1)
+    return Screened(
+        hypothesis, none, none, -3.5, 0.0, none[:, None], none, detectability, absorbed, none, failed
+    )
+
+
+@pytest.mark.parametrize(
+    ("candidate", "refitted"),
+    [
+        (screened(0.98, 10.9), True),
+        (screened(0.6, 10.9), False),
+        (screened(0.98, 3.0), False),
+        (screened(0.98, 10.9, "no equilibrium"), False),
+    ],
+    ids=["hidden almost wholly", "hardly hidden", "not seen at typical size", "without an equilibrium"],
+)
+def test_what_a_screening_may_have_missed(candidate: Screened, refitted: bool) -> None:
+    assert overlooked([candidate], 9.1) == ([candidate] if refitted else [])

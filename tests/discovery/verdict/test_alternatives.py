@@ -1,0 +1,100 @@
+"""Each effect of the last set against its removal and its rivals, whatever the order they came in by."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import last_member
+from doe_kc.discovery.search.refits import HypothesisFit, plausible
+from doe_kc.discovery.search.search import EffectSearch
+from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.verdict.findings import findings
+from doe_kc.discovery.workers import DiscoveryWorkers
+from tests.discovery.cases import discovery
+
+BOTH = {"hub_compliance", "steering_friction"}
+
+
+@pytest.fixture(scope="module")
+def found() -> EffectSearch:
+    return discovery("pair").search
+
+
+@pytest.fixture(scope="module")
+def compared(found: EffectSearch) -> tuple[Alternatives, ...]:
+    return alternatives(found, 1.0, DiscoveryWorkers())
+
+
+def test_two_effects_are_named_and_are_no_class() -> None:
+    answer = discovery("pair")
+    assert answer.verdict == "named", answer.sentences
+    assert {f.hypothesis.effect for f in answer.findings} == BOTH
+    assert answer.classes == ()
+    for f in answer.findings:
+        assert f.probability > 0.99
+        assert f.log10_odds > 6.0
+        assert not {r.effect for r in f.rivals} & BOTH
+
+
+def test_no_member_of_the_set_is_a_rival_of_another(compared: tuple[Alternatives, ...]) -> None:
+    for one in compared:
+        assert {t.hypothesis.effect for t in one.trials[1:]} <= {"strut_bending", "tie_rod_compliance"}
+        assert {s.hypothesis.effect for s in one.screened} & BOTH == {one.hypothesis.effect}
+        assert all(plausible(t) for t in one.trials)
+
+
+def test_an_effect_is_taken_out_of_the_whole_set(
+    compared: tuple[Alternatives, ...], found: EffectSearch
+) -> None:
+    """Not out of the set that it came into."""
+    for one in compared:
+        others = {h.effect for h in found.with_law_discrepancy.model.members} - {one.hypothesis.effect}
+        assert {h.effect for h in one.without.model.members} == others
+        assert one.loss == pytest.approx(one.trials[0].fit.evidence - one.without.evidence)
+
+
+def test_the_order_of_two_effects_does_not_matter(
+    compared: tuple[Alternatives, ...], found: EffectSearch
+) -> None:
+    first, second = found.with_law_discrepancy.model.members
+    swapped = replace(
+        found,
+        with_law_discrepancy=last_member(found.with_law_discrepancy, first),
+        with_effects=last_member(found.with_effects, first),
+    )
+    assert swapped.with_law_discrepancy.model.members == (second, first)
+    there = findings(found, compared)
+    back = findings(swapped, alternatives(swapped, 1.0, DiscoveryWorkers()))
+    for one, other in zip(there, reversed(back), strict=True):
+        assert one.hypothesis == other.hypothesis
+        assert one.log10_odds == pytest.approx(other.log10_odds, rel=1e-3, abs=0.05)
+        assert one.probability == pytest.approx(other.probability, abs=1e-6)
+        assert one.rivals == other.rivals
+
+
+def test_a_first_trial_at_its_bound_is_no_rival_of_the_effect_beside_it(
+    compared: tuple[Alternatives, ...], found: EffectSearch
+) -> None:
+    """Beside no friction, a hub may win by an absurd size; beside friction it is in the set itself."""
+    hub = next(s for step in found.steps for s in step.screened if s.hypothesis.effect == "hub_compliance")
+    friction = next(c for c in compared if c.hypothesis.effect == "steering_friction")
+    model = found.tuned.model.extended(hub.hypothesis)
+    fit = replace(found.tuned, model=model, z=np.append(found.tuned.z, [1.5, 6.0]))
+    covariance = np.hstack([found.tuned.jacobian, 100.0 * np.ones((fit.residual.size, 2)) * [[1.0, 0.3]]])
+    absurd = HypothesisFit(hub.hypothesis, replace(fit, jacobian=covariance), 50_000.0)
+    steps = tuple(replace(s, trials=(*s.trials, absurd)) for s in found.steps)
+    again = alternatives(replace(found, steps=steps), 1.0, DiscoveryWorkers())
+    same = next(c for c in again if c.hypothesis == friction.hypothesis)
+    assert "hub_compliance" not in {t.hypothesis.effect for t in same.trials}
+    assert same.loss == pytest.approx(friction.loss)
+
+
+def test_one_effect_alone_is_judged_by_the_refits_of_the_search() -> None:
+    """No solution more: the set without it is the re-tuned axle."""
+    search = discovery("named").search
+    (one,) = alternatives(search, 1.0, DiscoveryWorkers())
+    assert one.without is search.tuned
+    assert {id(t) for t in one.trials[1:]} <= {id(t) for t in search.steps[0].trials}
