@@ -14,6 +14,8 @@ SUFFICIENT = 1e-4
 """Share of the slope's promise that a step must keep (Armijo)."""
 
 
+# lsq_linear wants a root of H, has no early end, and takes 2 (12 variables) to 14 times (140) as long for the
+# same minimizer (to 1e-14).
 def bounded_step(
     hessian: FloatArray,
     gradient: FloatArray,
