@@ -21,7 +21,6 @@ from doe_kc.measurement.reduction import static_sd
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.variables import Space
-from doe_kc.workflow.scatter import one_sigma
 
 NOISE_OF = "car_b"
 CLEARANCE_SD = 1.0
@@ -37,8 +36,8 @@ def sigma(parameter: Parameter) -> float:
     if parameter.path == "ride_height":
         return RIDE_HEIGHT_SD
     if parameter.path == "arb.radius":  # 3 % of its rate, which goes with the fourth power
-        return one_sigma(parameter) / 4.0
-    return CLEARANCE_SD if parameter.path.endswith("clearance") else one_sigma(parameter)
+        return parameter.production_sd / 4.0
+    return CLEARANCE_SD if parameter.quantity == "clearance" else parameter.production_sd
 
 
 def scattered(space: Space, seed: int, *, times: float = 1.0) -> dict[str, float]:

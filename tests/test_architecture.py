@@ -65,6 +65,26 @@ def test_every_module_imports_downwards_only() -> None:
     assert not upwards
 
 
+def test_no_correlation_method_imports_from_another() -> None:
+    """What two of them need is in `correlation/modelled`, or in an underscored module beside them."""
+    folder = ROOT / "correlation" / "methods"
+
+    def method(parts: tuple[str, ...]) -> str:
+        return parts[0].removesuffix(".py")
+
+    across = [
+        f"{path.relative_to(ROOT)} imports {name}"
+        for path, tree in TREES.items()
+        if path.is_relative_to(folder) and path != folder / "__init__.py"
+        for name in _imports(tree)
+        if name.startswith("doe_kc.correlation.methods.")
+        and (other := method(tuple(name.split(".")[3:]))) != method(path.relative_to(folder).parts)
+        and ((folder / f"{other}.py").exists() or (folder / other).is_dir())
+        and not other.startswith("_")
+    ]
+    assert not across
+
+
 def test_every_folder_has_its_floor() -> None:
     assert {_floor(p) for p in TREES} - {"__init__", "__main__"} == set(FLOORS) & {_floor(p) for p in TREES}
 

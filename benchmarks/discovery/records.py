@@ -13,7 +13,7 @@ from benchmarks.discovery.sensors import INPUT_WHITE, RESOLUTION, Levels, kind, 
 from doe_kc.axle import Axle
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.ground.typing import FloatArray
-from doe_kc.load_cases.lateral_offset import LateralOffset
+from doe_kc.load_cases.force import LateralOffset
 from doe_kc.measurement.channels import RIG_NAMES
 
 RUNS = 3

@@ -6,7 +6,7 @@ import hashlib
 
 import numpy as np
 
-from doe_kc.correlation.methods.ego import OPENING
+from doe_kc.correlation.methods.ego.method import OPENING
 from doe_kc.correlation.problem import Candidate, Problem
 from tests.correlation import cases
 

@@ -13,7 +13,7 @@ from optimizers.composed import Composed, outputs_of
 from optimizers.counting import CountingSolver
 from optimizers.peer import Peer
 
-from doe_kc.correlation.methods.ego import OPENING
+from doe_kc.correlation.methods.ego.method import OPENING
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets

@@ -1,4 +1,4 @@
-"""The product's own methods, through the loop that every study uses."""
+"""The product's own methods and SMT's, through the loop that every study uses."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from dataclasses import replace
 
 from optimizers.counting import CountingSolver
 from optimizers.peer import Peer, Search
+from optimizers.smt_ego import SmtEgo
 
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import METHODS, MethodSettings
+from doe_kc.correlation.methods import METHODS, Method, MethodSettings
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Problem
 
@@ -21,10 +22,20 @@ def own(name: str, *, gradients: Gradients = "auto", continuous: bool = False) -
     def search(solver: CountingSolver, seed: int) -> str:
         settings = MethodSettings(seed=seed, budget=solver.budget, gradients=gradients)
         problem = _without_levels(solver.problem) if continuous else solver.problem
-        method = METHODS[name](problem, settings)
-        return run_method(problem, method, solver.evaluate, budget=solver.budget).stopped
+        return _run(METHODS[name](problem, settings), solver, problem)
 
     return search
+
+
+def smt(solver: CountingSolver, seed: int) -> str:
+    """The scalar peer, through the same loop."""
+    return _run(
+        SmtEgo(solver.problem, MethodSettings(seed=seed, budget=solver.budget)), solver, solver.problem
+    )
+
+
+def _run(method: Method, solver: CountingSolver, problem: Problem) -> str:
+    return run_method(problem, method, solver.evaluate, budget=solver.budget).stopped
 
 
 def _without_levels(problem: Problem) -> Problem:
@@ -62,5 +73,5 @@ PEERS = (
     ),
     Peer("pareto", "pareto", "outputs", own("pareto"), BUDGET, ours=True, needs="pymoo"),
     Peer("hybrid", "hybrid", "outputs", own("hybrid"), BUDGET, ours=True),
-    Peer("smt_ego", "SMT EGO (KPLS)", "rating", own("smt_ego"), 45, needs="smt", seeds=1),
+    Peer("smt_ego", "SMT EGO (KPLS)", "rating", smt, 45, needs="smt", seeds=1),
 )

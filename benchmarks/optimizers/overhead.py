@@ -10,8 +10,8 @@ from optimizers.peer import Peer
 from optimizers.running import CODE, PEERS, Result, problem, run
 
 from doe_kc.axle.parameters import design_parameters, parameter_value
-from doe_kc.correlation.ego.archive import build_archive
-from doe_kc.correlation.methods.ego import WITH_SLOPES
+from doe_kc.correlation.methods.ego.method import WITH_SLOPES
+from doe_kc.correlation.modelled.archive import build_archive
 from doe_kc.correlation.problem import Candidate, Problem
 from doe_kc.ground.errors import InputError
 from doe_kc.variables import Change, VariableOptions, build_space

@@ -10,19 +10,27 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Literal
+from typing import Any
 
-from doe_kc.axle.model import (
-    BUSHING_AXES,
-    BUSHINGS,
-    EXTRA_HARDPOINTS,
-    HARDPOINTS,
-    Axle,
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameter_kinds import (
+    KINDS,
+    PATHS,
+    PRODUCTION_SD,
+    PRODUCTION_SHARE,
+    SIDE_PREFIXES,
+    SWITCHES,
+    Group,
+    ParameterKind,
+    Quantity,
+    is_lateral,
+    must_be_positive,
+    not_below_zero,
+    quantity_of,
+    side_prefix,
 )
+from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
-
-Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
-SIDE_PREFIXES = {"left": "L", "right": "R"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,60 +51,33 @@ class Parameter:
     step: float
     active: bool
 
+    @property
+    def quantity(self) -> Quantity:
+        """What it measures."""
+        return "coordinate" if self.group == "HARDPOINTS" else quantity_of(self.path)
 
-@dataclass(frozen=True)
-class _Kind:
-    """span: bounds as (down, up), absolute or, when `relative`, as factors of the nominal value."""
+    @property
+    def one_sided(self) -> bool:
+        """Whether it is at its lower limit of zero, and can only be raised."""
+        return self.lower == 0.0 and self.nominal < self.step
 
-    label: str
-    group: Group
-    unit: str
-    span: tuple[float, float]
-    step: float
-    relative: bool = False
+    @property
+    def mirrored(self) -> bool:
+        """Whether the right side has the opposite sign in the chassis frame."""
+        return is_lateral(self.path.removeprefix(side_prefix(self.path)))
 
+    @property
+    def in_model(self) -> bool:
+        """Whether the axle's model contains it: not where a zero value switches it off."""
+        return self.active and not (self.path in SWITCHES and self.nominal == 0.0)
 
-def _kinds() -> dict[str, _Kind]:
-    out: dict[str, _Kind] = {}
-    for name, label in HARDPOINTS.items():
-        for axis in "xyz":
-            out[f"{name}.{axis}"] = _Kind(f"{label}, {axis}", "HARDPOINTS", "mm", (-3.0, 3.0), 1.0)
-    for name, label in BUSHINGS.items():
-        for axis in BUSHING_AXES:
-            what = "stiffness" if axis.startswith("F") else "rotational stiffness"
-            out[f"{name}.{axis}"] = _Kind(
-                f"{label} bush, {what} {axis[1]}", "BUSHINGS", "-", (0.5, 2.0), 0.1, relative=True
-            )
-    out["scb.Tz"] = _Kind("Steering column bush, Tz", "BUSHINGS", "-", (0.5, 2.0), 0.1, relative=True)
-    out |= {
-        "strut.flexibility": _Kind("Strut flexibility ratio", "OTHER", "-", (0.0, 2.0), 0.1),
-        "bump_stop.clearance": _Kind("Bump stop clearance", "OTHER", "mm", (-10.0, 10.0), 1.0),
-        "rebound_stop.clearance": _Kind("Rebound stop clearance", "OTHER", "mm", (-10.0, 10.0), 1.0),
-        "spring.rate": _Kind("Spring rate", "OTHER", "N/mm", (0.8, 1.25), 0.1, relative=True),
-        "arb.radius": _Kind("Anti-roll bar outer radius", "OTHER", "mm", (0.8, 1.25), 0.1, relative=True),
-        "steer_arm.radius": _Kind("Steer arm outer radius", "OTHER", "mm", (0.7, 1.3), 0.1, relative=True),
-        "tyre.rate": _Kind("Tyre vertical stiffness", "OTHER", "N/mm", (0.8, 1.25), 0.1, relative=True),
-        "static.toe": _Kind("Static toe", "OTHER", "deg", (-0.3, 0.3), 0.1),
-        "static.camber": _Kind("Static camber", "OTHER", "deg", (-0.5, 0.5), 0.1),
-        "ride_height": _Kind("Ride height offset (pads up +)", "OTHER", "mm", (-10.0, 10.0), 1.0),
-    }
-    return out
-
-
-KINDS: Mapping[str, _Kind] = _kinds()
-POSITIVE_PARAMETERS = {
-    *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
-    *("kx", "ky", "kz", "krx", "kry", "krz"),
-    *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
-    *("gap", "contact", "reference"),
-}
-
-PATHS = 4096
-"""Names whose kind is remembered: a search asks for the same hundred thousands of times."""
-NOT_BELOW_ZERO = {
-    *("strut.flexibility", "arb.rate", "damper.gas_force"),
-    *("tie_rod.flexibility", "arb.link_flexibility", "power_assist.gain"),
-}
+    @property
+    def production_sd(self) -> float:
+        """One standard deviation between cars of one design, in its unit; 0 for one that does not scatter."""
+        if not self.active:
+            return 0.0
+        share = PRODUCTION_SHARE.get(self.quantity, 0.0)
+        return PRODUCTION_SD.get(self.quantity, share * abs(self.nominal))
 
 
 def design_parameters(axle: Axle) -> list[Parameter]:
@@ -106,14 +87,14 @@ def design_parameters(axle: Axle) -> list[Parameter]:
     ]
 
 
-def _parameter(axle: Axle, path: str, kind: _Kind) -> Parameter:
+def _parameter(axle: Axle, path: str, kind: ParameterKind) -> Parameter:
     nominal = parameter_value(axle, path)
     if kind.relative:
         lower, upper = (nominal * s for s in kind.span)
         step = abs(nominal) * kind.step
     else:
         lower, upper, step = nominal + kind.span[0], nominal + kind.span[1], kind.step
-    if path == "strut.flexibility":
+    if kind.bounds == "absolute":
         lower, upper = kind.span
     return Parameter(
         path=path,
@@ -171,29 +152,32 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
 
 def _with_matching_topology(axle: Axle) -> Axle:
     """A strut bends once its flexibility is above zero, and is rigid at zero."""
-    bends = max(axle.values["strut.flexibility@L"], axle.values["strut.flexibility@R"]) > 0
-    if bends == axle.topology.strut_bending:
-        return axle
-    return replace(axle, topology=replace(axle.topology, strut_bending=bends))
+    for path, flag in SWITCHES.items():
+        there = max(axle.values[f"{path}@L"], axle.values[f"{path}@R"]) > 0
+        if there != getattr(axle.topology, flag):
+            change: dict[str, Any] = {flag: there}
+            axle = replace(axle, topology=replace(axle.topology, **change))
+    return axle
+
+
+def switched_topology(axle: Axle, path: str) -> Topology:
+    """The topology once the values that a path moves are above zero: for most paths the axle's own."""
+    names = {name.split("@")[0] for name in internal_gradient(axle, path)}
+    flags: dict[str, Any] = {flag: True for name, flag in SWITCHES.items() if name in names}
+    return replace(axle.topology, **flags)
 
 
 def _overrides(axle: Axle, path: str) -> bool:
     """Whether setting the path to the value it has still keeps it from moving with another."""
-    return bool(_prefix(path)) or path.split(".")[0] in axle.follow
-
-
-@lru_cache(maxsize=PATHS)
-def _prefix(path: str) -> str:
-    head = path.split(".")[0]
-    return f"{head}." if head in SIDE_PREFIXES else ""
+    return bool(side_prefix(path)) or path.split(".")[0] in axle.follow
 
 
 @lru_cache(maxsize=PATHS)
 def _rank(path: str, internal: str) -> int:
     """Which path decides a value that several move: one set itself before one that follows, and of either
     kind one that names its side before one that moves both."""
-    own = path.removeprefix(_prefix(path)) == internal.split("@")[0]
-    return 2 * own + bool(_prefix(path))
+    own = path.removeprefix(side_prefix(path)) == internal.split("@")[0]
+    return 2 * own + bool(side_prefix(path))
 
 
 def internal_gradient(axle: Axle, path: str, *, source: str = "parameter") -> dict[str, float]:
@@ -208,7 +192,7 @@ def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[s
     reference = axle.values[_internal(axle, name, side or "L")]
     for each in (side,) if side else ("L", "R"):
         internal = _internal(axle, name, each)
-        scales = _is_ratio(name) and reference != 0
+        scales = must_be_positive(name) and reference != 0
         yield internal, change * (axle.values[internal] / reference if scales else 1.0)
         if "@" not in internal:
             return
@@ -219,40 +203,18 @@ def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[s
                 yield f"{follower}.{axis}@{each}", change
 
 
-@lru_cache(maxsize=PATHS)
-def _not_below_zero(name: str) -> bool:
-    return name in NOT_BELOW_ZERO or ".cubic." in name
-
-
 def check_value(path: str, value: float, source: str) -> None:
     """InputError for a value that no axle can have."""
     if not math.isfinite(value):
         raise InputError(f"{source}: {path} = {value}, expected a finite number.")
-    name = path.removeprefix(_prefix(path))
-    if value < 0 and _not_below_zero(name):
+    name = path.removeprefix(side_prefix(path))
+    if value < 0 and not_below_zero(name):
         raise InputError(f"{source}: {path} = {value:g}, expected a number >= 0.")
-    if value <= 0 and _must_be_positive(name):
+    if value <= 0 and must_be_positive(name):
         raise InputError(
             f"{source}: {path} = {value:g}, expected a number > 0; "
             "a zero or negative stiffness, load or radius has no equilibrium."
         )
-
-
-@lru_cache(maxsize=PATHS)
-def _must_be_positive(name: str) -> bool:
-    head, _, rest = name.partition(".")
-    if head in BUSHINGS:
-        return rest in BUSHING_AXES or rest.startswith("stiffness.")
-    if head in HARDPOINTS or head in EXTRA_HARDPOINTS or _not_below_zero(name):
-        return False
-    return (
-        name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"}
-        or rest in POSITIVE_PARAMETERS
-    )
-
-
-def _is_ratio(name: str) -> bool:
-    return _must_be_positive(name)
 
 
 def _split(axle: Axle, path: str, source: str) -> tuple[str, str | None]:
@@ -275,14 +237,8 @@ def _internal(axle: Axle, name: str, side: str) -> str:
     return f"{name}@{side}" if f"{name}@{side}" in axle.values else name
 
 
-@lru_cache(maxsize=PATHS)
-def _is_lateral(name: str) -> bool:
-    point, _, axis = name.partition(".")
-    return axis == "y" and (point in HARDPOINTS or point in EXTRA_HARDPOINTS)
-
-
 def _to_chassis(name: str, side: str | None, value: float) -> float:
-    return -value if side == "R" and _is_lateral(name) else value
+    return -value if side == "R" and is_lateral(name) else value
 
 
 _to_left = _to_chassis

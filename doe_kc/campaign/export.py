@@ -9,7 +9,7 @@ from typing import Literal
 
 import pandas as pd
 
-from doe_kc.axle.parameters import KINDS
+from doe_kc.axle.parameter_kinds import KINDS
 from doe_kc.campaign.record import StoredEvaluation
 from doe_kc.campaign.store import Store
 from doe_kc.characteristics import CHARACTERISTICS

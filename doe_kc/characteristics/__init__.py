@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-
-from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic, appendix_c
 from doe_kc.characteristics.reduction import reduce_all, reduce_one, reduction_gradient
-from doe_kc.ground.registry import import_members
-
-import_members(sys.modules[__name__])
+from doe_kc.characteristics.registry import CHARACTERISTICS, Characteristic, appendix_c
 
 __all__ = [
     "CHARACTERISTICS",

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.characteristics._base import CHARACTERISTICS, Characteristic
+from doe_kc.characteristics.registry import CHARACTERISTICS, Characteristic
 from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES

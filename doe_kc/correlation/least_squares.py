@@ -1,4 +1,4 @@
-"""Bounded quadratic minimization: the step of every residual-aware method."""
+"""Normal equations with a prior, and their minimizer within bounds: the step of every fit to residuals."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.ground.typing import FloatArray
+from doe_kc.variables import Space
 
 LEAST_SQUARES_ITERATIONS = 500
 HALVINGS = 30
@@ -13,6 +14,8 @@ SUFFICIENT = 1e-4
 """Share of the slope's promise that a step must keep (Armijo)."""
 
 
+# lsq_linear wants a root of H, has no early end, and takes 2 (12 variables) to 14 times (140) as long for the
+# same minimizer (to 1e-14).
 def bounded_step(
     hessian: FloatArray,
     gradient: FloatArray,
@@ -60,3 +63,35 @@ def _projected(
         if promised < 0 and promised + 0.5 * change @ hessian @ change <= SUFFICIENT * promised:
             return np.asarray(new)
     return None
+
+
+def with_prior(
+    hessian: FloatArray, gradient: FloatArray, weight: FloatArray, moved: FloatArray, *, flat: float = 0.0
+) -> tuple[FloatArray, FloatArray]:
+    """H + diag(w + flat) and g + w m: a quadratic of d variables, with the cost of having moved.
+
+    weight: (d,) w of the prior 1/2 w m^2. moved: (d,) m, from the prior's centre. flat: curvature that keeps
+    a direction without data from being followed.
+    """
+    return hessian + np.diag(weight + flat), gradient + weight * moved
+
+
+def normal_equations(
+    jacobian: FloatArray, residual: FloatArray, weight: FloatArray, moved: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Matrix (d, d) and gradient (d,) of 1/2 |r + J s|^2 + 1/2 w (m + s)^2 at s = 0.
+
+    residual r (M,) and Jacobian J (M, d) whitened; weight, moved: as in `with_prior`.
+    """
+    return with_prior(jacobian.T @ jacobian, jacobian.T @ residual, weight, moved)
+
+
+def most_probable_step(
+    jacobian: FloatArray, residual: FloatArray, point: FloatArray, space: Space
+) -> FloatArray:
+    """(d,) minimizer of |r + J s|^2 + |(u + s - u0) / P|^2 within the bounds.
+
+    residual r (M,) and Jacobian J (M, d) whitened, at point u (d,); u0 the start and P the prior sd.
+    """
+    hessian, gradient = normal_equations(jacobian, residual, space.prior_sd**-2.0, point - space.start)
+    return bounded_step(hessian, gradient, -point, 1.0 - point)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr, ndtri
 
+from doe_kc.correlation.least_squares import normal_equations
 from doe_kc.ground.typing import FloatArray
 
 VISIBLE_SHARE = 0.5
@@ -58,11 +59,10 @@ def posterior(
     at = np.full(prior.size, 0.5) if point is None else point
     misfit = max(1.0, float(np.sqrt(np.mean(left**2)))) if left.size else 1.0
     weighted = jacobian / misfit
-    hessian = weighted.T @ weighted + np.diag(prior**-2.0)
+    hessian, slope = normal_equations(weighted, left / misfit, prior**-2.0, np.zeros(prior.size))
     covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(prior.size)))
     sd = np.sqrt(np.diag(covariance))
     at_bound = np.where(at <= BOUND_SHARE, -1, np.where(at >= 1.0 - BOUND_SHARE, 1, 0))
-    slope = weighted.T @ (left / misfit)
     pushed = zip(at_bound, slope, sd, strict=True)
     inward = np.array([_inward(-float(b * s), float(e)) if b else np.nan for b, s, e in pushed])
     return ParameterPosterior(sd, prior, covariance / np.outer(sd, sd), misfit, at_bound, inward)

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.correlation.first_order import most_probable_step
+from doe_kc.correlation.least_squares import most_probable_step
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.options import ObjectiveKind

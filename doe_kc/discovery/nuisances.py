@@ -60,19 +60,11 @@ def side_differences(axle: Axle, space: Space, likelihood: Likelihood) -> FloatA
     left, right = columns[:, : len(sided)], columns[:, len(sided) :]
     sd = np.array([_sd(v, parameter_value(axle, v.path)) for v in sided])
     # y of a hardpoint is given in the chassis frame, where the right side's is the left's mirror image
-    mirrored = np.array([-1.0 if _lateral(v) else 1.0 for v in sided])
+    mirrored = np.array([-1.0 if v.parameter.mirrored else 1.0 for v in sided])
     return np.asarray((mirrored * right - left) * sd / 2.0)
 
 
-def _lateral(variable: Variable) -> bool:
-    return variable.parameter.group == "HARDPOINTS" and variable.path.endswith(".y")
-
-
 def _sd(variable: Variable, value: float) -> float:
-    if variable.path.endswith("clearance"):
-        return SIDE_CLEARANCE
-    if variable.parameter.group == "HARDPOINTS":
-        return SIDE_POSITION
-    if variable.unit == "deg":
-        return SIDE_ANGLE
-    return abs(value) * (SIDE_BUSHING if variable.parameter.group == "BUSHINGS" else SIDE_RATE)
+    quantity = variable.parameter.quantity
+    fixed = {"clearance": SIDE_CLEARANCE, "coordinate": SIDE_POSITION, "angle": SIDE_ANGLE}
+    return fixed.get(quantity, abs(value) * (SIDE_BUSHING if quantity == "stiffness" else SIDE_RATE))

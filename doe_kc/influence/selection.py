@@ -169,7 +169,7 @@ def suggested_bounds(parameter: Parameter, side: str, wanted: float) -> tuple[fl
     if side == "lower":
         span = parameter.nominal - lower
         widened = parameter.nominal - max(span, min(WIDEST * span, -BOUND_MARGIN * wanted))
-        positive = parameter.group != "HARDPOINTS" and lower >= 0.0
+        positive = parameter.quantity != "coordinate" and lower >= 0.0
         lower = max(widened, lower / 2.0) if positive else widened
     return lower, upper
 

@@ -15,7 +15,7 @@ from doe_kc.ground.errors import RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.result import Influence
-from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
+from doe_kc.sampling.one_at_a_time import one_at_a_time
 from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver.outcome import Outcome
@@ -49,7 +49,7 @@ def influence_study(
     values = np.array([o.characteristics[index] for o in outcomes])
     plus, minus = values[1::2], values[2::2].copy()
     for i, parameter in enumerate(rows):
-        if is_one_sided(parameter):  # so that (plus - minus) / 2 is the whole one-sided change
+        if parameter.one_sided:  # so that (plus - minus) / 2 is the whole one-sided change
             minus[i] = 2.0 * values[0] - plus[i]
     return Influence(
         parameters=tuple(rows),

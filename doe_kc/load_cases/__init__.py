@@ -1,4 +1,4 @@
-"""The eight K&C load cases, one module each; `LOAD_CASES` maps id to definition."""
+"""The eight K&C load cases; `LOAD_CASES` maps id to definition."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 import pandas as pd
 
-from doe_kc.axle.parameters import KINDS, SIDE_PREFIXES
+from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.numbers import number
@@ -123,8 +123,7 @@ def _tied(tie: Tie, leader: ParameterRow, before: dict[str, float], after: dict[
 
 
 def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, float]) -> ParameterRow:
-    head, _, rest = path.partition(".")
-    kind = KINDS.get(rest if head in SIDE_PREFIXES else path)
+    kind = kind_of(path)
     return ParameterRow(
         path=path,
         label=kind.label if kind else path,

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from scipy.stats import rankdata
 
-from doe_kc.correlation.pareto.front import VIOLATION, Front
+from doe_kc.correlation.front import VIOLATION, Front
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray

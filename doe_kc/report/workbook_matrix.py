@@ -30,7 +30,6 @@ from doe_kc.report.workbook_cells import (
     title,
     widths,
 )
-from doe_kc.sampling.one_at_a_time import is_one_sided
 
 KINEMATICS = ("static", "vertical", "roll", "steer")
 COMPLIANCES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")
@@ -244,10 +243,10 @@ def step_text(influence: Influence, i: int) -> str:
     """`±1 mm`, `±10 %`, or `+0.1` for a parameter at zero that can only be raised."""
     parameter = influence.parameters[i]
     share = 100.0 * parameter.step / abs(parameter.nominal) if parameter.nominal else math.nan
-    relative = parameter.unit not in {"mm", "deg"} or parameter.path.endswith(".radius")
+    relative = parameter.unit not in {"mm", "deg"} or parameter.quantity == "radius"
     if relative and math.isfinite(share):
         return f"±{share:.3g} %"
-    sign = "+" if is_one_sided(parameter) else "±"
+    sign = "+" if parameter.one_sided else "±"
     return f"{sign}{parameter.step:.3g} {parameter.unit}".removesuffix(" -")
 
 

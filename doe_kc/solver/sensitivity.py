@@ -15,7 +15,7 @@ import numpy as np
 from scipy import sparse
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import internal_gradient
+from doe_kc.axle.parameters import internal_gradient, switched_topology
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
@@ -41,15 +41,15 @@ class Sensitivities:
 def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
-    To `strut.flexibility` at 0, where its bound is, the one-sided derivative. ValueError when the solution
-    has no static state; cases that it lacks are left out.
+    To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. ValueError
+    when the solution has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
     found = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
-    soft = [i for i, path in enumerate(paths) if _softens(axle, path)]
+    soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
-        bent = replace(axle, topology=replace(axle.topology, strut_bending=True))
+        bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
         columns = _Differentiator(bent, lifted.static, tuple(paths[i] for i in soft)).run(lifted)
@@ -58,13 +58,6 @@ def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensi
             for own, other in zip(found.branches[ident], branches, strict=True):
                 own[:, :, soft] = other
     return found
-
-
-def _softens(axle: Axle, path: str) -> bool:
-    """Whether a parameter would make a rigid strut bend."""
-    return not axle.topology.strut_bending and any(
-        name.startswith("strut.flexibility") for name in internal_gradient(axle, path)
-    )
 
 
 def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import KINDS, with_values
+from doe_kc.axle.parameter_kinds import KINDS
+from doe_kc.axle.parameters import with_values
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.true_solver.answer import Unreadable, read_characteristics, read_curves
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced

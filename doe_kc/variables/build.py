@@ -8,7 +8,8 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import KINDS, Parameter, design_parameters, parameter_value, with_values
+from doe_kc.axle.parameter_kinds import kind_of
+from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value, with_values
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.variables.options import Change, VariableOptions
 from doe_kc.variables.space import Space, Tie
@@ -88,8 +89,7 @@ def _chosen(
 
 def in_model(parameter: Parameter) -> bool:
     """Whether a parameter is a variable by default."""
-    rigid_strut = parameter.path == "strut.flexibility" and parameter.nominal == 0.0
-    return parameter.active and not rigid_strut
+    return parameter.in_model
 
 
 def _says_more(change: Change) -> bool:
@@ -111,8 +111,7 @@ def _settable(axle: Axle, path: str) -> bool:
 def plain_parameter(axle: Axle, path: str) -> Parameter:
     """A settable value that is no design parameter: it has no bounds until a change gives some."""
     value = parameter_value(axle, path)
-    name = path.split(".", 1)[1] if path.startswith(("left.", "right.")) else path
-    kind = KINDS.get(name)
+    kind = kind_of(path)
     return Parameter(
         path=path,
         label=kind.label if kind else path,
@@ -135,8 +134,7 @@ def _tie(axle: Axle, path: str, leader: str, source: str) -> Tie:
 
 def is_ratio(path: str) -> bool:
     """Whether a parameter is one of size (stiffness, rate, radius), not of place."""
-    name = path.split(".", 1)[1] if path.startswith(("left.", "right.")) else path
-    kind = KINDS.get(name)
+    kind = kind_of(path)
     return kind.relative if kind is not None else False
 
 

@@ -57,7 +57,7 @@ class Variable:
             return replace(self, lower=self.lower / stretch, upper=self.upper * stretch)
         more = (factor - 1.0) / 2.0 * (self.upper - self.lower)
         lower = self.lower - more
-        if self.lower >= 0.0 and self.parameter.group != "HARDPOINTS":
+        if self.lower >= 0.0 and self.parameter.quantity != "coordinate":
             lower = max(lower, self.lower / factor)
         return replace(self, lower=lower, upper=self.upper + more)
 

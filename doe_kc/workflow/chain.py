@@ -16,7 +16,7 @@ from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.workflow.adopt import Adoption, adopt
 from doe_kc.workflow.answer import Answer, answered
-from doe_kc.workflow.correlate import given_outcome, study_problem
+from doe_kc.workflow.correlation_problem import given_outcome, study_problem
 from doe_kc.workflow.measure import Reduced
 
 Discover = Callable[[Study, Measurement], Discovery]

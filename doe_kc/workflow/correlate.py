@@ -3,44 +3,27 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Sequence
 from functools import partial
 
-import numpy as np
-
-from doe_kc.axle.model import Axle
 from doe_kc.campaign.runner import Campaign
-from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach_sentences
-from doe_kc.correlation.likelihood import build_likelihood
-from doe_kc.correlation.linearization import Linearization, linearize
-from doe_kc.correlation.loop import Evaluate, Run, run_method
+from doe_kc.correlation.loop import Evaluate, run_method
 from doe_kc.correlation.methods import Method, MethodSettings, method_class
-from doe_kc.correlation.posterior import ParameterPosterior, posterior
-from doe_kc.correlation.prior import PRIOR_RIDGE, RIDGE_MEASURED
-from doe_kc.correlation.problem import Candidate, Evaluated, Problem
-from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
+from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.correlation.result import Correlation
-from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.influence.selection_result import Selection
-from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
-from doe_kc.targets import build_targets, score
 from doe_kc.true_solver.make import solver_for
-from doe_kc.true_solver.outcome import Outcome
-from doe_kc.true_solver.own import AxleSolver
-from doe_kc.variables import Space
 from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.correlation_diagnostics import expansion_at, notes_on, posterior_at
+from doe_kc.workflow.correlation_problem import given_outcome, sought_problem, study_problem
 from doe_kc.workflow.correlation_space import correlation_space
+from doe_kc.workflow.known_designs import refit_proposal, sampled
 from doe_kc.workflow.measure import Reduced
 from doe_kc.workflow.set_first import set_first
 
-NEAREST = 160
-"""Sampled designs that count as known, those nearest the start."""
-NEAREST_WITH_SLOPES = 16
-"""The same beside exact slopes. On the example 200 of them made a run ten times as long and no better."""
 Watch = Callable[[Sequence[Evaluated]], None]
 
 
@@ -114,79 +97,6 @@ def correlate(
     )
 
 
-def given_outcome(study: Study) -> Outcome:
-    """The study's axle as it is, by the package's own solver; RunError when it has no equilibrium."""
-    outcome = AxleSolver(study.axle, study.windows).evaluate({})
-    if outcome.failed:
-        raise RunError(f"{study.axle_path}: the axle cannot be solved: {outcome.reason}")
-    return outcome
-
-
-def sought_problem(
-    study: Study, problem: Problem, start: Outcome, given: Outcome | None = None
-) -> tuple[Problem, Relaxation | None]:
-    """The problem with the targets of its search, and the targets out of reach (None: not known).
-
-    start: answer to the design that the run starts from. given: of the axle whose distances hold, where that
-    is another one. Without sensitivities of the study's solver those of the package's own serve, where it
-    answers alike.
-    """
-    curves = start.curves is not None
-    wide = all_measured(problem.targets, curves=curves)
-    held = given or start
-    baseline = score(wide, held.characteristics, held.curves)
-    expansion = start_expansion(problem, start)
-    relaxed = None if expansion is None else reach_of(problem, start, expansion)
-    likelihood = problem.likelihood.without(relaxed_places(problem.targets, relaxed))
-    sought = search_targets(
-        problem.targets,
-        baseline,
-        objective=study.correlation.objective,
-        relaxation=relaxed,
-        misfit=None if expansion is None else misfit_term(likelihood, problem.space, start, expansion),
-        curves=curves,
-    )
-    ridge = RIDGE_MEASURED if study.correlation.objective == "measured" else PRIOR_RIDGE
-    return replace(problem, sought=sought, likelihood=likelihood, ridge=ridge), relaxed
-
-
-def start_expansion(problem: Problem, start: Outcome) -> Linearization | None:
-    """First-order expansion at the start; None where there is none. For an outside solver that of the
-    package's own, if both say the same of the start."""
-    space = problem.space
-    try:
-        if problem.exact:
-            return problem.linearize(space.start)
-        own = AxleSolver(problem.axle, problem.windows).evaluate(space.values(space.start))
-        if not answers_alike(problem.targets, own, start):
-            return None
-        return linearize(problem.axle, space, space.start, problem.windows)
-    except NotConverged:
-        return None
-
-
-def reach_of(problem: Problem, start: Outcome, expansion: Linearization) -> Relaxation:
-    """Targets that the bounds do not reach from the start, to first order."""
-    space, rows = problem.space, problem.targets.rows
-    return relaxation(
-        problem.targets.characteristics,
-        start.characteristics[rows],
-        expansion.characteristics[rows],
-        space.start,
-        space.prior_sd,
-        space.paths,
-    )
-
-
-def refit_proposal(problem: Problem, adoption: Adoption | None) -> list[Candidate]:
-    """The design that a discovery fitted, within the bounds; none without one."""
-    if adoption is None or not adoption.refit:
-        return []
-    space = problem.space
-    point = np.array([v.place(adoption.refit.get(v.path, v.start)) for v in space.variables])
-    return [Candidate(space.snapped(point), "discovery refit")]
-
-
 def study_method(study: Study, name: str | None = None) -> type[Method]:
     """The method of that id, by default the study's; InputError where there is none or the solver cannot
     serve it."""
@@ -205,102 +115,3 @@ def study_method(study: Study, name: str | None = None) -> type[Method]:
             'solver does not give; leave it at "auto".'
         )
     return chosen
-
-
-def answered_axle(study: Study, axle: Axle) -> Axle:
-    """The axle with the load cases that the study's solver answers; all of them by default."""
-    answered = study.solver.load_cases if study.solver.command else []
-    if not answered:
-        return axle
-    return replace(axle, load_cases={k: c for k, c in axle.load_cases.items() if k in answered})
-
-
-@one_thread()
-def study_problem(
-    study: Study,
-    reduced: Reduced | None,
-    *,
-    space: Space | None = None,
-    adoption: Adoption | None = None,
-) -> Problem:
-    """The correlation problem of a study, with its own variables or others; its search not yet prepared."""
-    measurement = reduced.measurement if reduced is not None else None
-    axle = answered_axle(study, study.axle if adoption is None else adoption.axle)
-    targets = build_targets(
-        axle,
-        measurement,
-        study.characteristics,
-        study.curves,
-        source=str(study.source),
-        without=() if adoption is None else adoption.without,
-    )
-    only_targets = study.correlation.data == "targets"
-    return Problem(
-        axle=axle,
-        space=space or study.space,
-        targets=targets,
-        likelihood=build_likelihood(axle, measurement, targets, only_targets=only_targets),
-        windows=study.windows,
-        exact=not study.solver.command,
-    )
-
-
-def sampled(campaign: Campaign, problem: Problem) -> list[tuple[Candidate, Outcome]]:
-    """Stored designs of sampling campaigns that lie in the problem's space, those nearest the start.
-
-    Beside exact slopes they say little, and surrogates slow down with the cube of their number.
-    """
-    start, most = problem.space.start, NEAREST_WITH_SLOPES if problem.exact else NEAREST
-    designs = [
-        (candidate, record.key)
-        for record in campaign.store.records("sample:*")
-        if (candidate := inside(problem.space, record.parameters)) is not None
-    ]
-    designs.sort(key=lambda d: float(np.linalg.norm(d[0].point - start)))
-    windows = campaign.solver.windows
-    return [(c, campaign.store.outcome(key, windows)) for c, key in designs[:most]]
-
-
-def inside(space: Space, values: Mapping[str, float]) -> Candidate | None:
-    """The design as a point of the space; None when it is not one of it."""
-    if not set(space.paths) <= set(values):
-        return None
-    point = space.unit(values)
-    same = space.values(point)
-    if set(same) != set(values) or any(abs(same[p] - v) > 1e-9 * max(1.0, abs(v)) for p, v in values.items()):
-        return None
-    return Candidate(point, "sample") if bool(((point >= 0.0) & (point <= 1.0)).all()) else None
-
-
-def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
-    """Exact first-order expansion at a design; None where there is none."""
-    if not problem.exact:
-        return None
-    try:
-        return problem.linearize(design.point)
-    except NotConverged:
-        return None
-
-
-@one_thread()
-def posterior_at(
-    problem: Problem, expansion: Linearization | None, best: Evaluated
-) -> ParameterPosterior | None:
-    """What the data say of each variable; None without exact sensitivities."""
-    if expansion is None or best.outcome.failed or not problem.likelihood.size:
-        return None
-    jacobian = problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
-    residual = problem.likelihood.residual(best.outcome.curves, best.outcome.characteristics)
-    return posterior(jacobian, problem.space.prior_sd, residual=residual, point=best.point)
-
-
-@one_thread()
-def notes_on(
-    problem: Problem, run: Run, at_best: Linearization | None, relaxed: Relaxation | None
-) -> tuple[str, ...]:
-    """Targets out of reach, constraints in conflict and levels too coarse, in sentences."""
-    best = run.evaluated[run.best]
-    said = reach_sentences(problem, relaxed) if relaxed is not None else []
-    if at_best is None:
-        return tuple(said)
-    return (*said, *conflict_sentences(problem, best, at_best), *level_sentences(problem, best, at_best))

@@ -26,7 +26,7 @@ from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.adopt import adopted
 from doe_kc.workflow.answer import Answer
-from doe_kc.workflow.correlate import given_outcome, sought_problem, study_problem
+from doe_kc.workflow.correlation_problem import given_outcome, sought_problem, study_problem
 from doe_kc.workflow.measure import Reduced
 
 RUN_FILE = "run.json"

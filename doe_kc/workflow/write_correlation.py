@@ -9,7 +9,7 @@ from typing import Any
 
 from doe_kc.axle_file.write import write_axle
 from doe_kc.correlation.assessment import Assessment, assess, inside
-from doe_kc.correlation.pareto.front import front_of
+from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_csv
 from doe_kc.measurement import Measurement

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
-from doe_kc.characteristics._base import characteristic
+from doe_kc.characteristics.registry import by_id
 
 DATA = Path(__file__).parents[1] / "data"
 CASES = {
@@ -76,10 +76,19 @@ def test_the_columns_of_appendix_c_in_their_order() -> None:
 
 
 def test_an_id_is_registered_once() -> None:
-    before = dict(CHARACTERISTICS)
+    entries = list(CHARACTERISTICS.values())
+    assert by_id(entries) == CHARACTERISTICS
     with pytest.raises(ValueError, match="registered twice"):
-        characteristic(CHARACTERISTICS["steer.steering_ratio"])
-    assert before == CHARACTERISTICS
+        by_id([*entries, entries[0]])
+
+
+def test_arrays_keep_their_layout() -> None:
+    """Load cases by name, each as the thesis lists it."""
+    assert list(CHARACTERISTICS)[:3] == ["brake.brake_steer", "brake.wind_up", "brake.anti_dive"]
+    assert list(dict.fromkeys(c.load_case for c in CHARACTERISTICS.values())) == [
+        *("brake", "drive", "lateral", "lateral_offset", "lateral_opposite"),
+        *("roll", "static", "steer", "vertical"),
+    ]
 
 
 def test_objectives_outside_appendix_b_are_no_default() -> None:

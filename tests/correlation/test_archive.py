@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from doe_kc.correlation.ego.archive import UNRESOLVED, principal_axes
+from doe_kc.correlation.modelled.archive import UNRESOLVED, principal_axes
 from doe_kc.ground.typing import FloatArray
 
 

@@ -7,8 +7,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from doe_kc.correlation.composite import Composite
-from doe_kc.correlation.ego.archive import build_archive
+from doe_kc.correlation.modelled.archive import build_archive
+from doe_kc.correlation.modelled.composite import Composite
 from doe_kc.correlation.problem import Candidate, Evaluated
 from tests.correlation.cases import outcome, problem
 

@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.correlation.ego.archive import build_archive
-from doe_kc.correlation.ego.improvement import ExpectedImprovement
-from doe_kc.correlation.ego.proposal import TrustBox, gauss_newton
-from doe_kc.correlation.ego.strategy import EGO_PATIENCE, PROPOSAL_CYCLE, RESTARTS, Strategy
-from doe_kc.correlation.ego.trust import Trust
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
+from doe_kc.correlation.methods.ego.calibration import VarianceCalibration
+from doe_kc.correlation.methods.ego.improvement import ExpectedImprovement
+from doe_kc.correlation.methods.ego.strategy import EGO_PATIENCE, PROPOSAL_CYCLE, RESTARTS, Strategy
+from doe_kc.correlation.modelled.archive import build_archive
+from doe_kc.correlation.modelled.maximizer import gauss_newton
+from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.problem import Candidate, Evaluated, RatingForecast
@@ -87,7 +88,7 @@ def answer(error: float, sd: float) -> Evaluated:
 
 
 def test_trust_follows_the_errors_seen() -> None:
-    trust = Trust()
+    trust = VarianceCalibration()
     for _ in range(8):
         sd = 0.1 * np.sqrt(trust.factor)  # what a method states carries the factor
         trust.learn([answer(0.2, float(sd))])
@@ -95,7 +96,7 @@ def test_trust_follows_the_errors_seen() -> None:
 
 
 def test_outputs_predicted_with_certainty_say_nothing_of_the_others() -> None:
-    trust, seen = Trust(), answer(0.2, 0.1)
+    trust, seen = VarianceCalibration(), answer(0.2, 0.1)
     predicted = seen.candidate.predicted
     assert predicted is not None
     some = replace(predicted, sd=np.array([0.0, 0.1, 0.1, 0.0]))

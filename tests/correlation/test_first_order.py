@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.correlation.ego.first_order import first_order
 from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.methods.ego.method import first_order
 from doe_kc.correlation.problem import Candidate
 from doe_kc.true_solver.outcome import failure
 from tests.correlation.cases import outcome, problem

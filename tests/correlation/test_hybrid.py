@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 
-from doe_kc.correlation.hybrid.credit import LEAST_CREDIT, Credit, reward
-from doe_kc.correlation.hybrid.evolution import DifferentialEvolution, Mutation
-from doe_kc.correlation.hybrid.linear_model import linear_model
-from doe_kc.correlation.hybrid.record import SearchHistory, nearest
-from doe_kc.correlation.hybrid.search import SearchTrial
 from doe_kc.correlation.loop import run_method
-from doe_kc.correlation.methods import hybrid
 from doe_kc.correlation.methods._base import MethodSettings
-from doe_kc.correlation.methods.hybrid import Hybrid
+from doe_kc.correlation.methods.hybrid import method as hybrid
+from doe_kc.correlation.methods.hybrid.evolution import DifferentialEvolution, Mutation
+from doe_kc.correlation.methods.hybrid.linear_model import linear_model
+from doe_kc.correlation.methods.hybrid.method import Hybrid
+from doe_kc.correlation.methods.hybrid.search import LEAST_CREDIT, Credit, SearchTrial, reward
+from doe_kc.correlation.modelled.history import SearchHistory, nearest
 from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.ground.typing import FloatArray
 from doe_kc.true_solver.outcome import failure

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from doe_kc.axle_file import read_axle
-from doe_kc.correlation.initial_design import InitialDesign
 from doe_kc.correlation.methods._sampled import BROAD
-from doe_kc.correlation.methods.ego import OPENING, WITH_SLOPES
+from doe_kc.correlation.methods.ego.method import OPENING, WITH_SLOPES
+from doe_kc.correlation.modelled.initial_design import InitialDesign
 from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import Change, Space, VariableOptions, build_space
 from tests.correlation.cases import AXLE, problem

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.least_squares import bounded_step, normal_equations, with_prior
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -32,3 +32,20 @@ def test_unbounded_is_newton() -> None:
     gradient = np.array([1.0, -2.0])
     found = bounded_step(hessian, gradient, np.full(2, -10.0), np.full(2, 10.0))
     np.testing.assert_allclose(found, -np.linalg.solve(hessian, gradient), rtol=1e-10)
+
+
+def test_normal_equations_are_the_slopes_of_the_cost() -> None:
+    rng = np.random.default_rng(4)
+    jacobian, residual = rng.standard_normal((9, 4)), rng.standard_normal(9)
+    weight, moved = rng.uniform(0.5, 2.0, 4), rng.standard_normal(4)
+    hessian, gradient = normal_equations(jacobian, residual, weight, moved)
+
+    def cost(step: np.ndarray) -> float:
+        misfit = residual + jacobian @ step
+        return float(0.5 * misfit @ misfit + 0.5 * weight @ (moved + step) ** 2)
+
+    step = rng.standard_normal(4)
+    promised = gradient @ step + 0.5 * step @ hessian @ step
+    assert cost(step) - cost(np.zeros(4)) == pytest.approx(promised)
+    flat, _ = with_prior(np.zeros((4, 4)), gradient, np.zeros(4), moved, flat=0.1)
+    assert flat == pytest.approx(0.1 * np.eye(4))

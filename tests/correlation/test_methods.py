@@ -11,21 +11,18 @@ import pytest
 
 from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import METHODS, Method, MethodSettings
-from doe_kc.correlation.pareto import infill
+from doe_kc.correlation.methods.pareto import infill
 from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.ground.typing import FloatArray
 from doe_kc.true_solver.outcome import Outcome, failure
 from tests.correlation.synthetic import Fails, Synthetic, at_random, everywhere, solver, synthetic
 
-BUDGETS = {"smt_ego": 7, "gauss_newton": 15, "pareto": 30}
-FIRST = {"smt_ego": 5}
-"""Opening designs; smt_ego spends most of its time on each later one."""
-FACTORS = {"smt_ego": 1.0, "gauss_newton": 20.0}
+BUDGETS = {"gauss_newton": 15, "pareto": 30}
+FIRST = 16
+FACTORS = {"gauss_newton": 20.0}
 """By which the loss falls within the budget; the others: 100."""
 CONTINUOUS = {"gauss_newton"}
 WITHOUT_CHANCE = {"gauss_newton"}
-VARIABLES = {"smt_ego": 3}
-"""Of the problem, by default 12: SMT's search takes seconds in more."""
 everyone = pytest.mark.parametrize("name", list(METHODS))
 by_chance = pytest.mark.parametrize("name", [n for n in METHODS if n not in WITHOUT_CHANCE])
 
@@ -37,21 +34,21 @@ def _short_searches(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @cache
-def case(name: str) -> Synthetic:
-    return synthetic(VARIABLES.get(name, 12))
+def case() -> Synthetic:
+    return synthetic(12)
 
 
 def settings(name: str, seed: int = 1, batch: int = 1) -> MethodSettings:
-    return MethodSettings(seed=seed, budget=BUDGETS.get(name, 45), batch=batch, first=FIRST.get(name, 16))
+    return MethodSettings(seed=seed, budget=BUDGETS.get(name, 45), batch=batch, first=FIRST)
 
 
 def started(name: str, *, seed: int = 1, batch: int = 1) -> Method:
-    return METHODS[name](case(name), settings(name, seed, batch))
+    return METHODS[name](case(), settings(name, seed, batch))
 
 
 def run(name: str, method: Method | None = None, evaluate: Evaluate | None = None) -> Run:
     used = method or started(name)
-    return run_method(case(name), used, evaluate or solver(case(name)), budget=settings(name).budget)
+    return run_method(case(), used, evaluate or solver(case()), budget=settings(name).budget)
 
 
 @cache
@@ -76,7 +73,7 @@ def test_spends_no_more_than_the_budget_and_says_why_it_stopped(name: str) -> No
 def test_the_baseline_comes_first_and_every_candidate_has_an_origin(name: str) -> None:
     found = plain(name).evaluated
     assert found[0].candidate.origin == "baseline"
-    assert np.array_equal(found[0].point, case(name).space.start)
+    assert np.array_equal(found[0].point, case().space.start)
     assert all(e.candidate.origin and e.candidate.origin != "baseline" for e in found[1:])
 
 
@@ -86,7 +83,7 @@ def test_points_lie_within_the_bounds_and_on_levels(name: str) -> None:
     assert found.min() >= 0.0
     assert found.max() <= 1.0
     if name not in CONTINUOUS:
-        assert np.array_equal(found, case(name).space.snapped(found))
+        assert np.array_equal(found, case().space.snapped(found))
 
 
 @by_chance
@@ -121,14 +118,14 @@ def test_predictions_are_of_the_rating_or_the_characteristics(name: str) -> None
     predicted = [e.candidate.predicted for e in plain(name).evaluated if e.candidate.predicted]
     assert predicted
     for one in predicted:
-        assert one.values.shape == one.sd.shape == (len(case(name).targets.characteristics),)
+        assert one.values.shape == one.sd.shape == (len(case().targets.characteristics),)
         assert np.isfinite(one.rating) or np.isfinite(one.values).all()
 
 
 @everyone
 @pytest.mark.parametrize("fails", [at_random(0.3), everywhere], ids=["30 percent", "all"])
 def test_survives_failing_designs(name: str, fails: Fails) -> None:
-    found = run(name, evaluate=solver(case(name), fails=fails))
+    found = run(name, evaluate=solver(case(), fails=fails))
     assert found.stopped
     assert found.evaluated[found.best].rating is not None
 
@@ -136,14 +133,14 @@ def test_survives_failing_designs(name: str, fails: Fails) -> None:
 @everyone
 def test_survives_a_later_round_of_failures(name: str) -> None:
     asked = [0]
-    answers = solver(case(name))
+    answers = solver(case())
 
     def evaluate(designs: Sequence[Mapping[str, float]]) -> Sequence[Outcome]:
         asked[0] += 1
         return [failure("no licence") for _ in designs] if asked[0] == 4 else answers(designs)
 
     found = run(name, evaluate=evaluate)
-    assert found.evaluated[found.best].merit > found.evaluated[0].merit or name == "smt_ego"
+    assert found.evaluated[found.best].merit > found.evaluated[0].merit
 
 
 @by_chance
@@ -151,16 +148,16 @@ def test_a_batch_holds_different_designs(name: str) -> None:
     method = started(name, batch=3)
     method.tell(plain(name).evaluated[:1])
     opening = method.ask()
-    method.tell(answered(name, opening))
+    method.tell(answered(opening))
     batch = method.ask()
     assert len(batch) >= 3
     assert len(np.unique(np.array([c.point for c in batch]), axis=0)) == len(batch)
 
 
-def answered(name: str, candidates: Sequence[Candidate]) -> list[Evaluated]:
-    outcomes = solver(case(name))([case(name).space.values(c.point) for c in candidates])
+def answered(candidates: Sequence[Candidate]) -> list[Evaluated]:
+    outcomes = solver(case())([case().space.values(c.point) for c in candidates])
     pairs = zip(candidates, outcomes, strict=True)
-    return [case(name).judged(i + 1, c, o) for i, (c, o) in enumerate(pairs)]
+    return [case().judged(i + 1, c, o) for i, (c, o) in enumerate(pairs)]
 
 
 @everyone
@@ -168,9 +165,9 @@ def test_knows_designs_of_before(name: str) -> None:
     """An opening sample that is known already is not run again."""
     method = started(name)
     rng = np.random.default_rng(5)
-    drawn = case(name).space.snapped(rng.uniform(0.3, 0.7, (16, case(name).space.dimension)))
-    sample = [(e.candidate, e.outcome) for e in answered(name, [Candidate(p, "sample") for p in drawn])]
-    found = run_method(case(name), method, solver(case(name)), budget=3, known=sample)
+    drawn = case().space.snapped(rng.uniform(0.3, 0.7, (16, case().space.dimension)))
+    sample = [(e.candidate, e.outcome) for e in answered([Candidate(p, "sample") for p in drawn])]
+    found = run_method(case(), method, solver(case()), budget=3, known=sample)
     assert all(e.candidate.origin != "opening sample" for e in found.evaluated)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.correlation.pareto.front import VIOLATION, Front
+from doe_kc.correlation.front import VIOLATION, Front
 from doe_kc.ground.errors import InputError
 from doe_kc.report.pareto_figure import most_in_conflict, pareto_figure, write_pareto_figure
 

@@ -11,7 +11,7 @@ from doe_kc.axle import design_parameters, with_values
 from doe_kc.axle.parameters import Parameter
 from doe_kc.sampling import sample
 from doe_kc.sampling.latin_hypercube import OPTIMIZED_UP_TO
-from doe_kc.sampling.one_at_a_time import is_one_sided, one_at_a_time
+from doe_kc.sampling.one_at_a_time import one_at_a_time
 from doe_kc.variables import VariableOptions, build_space
 from tests.reference import nominal
 
@@ -57,9 +57,9 @@ def test_labels_say_what_a_row_is() -> None:
 
 
 def test_only_a_parameter_at_zero_is_one_sided() -> None:
-    assert [p.path for p in parameters() if is_one_sided(p)] == ["strut.flexibility"]
+    assert [p.path for p in parameters() if p.one_sided] == ["strut.flexibility"]
     flexible = with_values(nominal(), {"strut.flexibility": 0.5})
-    assert not any(is_one_sided(p) for p in design_parameters(flexible))
+    assert not any(p.one_sided for p in design_parameters(flexible))
 
 
 def test_rows_are_axles() -> None:

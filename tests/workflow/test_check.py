@@ -11,7 +11,7 @@ import pytest
 from doe_kc.ground.errors import InputError
 from doe_kc.study import read_study
 from doe_kc.workflow.check import Fault, check_study
-from doe_kc.workflow.correlate import study_problem
+from doe_kc.workflow.correlation_problem import study_problem
 from doe_kc.workflow.measure import Reduced, study_measurement
 from tests.cli.runner import invoke, write_study
 

@@ -32,7 +32,7 @@ CORRELATED_AXLE = (
 @takes_study
 def correlate(
     study_options: StudyOptions,
-    method: Annotated[str | None, typer.Option(help="ego, gauss_newton, pareto, hybrid or smt_ego.")] = None,
+    method: Annotated[str | None, typer.Option(help="ego, gauss_newton, pareto or hybrid.")] = None,
     budget: Annotated[
         int | None, typer.Option(min=1, help="True-solver evaluations, the baseline among them.")
     ] = None,

@@ -1,4 +1,4 @@
-"""Registered correlation methods, one module each."""
+"""Registered correlation methods, a module or a folder each; none imports from another."""
 
 from __future__ import annotations
 

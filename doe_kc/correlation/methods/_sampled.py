@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from doe_kc.correlation.hybrid.record import SearchHistory
-from doe_kc.correlation.initial_design import InitialDesign
 from doe_kc.correlation.methods._base import Method, MethodSettings
+from doe_kc.correlation.modelled.history import SearchHistory
+from doe_kc.correlation.modelled.initial_design import InitialDesign
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 
 BROAD = InitialDesign(fewest=20, variables_each=3, half_width=0.25)

@@ -16,19 +16,19 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
 from doe_kc.correlation.constraint_penalty import ConstraintPenalty
-from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.correlation.least_squares import bounded_step, normal_equations
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.methods._base import Method, MethodSettings, best_design, register
+from doe_kc.correlation.modelled.trust_region import RadiusRule, TrustRegion
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem, RatingForecast
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
 LEAST_DECREASE = 0.01
 """Predicted decrease of the sum of squares below which the fit stands: a tenth of a standard deviation."""
-LEAST_RADIUS = 1e-4
-"""Radius, share of the bounds, below which the search gives up."""
-STEP_POOR_RATIO, STEP_GOOD_RATIO = 0.25, 0.75
-"""Actual over predicted decrease below which the region shrinks, above which it grows."""
+FIT_RADIUS = RadiusRule(
+    first=1.0, smallest=1e-4, largest=1.0, shrinkage=0.25, growth=2.0, poor=0.25, good=0.75, floor="end"
+)
 INNER_STEPS = 50
 """Newton steps within one step's linearized problem."""
 STEP_SHARES = tuple(0.5**k for k in range(12))
@@ -53,7 +53,7 @@ class GaussNewton(Method):
         self._walls = ConstraintPenalty.of(problem.search)
         self._origin = problem.space.start
         self._weight = problem.space.prior_sd**-2.0
-        self._radius = 1.0
+        self._region = TrustRegion.first(FIT_RADIUS)
         self._stopped = ""
         self._incumbent: Evaluated | None = None
         self._cost = np.inf
@@ -69,8 +69,8 @@ class GaussNewton(Method):
         if self._incumbent is None:
             raise ValueError("ask() before the baseline was told")
         point = self._incumbent.point
-        lower = np.maximum(-point, -self._radius)
-        upper = np.minimum(1.0 - point, self._radius)
+        lower = np.maximum(-point, -self._region.radius)
+        upper = np.minimum(1.0 - point, self._region.radius)
         step = self._step(self._incumbent, lower, upper)
         return [Candidate(point + step, self.id, self._prediction(self._incumbent, step))]
 
@@ -82,15 +82,13 @@ class GaussNewton(Method):
         answer = evaluated[-1]
         cost = self._cost_of(answer)
         ratio = (self._cost - cost) / max(self._predicted, 1e-300)
-        if ratio < STEP_POOR_RATIO:
-            self._radius = min(self._radius, float(np.abs(answer.point - self._incumbent.point).max())) / 4.0
-        elif ratio > STEP_GOOD_RATIO:
-            self._radius = min(1.0, 2.0 * self._radius)
+        length = float(np.abs(answer.point - self._incumbent.point).max())
+        self._region = self._region.after(ratio, length=length)
         if cost < self._cost:
             self._accept(answer)
         if self._predicted < LEAST_DECREASE:
             self._stopped = "converged: the data ask for no further change"
-        elif self._radius < LEAST_RADIUS:
+        elif self._region.exhausted:
             self._stopped = "the trust region shrank to nothing without a better design"
 
     def best(self, history: Sequence[Evaluated]) -> int:
@@ -149,8 +147,9 @@ class GaussNewton(Method):
         jacobian = self._data.jacobian(expansion.curves, expansion.characteristics)
         residual = self._data.residual(answer.outcome.curves, answer.outcome.characteristics)
         self._incumbent, self._cost, self._expansion = answer, self._cost_of(answer), expansion
-        self._hessian = jacobian.T @ jacobian + np.diag(self._weight)
-        self._gradient = jacobian.T @ residual + self._weight * (answer.point - self._origin)
+        self._hessian, self._gradient = normal_equations(
+            jacobian, residual, self._weight, answer.point - self._origin
+        )
 
     _expansion: Linearization
     _hessian: FloatArray

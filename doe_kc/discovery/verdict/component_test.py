@@ -43,11 +43,11 @@ class ComponentTest:
 def accuracy(variable: Variable, value: float) -> float:
     """Standard deviation to which a bench knows a parameter of some value, in the parameter's unit."""
     scale = abs(value)
-    if variable.path.endswith(".radius"):
+    if variable.parameter.quantity == "radius":
         return BENCH_RADIUS * scale
     if variable.logarithmic:
         return BENCH_ACCURACY * scale
-    return BENCH_ANGLE if variable.unit == "deg" else BENCH_POSITION
+    return BENCH_ANGLE if variable.parameter.quantity == "angle" else BENCH_POSITION
 
 
 def component_tests(fit: Fit, screened: Sequence[Screened], least: float) -> list[ComponentTest | None]:

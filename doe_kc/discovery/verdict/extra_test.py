@@ -19,7 +19,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import AMPLITUDE_FACTOR, TEST_WORTH, TESTS_LISTED
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES, LoadCase
-from doe_kc.load_cases.lateral_offset import LateralOffset
+from doe_kc.load_cases.force import LateralOffset
 from doe_kc.solver.result import NotConverged
 
 

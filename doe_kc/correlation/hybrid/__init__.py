@@ -1,1 +1,0 @@
-"""Several searches, global and local, that share one archive of true evaluations."""

@@ -1,1 +1,0 @@
-"""Trade-offs between load cases: objectives apart, the front of confirmed designs, its knee."""

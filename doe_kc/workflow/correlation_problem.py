@@ -1,0 +1,125 @@
+"""The correlation problem of a study: targets, data and reach, before any search."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from doe_kc.axle.model import Axle
+from doe_kc.correlation.likelihood import build_likelihood
+from doe_kc.correlation.linearization import Linearization, linearize
+from doe_kc.correlation.prior import PRIOR_RIDGE, RIDGE_MEASURED
+from doe_kc.correlation.problem import Problem
+from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
+from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets
+from doe_kc.ground.errors import RunError
+from doe_kc.ground.threads import one_thread
+from doe_kc.solver.result import NotConverged
+from doe_kc.study import Study
+from doe_kc.targets import build_targets, score
+from doe_kc.true_solver.outcome import Outcome
+from doe_kc.true_solver.own import AxleSolver
+from doe_kc.variables import Space
+from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.measure import Reduced
+
+
+@one_thread()
+def study_problem(
+    study: Study,
+    reduced: Reduced | None,
+    *,
+    space: Space | None = None,
+    adoption: Adoption | None = None,
+) -> Problem:
+    """The correlation problem of a study, with its own variables or others; its search not yet prepared."""
+    measurement = reduced.measurement if reduced is not None else None
+    axle = answered_axle(study, study.axle if adoption is None else adoption.axle)
+    targets = build_targets(
+        axle,
+        measurement,
+        study.characteristics,
+        study.curves,
+        source=str(study.source),
+        without=() if adoption is None else adoption.without,
+    )
+    only_targets = study.correlation.data == "targets"
+    return Problem(
+        axle=axle,
+        space=space or study.space,
+        targets=targets,
+        likelihood=build_likelihood(axle, measurement, targets, only_targets=only_targets),
+        windows=study.windows,
+        exact=not study.solver.command,
+    )
+
+
+def answered_axle(study: Study, axle: Axle) -> Axle:
+    """The axle with the load cases that the study's solver answers; all of them by default."""
+    answered = study.solver.load_cases if study.solver.command else []
+    if not answered:
+        return axle
+    return replace(axle, load_cases={k: c for k, c in axle.load_cases.items() if k in answered})
+
+
+def given_outcome(study: Study) -> Outcome:
+    """The study's axle as it is, by the package's own solver; RunError when it has no equilibrium."""
+    outcome = AxleSolver(study.axle, study.windows).evaluate({})
+    if outcome.failed:
+        raise RunError(f"{study.axle_path}: the axle cannot be solved: {outcome.reason}")
+    return outcome
+
+
+def sought_problem(
+    study: Study, problem: Problem, start: Outcome, given: Outcome | None = None
+) -> tuple[Problem, Relaxation | None]:
+    """The problem with the targets of its search, and the targets out of reach (None: not known).
+
+    start: answer to the design that the run starts from. given: of the axle whose distances hold, where that
+    is another one. Without sensitivities of the study's solver those of the package's own serve, where it
+    answers alike.
+    """
+    curves = start.curves is not None
+    wide = all_measured(problem.targets, curves=curves)
+    held = given or start
+    baseline = score(wide, held.characteristics, held.curves)
+    expansion = start_expansion(problem, start)
+    relaxed = None if expansion is None else reach_of(problem, start, expansion)
+    likelihood = problem.likelihood.without(relaxed_places(problem.targets, relaxed))
+    sought = search_targets(
+        problem.targets,
+        baseline,
+        objective=study.correlation.objective,
+        relaxation=relaxed,
+        misfit=None if expansion is None else misfit_term(likelihood, problem.space, start, expansion),
+        curves=curves,
+    )
+    ridge = RIDGE_MEASURED if study.correlation.objective == "measured" else PRIOR_RIDGE
+    return replace(problem, sought=sought, likelihood=likelihood, ridge=ridge), relaxed
+
+
+def start_expansion(problem: Problem, start: Outcome) -> Linearization | None:
+    """First-order expansion at the start; None where there is none. For an outside solver that of the
+    package's own, if both say the same of the start."""
+    space = problem.space
+    try:
+        if problem.exact:
+            return problem.linearize(space.start)
+        own = AxleSolver(problem.axle, problem.windows).evaluate(space.values(space.start))
+        if not answers_alike(problem.targets, own, start):
+            return None
+        return linearize(problem.axle, space, space.start, problem.windows)
+    except NotConverged:
+        return None
+
+
+def reach_of(problem: Problem, start: Outcome, expansion: Linearization) -> Relaxation:
+    """Targets that the bounds do not reach from the start, to first order."""
+    space, rows = problem.space, problem.targets.rows
+    return relaxation(
+        problem.targets.characteristics,
+        start.characteristics[rows],
+        expansion.characteristics[rows],
+        space.start,
+        space.prior_sd,
+        space.paths,
+    )
