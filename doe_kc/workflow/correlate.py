@@ -24,7 +24,7 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
 from doe_kc.targets import build_targets, score
