@@ -105,7 +105,7 @@ class Returned:
     with_effect_distance: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Discovery:
     """verdict: named, class (one of several), none (none needed) or unexplained.
 
