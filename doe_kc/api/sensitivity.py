@@ -126,9 +126,10 @@ def sensitivities(
     """Exact derivatives of the characteristics to the parameters at the axle as it is, by the implicit
     function theorem; no finite differences, some 0.1 s for all of them.
 
-    parameters: paths or globs such as "LLF.*", all design parameters by default. characteristics: ids, all by
-    default. windows: load case -> half-width of its fit window in the input's unit, in place of the default.
-    A positive entry: the characteristic rises with the parameter.
+    parameters: paths or globs such as "LLF.*", all design parameters by default; rows are in the order of
+    the function `parameters`. characteristics: ids, all by default. windows: load case -> half-width of its
+    fit window in the input's unit, in place of the default. A positive entry: the characteristic rises with
+    the parameter.
 
     Raises InputError for an unknown name, RunError where the axle has no equilibrium.
 

@@ -27,10 +27,11 @@ def folder(example_root: Path) -> Path:
 
 @pytest.fixture(autouse=True)
 def _small(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """A small library of effects, and figures that need no display and are closed."""
+    """A small library of effects, one process, and figures that need no display and are closed."""
     from matplotlib import pyplot
 
     monkeypatch.setattr("doe_kc.workflow.discover.effect_library", small_library)
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {0}, raising=False)
     backend = matplotlib.get_backend()
     pyplot.switch_backend("agg")
     yield
