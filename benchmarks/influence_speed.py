@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from _common import example_axle, machine, publish
 
-from doe_kc.influence.study import influence_study
+from doe_kc.parameter_influence.study import influence_study
 
 
 def main() -> None:

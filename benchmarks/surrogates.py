@@ -19,7 +19,7 @@ from doe_kc.solver.characteristic_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.surrogates.calibration import calibration_factors
 from doe_kc.surrogates.folds import refit_folds
-from doe_kc.surrogates.interface import Fitted, Surrogate
+from doe_kc.surrogates.interface import Fitted, SurrogateModel
 from doe_kc.surrogates.learning import Learning
 from doe_kc.surrogates.models import make
 from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
@@ -91,7 +91,7 @@ def row(name: str, n: int, fitted: Fitted, known: Truth, seconds: float) -> str:
 
 
 def table(
-    models: Sequence[tuple[str, Callable[[], Surrogate]]], known: Truth, sizes: Sequence[int]
+    models: Sequence[tuple[str, Callable[[], SurrogateModel]]], known: Truth, sizes: Sequence[int]
 ) -> list[str]:
     lines = [HEAD, RULE]
     for name, kind in models:
@@ -107,11 +107,11 @@ def table(
     return [*lines, ""]
 
 
-def named(*names: str) -> list[tuple[str, Callable[[], Surrogate]]]:
+def named(*names: str) -> list[tuple[str, Callable[[], SurrogateModel]]]:
     return [(name, lambda name=name: make(name)) for name in names]  # type: ignore[misc]
 
 
-def variants(known: Truth) -> list[tuple[str, Callable[[], Surrogate]]]:
+def variants(known: Truth) -> list[tuple[str, Callable[[], SurrogateModel]]]:
     """What `gp` would be with less."""
     trend = FirstOrderTrend(known.start, known.value, known.slope)
     return [

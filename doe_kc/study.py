@@ -87,6 +87,9 @@ class Study:
     correlation: CorrelationOptions
     discovery: DiscoveryOptions
 
+    def __repr__(self) -> str:
+        return f"Study({self.name!r}, {self.space.dimension} variables, from {self.source})"
+
     @property
     def folder(self) -> Path:
         """The study file's folder, which its paths are relative to."""

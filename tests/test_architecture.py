@@ -24,7 +24,7 @@ FLOORS = [
     "sampling",
     "true_solver",
     "campaign",
-    "influence",
+    "parameter_influence",
     "surrogates",
     "correlation",
     "discovery",

@@ -62,6 +62,9 @@ class Axle:
     load_cases: Mapping[str, LoadCase]
     effects: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"Axle({self.name!r}, effects: {', '.join(self.effects) or 'none'})"
+
     def changed(self, values: Mapping[str, float]) -> Axle:
         """Copy with some internal values replaced."""
         return replace(self, values={**self.values, **values})

@@ -17,7 +17,7 @@ from doe_kc.correlation.search_targets import all_measured
 from doe_kc.targets import CurveTarget, Improvement, improvements, mean_improvement, score
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Correlation:
     """A finished run of one method.
 

@@ -131,7 +131,7 @@ class Returned:
     """The same with the effects."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Discovery:
     """The verdict on one car and its evidence."""
 

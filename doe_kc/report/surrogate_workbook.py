@@ -11,7 +11,7 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.influence.result import percent_of_column
+from doe_kc.parameter_influence.result import percent_of_column
 from doe_kc.report.names import case_label
 from doe_kc.report.surrogate_tables import judged_document
 from doe_kc.report.workbook_cells import (

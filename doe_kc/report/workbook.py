@@ -7,9 +7,9 @@ from pathlib import Path
 
 from openpyxl.workbook import Workbook
 
-from doe_kc.influence.relations import Relations
-from doe_kc.influence.result import Influence
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.relations import Relations
+from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.report.workbook_file import new_book, write_book
 from doe_kc.report.workbook_legend import legend_sheet
 from doe_kc.report.workbook_matrix import absolute_sheet, exact_sheet, influence_sheet

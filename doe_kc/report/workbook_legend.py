@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from openpyxl.workbook import Workbook
 
 from doe_kc import __version__
-from doe_kc.influence.identifiability import COLLINEAR, NO_INFLUENCE
-from doe_kc.influence.result import NONLINEAR_PERCENT, Influence
 from doe_kc.load_cases import LOAD_CASES
+from doe_kc.parameter_influence.identifiability import COLLINEAR, NO_INFLUENCE
+from doe_kc.parameter_influence.result import NONLINEAR_PERCENT, Influence
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import frame, page, put, title, widths
 

@@ -13,8 +13,8 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.influence.result import Influence
 from doe_kc.load_cases import LOAD_CASES
+from doe_kc.parameter_influence.result import Influence
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import (
     FLAGGED,

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from openpyxl.workbook import Workbook
 
-from doe_kc.influence.relations import STRONG_PERCENT, Link, Relations
-from doe_kc.influence.selection_result import Selection, VariableAdvice
+from doe_kc.parameter_influence.relations import STRONG_PERCENT, Link, Relations
+from doe_kc.parameter_influence.selection_result import Selection, VariableAdvice
 from doe_kc.report.names import case_label
 from doe_kc.report.workbook_cells import (
     FLAGGED,

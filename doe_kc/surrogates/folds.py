@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import LeftOut, Surrogate
+from doe_kc.surrogates.interface import LeftOut, SurrogateModel
 from doe_kc.surrogates.varying import fit_varying
 
 
@@ -15,7 +15,7 @@ def fold_rows(rows: int, folds: int, seed: int) -> list[np.ndarray]:
     return [np.sort(order[k::folds]) for k in range(min(folds, rows))]
 
 
-def refit_folds(model: Surrogate, x: FloatArray, y: FloatArray, *, folds: int, seed: int) -> LeftOut:
+def refit_folds(model: SurrogateModel, x: FloatArray, y: FloatArray, *, folds: int, seed: int) -> LeftOut:
     """Residuals of rows predicted by a model refitted, hyper-parameters and all, to the other folds.
 
     Leaving rows out with hyper-parameters held flatters models that learn many of them (docs/surrogates.md).
@@ -27,7 +27,7 @@ def refit_folds(model: Surrogate, x: FloatArray, y: FloatArray, *, folds: int, s
 
 
 def fold(
-    model: Surrogate, x: FloatArray, y: FloatArray, left: np.ndarray, seed: int
+    model: SurrogateModel, x: FloatArray, y: FloatArray, left: np.ndarray, seed: int
 ) -> tuple[FloatArray, FloatArray]:
     """Residual and predicted variance of the rows `left`, from a fit to all others."""
     kept = np.setdiff1d(np.arange(len(x)), left)

@@ -112,7 +112,7 @@ class Fitted(ABC):
             return np.concatenate([evaluate(points[i : i + size]) for i in range(0, len(points), size)])
 
 
-class Surrogate(ABC):
+class SurrogateModel(ABC):
     """A kind of surrogate with its options; one instance fits any number of data sets.
 
     id: name in studies and tables. label: name in figures. complexity: order among the models, 0 = simplest.

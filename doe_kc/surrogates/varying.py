@@ -9,14 +9,14 @@ import numpy as np
 
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, SurrogateModel
 from doe_kc.surrogates.training import constant_outputs
 
 
-def fit_varying(model: Surrogate, x: FloatArray, y: FloatArray, *, seed: int = 0) -> Fitted:
+def fit_varying(model: SurrogateModel, x: FloatArray, y: FloatArray, *, seed: int = 0) -> Fitted:
     """`model.fit` of the outputs that change; constant ones predict their value with variance zero.
 
-    InputError as `Surrogate.fit`, and when no output changes at all.
+    InputError as `SurrogateModel.fit`, and when no output changes at all.
     """
     values = np.asarray(y, dtype=float)
     fixed = constant_outputs(values) if values.ndim == 2 and len(values) else np.zeros(0, dtype=bool)

@@ -13,7 +13,7 @@ from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.adopt import Adoption

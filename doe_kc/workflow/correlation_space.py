@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from doe_kc.ground.errors import InputError
-from doe_kc.influence.selection_result import Selection
 from doe_kc.measurement import Measurement
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.study import Study
 from doe_kc.variables import Space, build_space
 from doe_kc.variables.build import Advice

@@ -8,7 +8,7 @@ import numpy as np
 
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
-from doe_kc.influence.study import influence_study
+from doe_kc.parameter_influence.study import influence_study
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs
 from doe_kc.surrogates.influence import agreement, free_variables, surrogate_changes

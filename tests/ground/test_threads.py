@@ -16,8 +16,8 @@ from doe_kc.campaign.executors import processes
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.ground.threads import one_thread
-from doe_kc.influence.study import influence_study
 from doe_kc.measurement import infer_ride_height, reduce_measurement
+from doe_kc.parameter_influence.study import influence_study
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.surrogates.study import fit_study

@@ -16,7 +16,7 @@ from doe_kc.report.influence_figures import (
     influence_heat_map,
     write_influence_figures,
 )
-from tests.influence.studies import study
+from tests.parameter_influence.studies import study
 
 
 def test_files_are_written(tmp_path: Path) -> None:

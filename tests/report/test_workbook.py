@@ -19,14 +19,14 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.ground.errors import RunError
-from doe_kc.influence.relations import relations
-from doe_kc.influence.result import Influence
-from doe_kc.influence.selection import select_variables
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.relations import relations
+from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.selection import select_variables
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.report.workbook import write_influence_workbook
 from doe_kc.report.workbook_cells import clean
 from doe_kc.report.workbook_matrix import FIRST_MATRIX_ROW, LABELS, layout, step_text
-from tests.influence.studies import parameter, real_study, study
+from tests.parameter_influence.studies import parameter, real_study, study
 
 EVIL = ("=1+1", "+1+1", "-1+1", "@SUM(A1)", '=HYPERLINK("x")', "\t=1+1")
 SHEETS = ["Influence", "Absolute", "Exact", "Relations", "Selection", "Legend"]

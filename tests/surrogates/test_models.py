@@ -7,7 +7,7 @@ import pytest
 from smt.surrogate_models import KPLS, KRG, RBF
 
 from doe_kc.ground.threads import one_thread
-from doe_kc.surrogates.interface import Surrogate
+from doe_kc.surrogates.interface import SurrogateModel
 from doe_kc.surrogates.legendre import all_terms, features, jacobian
 from doe_kc.surrogates.models import make
 from doe_kc.surrogates.models.kpls import PartialLeastSquaresKriging
@@ -38,7 +38,7 @@ def trained(model):  # type: ignore[no-untyped-def]
     ],
     ids=["kriging", "kpls"],
 )
-def test_kriging_is_that_of_smt(ours: Surrogate, theirs: KRG) -> None:
+def test_kriging_is_that_of_smt(ours: SurrogateModel, theirs: KRG) -> None:
     x, test = P.x[:, :3], P.test[:, :3]
     model, reference = ours.fit(x, ROUGH, seed=3), trained(theirs)
     np.testing.assert_allclose(model.predict(test), reference.predict_values(test), rtol=1e-5)

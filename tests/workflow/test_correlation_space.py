@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
 from doe_kc.workflow import correlation_space as module

@@ -14,7 +14,7 @@ from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.output import write_json
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.correlate import correlate as run_correlation

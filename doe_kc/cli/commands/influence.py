@@ -8,9 +8,9 @@ from doe_kc.cli._app import app
 from doe_kc.cli.progress import progress_bar
 from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
-from doe_kc.influence.relations import relations
-from doe_kc.influence.result import Influence
 from doe_kc.measurement import reduce_measurement
+from doe_kc.parameter_influence.relations import relations
+from doe_kc.parameter_influence.result import Influence
 from doe_kc.workflow.influence import (
     influence_document,
     influence_runs,

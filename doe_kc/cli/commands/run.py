@@ -17,7 +17,7 @@ from doe_kc.cli.progress import progress_bar
 from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_json
-from doe_kc.influence.selection_result import Selection
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.report.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve

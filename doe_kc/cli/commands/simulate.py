@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -12,13 +11,13 @@ import typer
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.plausibility import axle_warnings
+from doe_kc.axle.roll import with_roll
 from doe_kc.axle_file import read_axle
 from doe_kc.cli._app import app
 from doe_kc.cli.changes import apply_effects, apply_settings
 from doe_kc.cli.options import JsonOption
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_json
-from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.report.simulation_tables import characteristics_document, write_simulation
 from doe_kc.solver.suite import solve
 
@@ -43,7 +42,7 @@ def simulate(
 ) -> None:
     """Solve the K&C load cases of an axle: curves (tidy CSV) and characteristics."""
     model = apply_settings(apply_effects(read_axle(axle), effects or []), settings or [])
-    model = with_roll(model, roll)
+    model = with_roll(model, roll, source="--roll")
     for sentence in axle_warnings(model):
         log.warning(sentence)
     started = time.perf_counter()
@@ -57,15 +56,6 @@ def simulate(
             typer.echo(f"wrote {path}", err=True)
     for name, entry in document["characteristics"].items():
         typer.echo(f"{name:36}{entry['value']:>14.6g}  {entry['unit']}")
-
-
-def with_roll(axle: Axle, technique: str | None) -> Axle:
-    """The axle with the other roll technique; InputError for an unknown one."""
-    if technique is None:
-        return axle
-    if technique not in ROLL_TECHNIQUES:
-        raise InputError(f"--roll {technique}: expected {' or '.join(ROLL_TECHNIQUES)}.")
-    return replace(axle, load_cases={**axle.load_cases, "roll": ROLL_TECHNIQUES[technique]})
 
 
 def checked_cases(axle: Axle, cases: list[str] | None) -> list[str] | None:

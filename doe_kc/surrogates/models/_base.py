@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TypeVar
 
 from doe_kc.ground.errors import InputError, nearest
-from doe_kc.surrogates.interface import Surrogate
+from doe_kc.surrogates.interface import SurrogateModel
 
-SURROGATES: dict[str, type[Surrogate]] = {}
-Kind = TypeVar("Kind", bound=type[Surrogate])
+SURROGATES: dict[str, type[SurrogateModel]] = {}
+Kind = TypeVar("Kind", bound=type[SurrogateModel])
 
 
 def register(kind: Kind) -> Kind:
@@ -19,7 +19,7 @@ def register(kind: Kind) -> Kind:
     return kind
 
 
-def make(name: str, source: str = "surrogates") -> Surrogate:
+def make(name: str, source: str = "surrogates") -> SurrogateModel:
     """The surrogate of that id with default options; InputError naming `source` when there is none."""
     if name not in SURROGATES:
         raise InputError(

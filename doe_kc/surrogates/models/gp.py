@@ -10,7 +10,7 @@ import numpy as np
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates import posterior as gp
-from doe_kc.surrogates.interface import Fitted, LeftOut, Prediction, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, Prediction, SurrogateModel
 from doe_kc.surrogates.kernel import CovarianceKernel
 from doe_kc.surrogates.learning import Learning, Sample, even_kernel, learn, pinned_kernel
 from doe_kc.surrogates.models._base import register
@@ -37,7 +37,7 @@ class FirstOrderTrend:
 @final
 @register
 @dataclass(frozen=True)
-class GaussianProcess(Surrogate):
+class GaussianProcess(SurrogateModel):
     """Linear trend and bend with relevances learnt per output (`kernel.py`, `learning.py`).
 
     trend: the model then describes what the expansion leaves, which vanishes with its slope at the point.

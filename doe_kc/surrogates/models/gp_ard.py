@@ -11,7 +11,7 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates import posterior as gp
-from doe_kc.surrogates.interface import Fitted, Surrogate
+from doe_kc.surrogates.interface import Fitted, SurrogateModel
 from doe_kc.surrogates.kernel import CovarianceKernel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.models.gp import FittedGaussianProcess
@@ -22,7 +22,7 @@ from doe_kc.surrogates.training import Scaling
 @final
 @register
 @dataclass(frozen=True)
-class RelevanceProcess(Surrogate):
+class RelevanceProcess(SurrogateModel):
     """Seconds to minutes an output in 60-D; needs two designs a variable. iterations: of the maximisation."""
 
     nugget: float = 1e-6

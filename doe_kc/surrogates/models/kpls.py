@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted, Surrogate
+from doe_kc.surrogates.interface import Fitted, SurrogateModel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ordinary_kriging import ordinary_kriging
 from doe_kc.surrogates.smt_library import train_kpls
@@ -17,7 +17,7 @@ from doe_kc.surrogates.smt_library import train_kpls
 @final
 @register
 @dataclass(frozen=True)
-class PartialLeastSquaresKriging(Surrogate):
+class PartialLeastSquaresKriging(SurrogateModel):
     """Ordinary kriging. components: directions, at most the number of variables; starts: as of `kriging`.
 
     Reference: M. A. Bouhlel et al., Structural and Multidisciplinary Optimization 53(5), 2016.

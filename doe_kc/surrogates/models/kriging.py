@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted, Surrogate
+from doe_kc.surrogates.interface import Fitted, SurrogateModel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ordinary_kriging import ordinary_kriging
 from doe_kc.surrogates.smt_library import train_kriging
@@ -17,7 +17,7 @@ from doe_kc.surrogates.smt_library import train_kriging
 @final
 @register
 @dataclass(frozen=True)
-class Kriging(Surrogate):
+class Kriging(SurrogateModel):
     """Ordinary kriging. starts: of the likelihood's maximisation, each taking seconds an output in 60-D."""
 
     starts: int = 1

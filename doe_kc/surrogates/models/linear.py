@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted, Surrogate
+from doe_kc.surrogates.interface import Fitted, SurrogateModel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ridge import RIDGE_PENALTIES, fit_ridge
 
@@ -16,7 +16,7 @@ from doe_kc.surrogates.ridge import RIDGE_PENALTIES, fit_ridge
 @final
 @register
 @dataclass(frozen=True)
-class Linear(Surrogate):
+class Linear(SurrogateModel):
     """y = a + b x with |b|² penalised. penalty: in place of the choice."""
 
     penalty: float | None = None

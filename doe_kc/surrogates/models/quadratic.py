@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.folds import fold_rows
-from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, SurrogateModel
 from doe_kc.surrogates.legendre import Terms, all_terms, feature_slopes, features, jacobian
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ridge import FittedLinear, fit_ridge
@@ -23,7 +23,7 @@ PENALTY_FOLDS = 5
 @final
 @register
 @dataclass(frozen=True)
-class Quadratic(Surrogate):
+class Quadratic(SurrogateModel):
     """Per output: terms of the lasso at the penalty that five folds like best, refitted by ridge regression.
 
     At most half as many terms as rows. `cross_validate` gives the residuals of those folds.

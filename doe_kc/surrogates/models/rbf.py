@@ -8,7 +8,7 @@ from typing import ClassVar, final
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted, LeftOut, Surrogate
+from doe_kc.surrogates.interface import Fitted, LeftOut, SurrogateModel
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.ordinary_kriging import correlation
 from doe_kc.surrogates.smt_library import RadialFit, train_rbf
@@ -23,7 +23,7 @@ TAIL_ROWS = 1.2
 @final
 @register
 @dataclass(frozen=True)
-class RadialBasis(Surrogate):
+class RadialBasis(SurrogateModel):
     """One width for all outputs, chosen by leave-one-out; a linear tail once rows suffice, else a constant.
 
     The variance is the mean square of the left-out residuals, the same everywhere.

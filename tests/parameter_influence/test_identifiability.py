@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import qr
 
-from doe_kc.influence.identifiability import (
+from doe_kc.parameter_influence.identifiability import (
     choose,
     collinearity_index,
     expected_move,

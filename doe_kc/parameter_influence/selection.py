@@ -18,7 +18,7 @@ from doe_kc.characteristics import Characteristic
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
-from doe_kc.influence.identifiability import (
+from doe_kc.parameter_influence.identifiability import (
     Pivots,
     choose,
     collinearity_index,
@@ -26,8 +26,8 @@ from doe_kc.influence.identifiability import (
     expected_move,
     posterior_ratio,
 )
-from doe_kc.influence.result import Influence
-from doe_kc.influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
+from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
 from doe_kc.targets.comparison.interval import constraint_interval
 
 BOUND_TOLERANCE = 1e-6

@@ -10,7 +10,7 @@ import pytest
 from doe_kc.axle import parameter_value, with_values
 from doe_kc.characteristics import reduce_all
 from doe_kc.ground.errors import InputError
-from doe_kc.influence.selection import (
+from doe_kc.parameter_influence.selection import (
     FIX_FAILED,
     FIX_NO_INFLUENCE,
     USE,
@@ -19,10 +19,10 @@ from doe_kc.influence.selection import (
     select_variables,
     suggested_bounds,
 )
-from doe_kc.influence.selection_result import Selection, VariableAdvice
+from doe_kc.parameter_influence.selection_result import Selection, VariableAdvice
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from tests.influence.studies import parameter, real_study, study
+from tests.parameter_influence.studies import parameter, real_study, study
 from tests.reference import nominal
 
 BUMP, ROLL = "vertical.bump_steer", "roll.roll_steer"

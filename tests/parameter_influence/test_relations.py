@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.influence.relations import Together, column_correlation, relations
-from tests.influence.studies import real_study, study
+from doe_kc.parameter_influence.relations import Together, column_correlation, relations
+from tests.parameter_influence.studies import real_study, study
 
 
 def test_links_are_sorted_signed_and_cut_at_the_threshold() -> None:
