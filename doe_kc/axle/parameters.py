@@ -24,6 +24,7 @@ from doe_kc.axle.parameter_kinds import (
     ParameterKind,
     Quantity,
     is_lateral,
+    kind_of,
     must_be_positive,
     not_below_zero,
     quantity_of,
@@ -53,8 +54,10 @@ class Parameter:
 
     @property
     def quantity(self) -> Quantity:
-        """What it measures."""
-        return "coordinate" if self.group == "HARDPOINTS" else quantity_of(self.path)
+        """What it measures; of a path that is not declared, by its group or last name."""
+        if self.group == "HARDPOINTS" and kind_of(self.path) is None:
+            return "coordinate"
+        return quantity_of(self.path)
 
     @property
     def one_sided(self) -> bool:
