@@ -7,9 +7,11 @@ The Python API is what this module exports, under the names of the commands: `im
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+TYPE_CHECKING = False
+"""As `typing.TYPE_CHECKING`, which costs as much to import as all the rest here."""
 
 if TYPE_CHECKING:
     from doe_kc.api.axle import parameters, read_axle, with_effects, with_values
@@ -95,7 +97,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = globals()[name] = getattr(import_module(_HOMES[name]), name)

@@ -27,10 +27,11 @@ def draw_deviations(
     ax.set_xscale("symlog", linthresh=LINEAR, linscale=1.0)
     widest = max((float(np.nanmax(np.abs(v), initial=0.0)) for v, _ in series.values()), default=0.0)
     ax.set_xlim(-1.5 * max(widest, 2.0), 1.5 * max(widest, 2.0))
+    ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
     ax.set_yticks(places, labels, fontsize="small")
     ax.set_ylim(len(labels) - 0.5, -0.5)
     ax.grid(axis="y", color="#DDDDDD", lw=0.5)
-    ax.set_xlabel("deviation from the target, half widths of the constraint interval [-]")
+    ax.set_xlabel("deviation from the target [half widths of the interval]")
     ax.legend(
         fontsize="small",
         loc="upper center",

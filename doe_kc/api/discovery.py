@@ -99,6 +99,7 @@ class DiscoveryResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """The gap of every curve, as handed in, re-tuned, and with the effects; 1 is noise."""
         from doe_kc.api.axes import axes_or_new
+        from doe_kc.report.names import response_name
         from doe_kc.report.style import PALETTE
 
         rows = self.discovery.gaps
@@ -112,7 +113,8 @@ class DiscoveryResult(FrameResult):
             ax.plot(values, places, "o", ms=4, color=PALETTE[colour], label=label)
         ax.axvline(self.gap.noise_floor, color="black", lw=0.8, ls="--", label="noise")
         ax.set_xscale("log")
-        ax.set_yticks(places, [f"{r.load_case} {r.response}" for r in rows], fontsize="small")
+        ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        ax.set_yticks(places, [f"{r.load_case} {response_name(r.response)}" for r in rows], fontsize="small")
         ax.set_ylim(len(rows) - 0.5, -0.5)
         ax.grid(axis="y", color="#DDDDDD", lw=0.5)
         ax.set_xlabel("deviation from the records, times its noise [-]")

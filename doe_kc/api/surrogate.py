@@ -9,6 +9,7 @@ import numpy as np
 from sklearn.base import BaseEstimator, RegressorMixin
 from sklearn.exceptions import NotFittedError
 
+from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report.style import PALETTE
@@ -145,8 +146,10 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
         ends = [min(true.min(), predicted.min()), max(true.max(), predicted.max())]
         ax.plot(ends, ends, color="black", lw=0.8)
         ax.plot(true, predicted, "o", ms=3, color=PALETTE["blue"], alpha=0.7)
-        ax.set_xlabel("true solver")
-        ax.set_ylabel("surrogate, the design left out")
+        entry = CHARACTERISTICS.get(str(name))
+        unit = "" if entry is None else f" [{entry.unit}]"
+        ax.set_xlabel(f"true solver{unit}")
+        ax.set_ylabel(f"surrogate, the design left out{unit}")
         ax.set_title(f"{name}: {done.chosen[j]}, Q² {self.to_frame()['q2'].iloc[j]:.4f}", fontsize="medium")
         ax.grid(color="#DDDDDD", lw=0.5)
         return ax

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 import doe_kc as kc
-from tests.api.cases import discovery_once
+from tests.api.cases import chain_once, discovery_once
 
 ROOT = Path(__file__).parents[2]
 SCRIPTS = sorted((ROOT / "examples" / "python").glob("*.py"))
@@ -24,6 +24,7 @@ CALLED = [name for name in kc.__all__ if inspect.isfunction(getattr(kc, name)) o
 def _here(example_root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(example_root)
     monkeypatch.setattr("doe_kc.api.discovery.discover_study", discovery_once)
+    monkeypatch.setattr("doe_kc.api.run.follow_chain", chain_once)
 
 
 @pytest.mark.parametrize("name", CALLED)
