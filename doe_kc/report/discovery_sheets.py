@@ -25,7 +25,7 @@ from doe_kc.report.discovery_tables import (
 )
 from doe_kc.report.discovery_words import STATUS_WORDS
 from doe_kc.report.names import case_label
-from doe_kc.report.workbook_cells import (
+from doe_kc.report.render.cells import (
     MUTED,
     NEGATIVE_FILL,
     NEUTRAL_FILL,

@@ -17,7 +17,7 @@ from doe_kc.report.discovery_words import (
     hypothesis_label,
     own_sentences,
 )
-from doe_kc.report.workbook_cells import FLAGGED, frame, page, put, title, widths
+from doe_kc.report.render.cells import FLAGGED, frame, page, put, title, widths
 
 SCAN_PLACES = 3
 """Places of the generic scan that are listed."""

@@ -20,8 +20,8 @@ from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.style import PALETTE
+from doe_kc.report.table import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
 from doe_kc.report.words import POINTS, text_width
-from doe_kc.report.workbook_cells import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
 from doe_kc.report.workbook_matrix import Layout, layout
 
 ANNOTATE = 5.0

@@ -13,8 +13,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.result import percent_of_column
 from doe_kc.report.names import case_label
-from doe_kc.report.surrogate_tables import judged_document
-from doe_kc.report.workbook_cells import (
+from doe_kc.report.render.cells import (
     PAPER_A3,
     cell_alignment,
     colour_scale,
@@ -24,6 +23,7 @@ from doe_kc.report.workbook_cells import (
     title,
     widths,
 )
+from doe_kc.report.surrogate_tables import judged_document
 from doe_kc.report.workbook_file import new_book, write_book
 from doe_kc.report.workbook_table import TABLE_FIRST_ROW, Value, table
 from doe_kc.surrogates.models import SURROGATES

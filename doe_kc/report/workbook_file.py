@@ -8,7 +8,7 @@ from pathlib import Path
 from openpyxl.workbook import Workbook
 
 from doe_kc.ground.output import write_whole
-from doe_kc.report.workbook_cells import clean
+from doe_kc.report.render.cells import clean
 
 
 def new_book(title: str) -> Workbook:

@@ -11,7 +11,7 @@ from doe_kc.influence.identifiability import COLLINEAR, NO_INFLUENCE
 from doe_kc.influence.result import NONLINEAR_PERCENT, Influence
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.report.names import case_label
-from doe_kc.report.workbook_cells import frame, page, put, title, widths
+from doe_kc.report.render.cells import frame, page, put, title, widths
 
 MATRIX = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Values are the left wheel's.",

@@ -16,7 +16,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.influence.result import Influence
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.report.names import case_label
-from doe_kc.report.workbook_cells import (
+from doe_kc.report.render.cells import (
     FLAGGED,
     HEADER_FILL,
     MUTED,

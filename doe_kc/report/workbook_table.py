@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
-from doe_kc.report.workbook_cells import HEADER_FILL, MUTED, cell_alignment, frame, put
+from doe_kc.report.render.cells import HEADER_FILL, MUTED, cell_alignment, frame, put
 
 TABLE_FIRST_ROW = 5
 """Row of the first entry below title, remark, gap and heads."""

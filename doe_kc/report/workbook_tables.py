@@ -9,7 +9,7 @@ from openpyxl.workbook import Workbook
 from doe_kc.influence.relations import STRONG_PERCENT, Link, Relations
 from doe_kc.influence.selection_result import Selection, VariableAdvice
 from doe_kc.report.names import case_label
-from doe_kc.report.workbook_cells import (
+from doe_kc.report.render.cells import (
     FLAGGED,
     PAPER_A3,
     page,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from openpyxl.workbook import Workbook
 
-from doe_kc.report.workbook_cells import frame, page, put, title, widths
+from doe_kc.report.render.cells import frame, page, put, title, widths
 
 
 def terms_sheet(book: Workbook, study: str, legend: Mapping[str, str]) -> None:

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 from markupsafe import Markup
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.report.correlation_characteristics import CharacteristicRow, characteristic_rows
-from doe_kc.report.correlation_dna import DNA_REACH, note
-from doe_kc.report.page.section import Section, render, significant
+from doe_kc.report.correlation_characteristics import CharacteristicRow, characteristic_table
+from doe_kc.report.correlation_dna import DNA_REACH
+from doe_kc.report.render.page import Section, render, significant, table_html
+from doe_kc.report.table import Column, PageCell
 
 BAR_WIDTH = 230
 """Units across a bar's drawing."""
@@ -23,26 +25,10 @@ CHARACTERISTICS_LEAD = (
 
 def characteristics_section(correlation: Correlation) -> Section:
     """One row a characteristic, sortable and filterable."""
-    rows = [
-        {"row": r, "entry": r.entry, "bar": bar(r), "tags": _tags(r), "note": note(r)}
-        for r in _rows(correlation)
-    ]
-    html = render("characteristics.html", rows=rows, reach=DNA_REACH, width=BAR_WIDTH, place=place)
+    table = characteristic_table(correlation)
+    table = replace(table, columns=(*table.columns, _bar_column()))
+    html = table_html(table, notice=render("characteristics_key.html"))
     return Section("Characteristics", html, CHARACTERISTICS_LEAD)
-
-
-def _rows(correlation: Correlation) -> list[CharacteristicRow]:
-    return characteristic_rows(correlation)
-
-
-def _tags(row: CharacteristicRow) -> str:
-    tags = {
-        "active": row.entry.target.active or row.entry.sought,
-        "outside": not row.inside,
-        "violated": row.constraint and not row.inside,
-        "counts": row.entry.counts,
-    }
-    return " ".join(k for k, on in tags.items() if on)
 
 
 def place(normalized: float) -> float:
@@ -69,3 +55,14 @@ def bar(row: CharacteristicRow) -> Markup:
         f"{significant(entry.baseline)}, final {significant(entry.final)} {row.unit}"
     )
     return render("bar.svg", **values, row=row, words=words)
+
+
+def _bar_column() -> Column[CharacteristicRow]:
+    """Baseline and final value beside the interval, sorted by the distance from the target."""
+    scale = render("bar_scale.html", reach=DNA_REACH, width=BAR_WIDTH, place=place)
+    cell = PageCell(scale, text=bar, order=_off_target)
+    return Column("bar", None, _off_target, csv=False, page=cell)
+
+
+def _off_target(row: CharacteristicRow) -> float:
+    return abs(row.normalized(row.entry.final) - 1.0)

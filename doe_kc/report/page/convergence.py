@@ -6,7 +6,7 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.report import style
 from doe_kc.report.correlation_convergence import threshold
 from doe_kc.report.correlation_evaluations import history
-from doe_kc.report.page.section import Section, embedded, render
+from doe_kc.report.render.page import Section, embedded, render
 
 CONVERGENCE_LEAD = (
     "Minus what the search maximizes on a symmetric logarithmic axis: 0 = every target met exactly. Open "

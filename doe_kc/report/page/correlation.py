@@ -14,7 +14,7 @@ from doe_kc.report.page.characteristics import characteristics_section
 from doe_kc.report.page.convergence import convergence_section
 from doe_kc.report.page.curves import curves_section
 from doe_kc.report.page.parameters import parameters_section
-from doe_kc.report.page.section import Section, render, write_page
+from doe_kc.report.render.page import Section, render, write_page
 
 
 def correlation_sections(

@@ -18,7 +18,7 @@ from doe_kc.report.page.discovery_library import library_section
 from doe_kc.report.page.discovery_maps import maps_section
 from doe_kc.report.page.discovery_parameters import parameters_section
 from doe_kc.report.page.discovery_verdict import verdict_section
-from doe_kc.report.page.section import Section, write_page
+from doe_kc.report.render.page import Section, write_page
 
 
 def discovery_sections(

@@ -9,7 +9,7 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.report.discovery_evidence import EvidenceBar, EvidenceStep, evidence_steps
 from doe_kc.report.discovery_held_out import gain_words
 from doe_kc.report.names import case_label
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 
 CANDIDATES_LEAD = (
     "Effects are added one by one, each with all parameters re-tuned. The evidence counts how much better "

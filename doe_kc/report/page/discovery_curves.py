@@ -15,7 +15,7 @@ from doe_kc.report.discovery_gaps import MODEL_COLOURS, gap_rows
 from doe_kc.report.discovery_views import ModelView, model_names, model_views
 from doe_kc.report.names import case_label, response_axis, response_name
 from doe_kc.report.page.curves import ShownModel, curves_html
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 
 DISCOVERY_CURVES_LEAD = (
     "Angles and wheel centre are changes from static; the half-width of a loop is (falling − rising) / 2. "

@@ -14,7 +14,7 @@ from doe_kc.report.discovery_words import (
     mistaken_words,
     typical_words,
 )
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 
 LIBRARY_LEAD = (
     "Would have shown: it would have been found from the detectable size on, in four of five cars, if the "

@@ -17,7 +17,7 @@ from doe_kc.report.discovery_heat_map import (
 )
 from doe_kc.report.discovery_words import contrast_words
 from doe_kc.report.names import case_label, response_name
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 
 MAPS_LEAD = (
     "The largest disagreement of each load case and response in standard deviations of the noise, and its "

@@ -10,7 +10,7 @@ from doe_kc.ground.numbers import with_sd
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
 from doe_kc.report.discovery_parameters import arrow_colour
 from doe_kc.report.discovery_tables import TunedParameter, tuned_parameters
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 
 BIAS_LEAD = (
     "Where an effect is missing, re-tuning bends parameters that have nothing to do with it. Circles: "

@@ -17,7 +17,7 @@ from doe_kc.report.discovery_words import (
     hypothesis_label,
     own_sentences,
 )
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 
 
 def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+
+from markupsafe import Markup
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import with_sd
-from doe_kc.report.correlation_parameters import ParameterRow, parameter_rows
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.correlation_parameters import ParameterRow, parameter_table
+from doe_kc.report.render.page import Section, render, table_html
+from doe_kc.report.table import Column, PageCell
 
 PARAMETERS_LEAD = (
     "Bars run from the baseline (tick) to the final value (dot) between lower and upper bound; whiskers are "
@@ -17,17 +20,20 @@ PARAMETERS_LEAD = (
 
 def parameters_section(correlation: Correlation) -> Section:
     """One row a parameter, sortable and filterable."""
-    rows = [{"row": r, "text": with_sd(r.final, r.sd), "tags": _tags(r)} for r in parameter_rows(correlation)]
-    return Section(
-        "Parameters", render("parameters.html", rows=rows, isfinite=math.isfinite), PARAMETERS_LEAD
-    )
+    table = parameter_table(correlation)
+    table = replace(table, columns=(*table.columns, BOUNDS_COLUMN))
+    return Section("Parameters", table_html(table, notice=render("hatch.svg")), PARAMETERS_LEAD)
 
 
-def _tags(row: ParameterRow) -> str:
-    tags = {
-        "bound": bool(row.at_bound),
-        "unseen": row.visible is False,
-        "visible": row.visible is not False,
-        "variable": row.role == "variable",
-    }
-    return " ".join(k for k, on in tags.items() if on)
+def _bar(row: ParameterRow) -> Markup:
+    """Nothing where there are no bounds."""
+    return render("bounds.svg", r=row, isfinite=math.isfinite) if math.isfinite(row.place) else Markup("")
+
+
+BOUNDS_COLUMN: Column[ParameterRow] = Column(
+    "bar",
+    None,
+    lambda r: abs(r.place - r.start),
+    csv=False,
+    page=PageCell("Place between lower and upper bound", text=_bar, order=lambda r: abs(r.place - r.start)),
+)

@@ -1,4 +1,4 @@
-"""Cells of the influence workbook: one look, and text that never becomes a formula."""
+"""Cells of a workbook: one look, and text that never becomes a formula."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
-NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL = "5AA5DC", "FFFFFF", "F2A23C"
-"""Blue, white, orange: told apart by the colour-blind, black text readable on each."""
+from doe_kc.report.table import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
 
 
 class CellFont(Font):  # type: ignore[misc]
