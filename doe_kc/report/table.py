@@ -92,6 +92,11 @@ class Scale:
     colors: tuple[tuple[float, str], tuple[float, str], tuple[float, str]]
 
 
+def diverging(first: str, last: str, full: float) -> Scale:
+    """Blue below, white at, orange above zero, full at -+`full`."""
+    return Scale(first, last, ((-full, NEGATIVE_FILL), (0, NEUTRAL_FILL), (full, POSITIVE_FILL)))
+
+
 @dataclass(frozen=True)
 class Inside:
     """One colour behind a column's value from column `low` to column `high`, another beyond."""

@@ -177,7 +177,7 @@ def lines_sheet(
         put(ws, row, 1, key, bold=True, vertical="top", wrap=True)
         fill = FLAGGED if i in flagged else None
         put(ws, row, 2, text, wrap=True, vertical="top", bold=i < bold, fill=fill)
-        deep = max(len(text) // length, int(len(key) // (key_width - 2.0)))
+        deep = max(len(text) // length, int((len(key) - 1) // (key_width - 2.0)))
         ws.row_dimensions[row].height = LINE_HEIGHT * (1 + deep)
     frame(ws, range(4, 4 + len(lines)), range(1, 3))
     widths(ws, [key_width, 120])
