@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
@@ -188,3 +189,9 @@ class Table(Generic[Row]):
 def _ordered(columns: list[Column[Row]], first: Sequence[str]) -> list[Column[Row]]:
     order = {key: i for i, key in enumerate(first)}
     return sorted(columns, key=lambda c: order.get(c.key, len(order)))
+
+
+def three_digits(value: float) -> str:
+    """Number format that shows three significant digits of a number of this size, seven decimals at most."""
+    places = min(7, max(0, 2 - math.floor(math.log10(abs(value))))) if value else 0
+    return f"0.{'0' * places}" if places else "0"

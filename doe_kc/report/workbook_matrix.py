@@ -26,10 +26,10 @@ from doe_kc.report.render.cells import (
     page,
     put,
     remark,
-    three_digits,
     title,
     widths,
 )
+from doe_kc.report.table import three_digits
 from doe_kc.sampling.one_at_a_time import is_one_sided
 
 KINEMATICS = ("static", "vertical", "roll", "steer")

@@ -87,7 +87,7 @@ def put_table(ws: Worksheet, table: Table[Row], *, start: int = TABLE_FIRST_ROW 
     """Heads in the row `start`, rows below, text to the left, numbers and their heads to the right; returns
     the last row. The sheet's filter is that of the table in the usual place."""
     columns = table.sheet_columns
-    numeric = [any(not isinstance(c.read(row), str) for row in table.rows) for c in columns]
+    numeric = [any(isinstance(c.read(row), float | int) for row in table.rows) for c in columns]
     for c, column in enumerate(columns, start=1):
         head = put(ws, start, c, column.head, bold=True, fill=HEADER_FILL)
         head.alignment = cell_alignment(
@@ -113,7 +113,10 @@ def _put_row(ws: Worksheet, r: int, row: Row, table: Table[Row], columns: Sequen
     fill = FLAGGED if table.flagged is not None and table.flagged(row) else None
     for c, column in enumerate(columns, start=1):
         value = column.read(row)
-        if isinstance(value, str):
+        if value is None:
+            if fill is not None:
+                ws.cell(r, c).fill = fill
+        elif isinstance(value, str):
             put(ws, r, c, value, horizontal="left", indent=1, color=color, fill=fill)
         else:
             number = column.number if isinstance(column.number, str) else column.number(row)
