@@ -10,8 +10,7 @@ from doe_kc.discovery.sentences import against_words
 from doe_kc.discovery.thresholds import CERTAIN, NAME_PROBABILITY
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.numbers import sd_format
-from doe_kc.report.discovery_sizes import FoundSize, found_sizes
-from doe_kc.report.discovery_words import effect_label, mistaken_words, place_of
+from doe_kc.report.discovery_words import FoundSize, effect_label, found_sizes, mistaken_words, place_of
 from doe_kc.report.table import Column, SheetLayout, Table
 
 ODDS = '[>=6]"> 6";0.0'

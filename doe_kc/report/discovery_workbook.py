@@ -14,7 +14,6 @@ from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_table
-from doe_kc.report.discovery_sizes import size_words
 from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
 from doe_kc.report.discovery_words import (
     HEADLINES,
@@ -22,6 +21,7 @@ from doe_kc.report.discovery_words import (
     effect_label,
     hypothesis_label,
     own_sentences,
+    size_words,
 )
 from doe_kc.report.render.workbook import lines_sheet, new_book, table_sheet, write_book
 

@@ -15,6 +15,7 @@ from doe_kc.influence.relations import Relations
 from doe_kc.influence.result import NONLINEAR_PERCENT, Influence
 from doe_kc.influence.selection_result import Selection
 from doe_kc.load_cases import LOAD_CASES
+from doe_kc.report.influence_sheets import absolute_sheet, exact_sheet, influence_sheet
 from doe_kc.report.influence_tables import (
     characteristic_links_table,
     forecast_table,
@@ -26,7 +27,6 @@ from doe_kc.report.names import case_label
 from doe_kc.report.render.cells import page, put, title
 from doe_kc.report.render.workbook import lines_sheet, new_book, put_table, table_sheet, write_book
 from doe_kc.report.table import Table
-from doe_kc.report.workbook_matrix import absolute_sheet, exact_sheet, influence_sheet
 
 MATRIX = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Values are the left wheel's.",

@@ -17,8 +17,7 @@ from doe_kc.discovery.model import NO_CHARACTERISTICS
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
-from doe_kc.report.discovery_sizes import size_words
-from doe_kc.report.discovery_words import effect_label
+from doe_kc.report.discovery_words import effect_label, size_words
 from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption

@@ -10,16 +10,22 @@ import pytest
 from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.report.discovery_curves import model_values, model_views, view_gaps
 from doe_kc.report.discovery_effects import effect_rows, effect_table
 from doe_kc.report.discovery_evidence import evidence_steps
-from doe_kc.report.discovery_grid import discovery_grids
+from doe_kc.report.discovery_heat_map import discovery_grids
 from doe_kc.report.discovery_isolability import isolability
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_parameters, tuned_table
-from doe_kc.report.discovery_sizes import found_sizes, size_words
 from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.report.discovery_views import model_values, model_views, view_gaps
-from doe_kc.report.discovery_words import HEADLINES, hypothesis_label, limit_words, place_words
+from doe_kc.report.discovery_words import (
+    HEADLINES,
+    found_sizes,
+    hypothesis_label,
+    limit_words,
+    place_words,
+    size_words,
+)
 from doe_kc.report.render.csv import table_frame
 from tests.discovery.cases import LOAD_CASES, discovery, records
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from doe_kc.correlation.assessment import STATUS_LABELS, Assessment
 from doe_kc.correlation.result import Correlation
-from doe_kc.report.page.characteristics import characteristics_section
+from doe_kc.report.page.correlation import characteristics_section
 from doe_kc.report.render.page import Section, render, write_page
 
 RESULT_FILES: Mapping[str, str] = {

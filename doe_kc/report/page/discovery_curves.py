@@ -10,10 +10,9 @@ import numpy as np
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray
-from doe_kc.report.discovery_curves import worst_views
+from doe_kc.report.discovery_curves import ModelView, model_names, model_views, worst_views
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
 from doe_kc.report.discovery_tables import gap_table
-from doe_kc.report.discovery_views import ModelView, model_names, model_views
 from doe_kc.report.names import case_label, response_axis, response_name
 from doe_kc.report.page.curves import ShownModel, curves_html
 from doe_kc.report.render.page import Section, table_html
