@@ -90,7 +90,6 @@ def evaluation_table(correlation: Correlation) -> Table[EvaluationRow]:
         sheet=SheetLayout(
             frozen="best_so_far",
             paper="A3",
-            repeat=True,
             pages_wide=-(-len(columns) // COLUMNS_PER_PAGE),
             repeat_columns="A:C",
         ),

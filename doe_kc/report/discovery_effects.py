@@ -110,7 +110,6 @@ def effect_table(discovery: Discovery) -> Table[EffectRow]:
         sheet=SheetLayout(
             frozen="kind",
             paper="A3",
-            repeat=True,
             wrapped=True,
             printed_to="rivals",
             printed=max(1, len(rows)),

@@ -115,7 +115,7 @@ def library_table(discovery: Discovery) -> Table[LibraryRow]:
         LIBRARY_COLUMNS,
         library_rows(discovery),
         title="Library of effects",
-        sheet=SheetLayout(frozen="status", paper="A3", repeat=True, wrapped=True, printed_to="looks_like"),
+        sheet=SheetLayout(frozen="status", paper="A3", wrapped=True, printed_to="looks_like"),
         page=PageLayout(
             "library-table",
             "Library of effects",

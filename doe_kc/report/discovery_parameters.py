@@ -98,7 +98,7 @@ def tuned_table(discovery: Discovery) -> Table[TunedParameter]:
         TUNED_COLUMNS,
         tuned_parameters(discovery),
         colors=(diverging("tuned_distance", "with_effect_distance", FULL_COLOUR_DISTANCE),),
-        sheet=SheetLayout(frozen="label", repeat=True),
+        sheet=SheetLayout(frozen="label"),
         page=PageLayout(
             "tuned-table",
             "Parameters",

@@ -96,7 +96,6 @@ def disagreement_table(discovery: Discovery, *, worst_first: bool = False) -> Ta
         colors=(diverging("z_nominal", "z_with_effect", FULL_COLOUR_LEVEL),),
         sheet=SheetLayout(
             frozen="z_nominal",
-            repeat=True,
             printed_to="beyond",
             printed=max(beyond, min(len(rows), PRINTED)),
         ),

@@ -111,16 +111,15 @@ class Inside:
 class SheetLayout:
     """How a table lies in its sheet.
 
-    frozen: key of the first column that scrolls. paper: of its print. single: printed on one page. repeat:
-    heads on every printed page. pages_wide: pages beside each other. repeat_columns: as `A:C`, on each of
-    them. wrapped: rows as high as their longest text. printed_to: key of the last printed column; printed:
-    number of printed rows, by default all. first: keys of columns before the others, in this order.
+    frozen: key of the first column that scrolls. paper: of its print. single: printed on one page.
+    pages_wide: pages beside each other. repeat_columns: as `A:C`, on each of them. wrapped: rows as high as
+    their longest text. printed_to: key of the last printed column; printed: number of printed rows, by
+    default all. first: keys of columns before the others, in this order.
     """
 
     frozen: str = ""
     paper: Literal["A3", "A4"] = "A4"
     single: bool = False
-    repeat: bool = False
     pages_wide: int = 1
     repeat_columns: str = ""
     wrapped: bool = False

@@ -113,7 +113,7 @@ def test_colors_frozen_column_and_print_follow_the_keys() -> None:
             Scale("rate", "preload", ((-1, "000000"), (0, "FFFFFF"), (1, "FF0000"))),
         ),
         flagged=lambda r: r.preload < 0,
-        sheet=SheetLayout(frozen="rate", printed_to="used", repeat=True, paper="A3"),
+        sheet=SheetLayout(frozen="rate", printed_to="used", paper="A3"),
     )
     ws = sheet(table)
     ranges = {str(r.sqref): [(k.type, k.formula) for k in r.rules] for r in ws.conditional_formatting}
@@ -123,6 +123,10 @@ def test_colors_frozen_column_and_print_follow_the_keys() -> None:
     assert (ws.freeze_panes, ws.print_title_rows) == ("B5", "$4:$4")
     assert str(ws.print_area).endswith("$A$1:$C$6")
     assert [bool(ws[f"A{r}"].fill.fill_type) for r in (5, 6)] == [False, True]
+
+
+def test_heads_are_on_every_printed_page() -> None:
+    assert sheet(TABLE).print_title_rows == "$4:$4"
 
 
 def test_a_sheet_without_rows_says_why() -> None:

@@ -58,7 +58,7 @@ def write_book(path: Path, book: Workbook) -> Path:
 
 
 def table_sheet(book: Workbook, table: Table[Row], study: str) -> Worksheet:
-    """A sheet with the table alone: title, remark, heads that can be filtered, rows."""
+    """A sheet with the table alone: title, remark, rows; heads that can be filtered, also in print."""
     ws, layout, columns = book.create_sheet(table.name), table.sheet, table.sheet_columns
     title(ws, f"{table.title or table.name}: {study}", table.remark)
     last = put_table(ws, table)
@@ -72,8 +72,7 @@ def table_sheet(book: Workbook, table: Table[Row], study: str) -> Worksheet:
         _wrap(ws, columns, range(TABLE_FIRST_ROW, last + 1))
     heads = TABLE_FIRST_ROW - 1
     paper = PAPER_A3 if layout.paper == "A3" else PAPER_A4
-    repeat = f"{heads}:{heads}" if layout.repeat else None
-    page(ws, study, paper=paper, repeat=repeat, single=layout.single)
+    page(ws, study, paper=paper, repeat=f"{heads}:{heads}", single=layout.single)
     ws.page_setup.fitToWidth = layout.pages_wide
     if layout.repeat_columns:
         ws.print_title_cols = layout.repeat_columns
