@@ -5,11 +5,21 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import pandas as pd
-
+from doe_kc.correlation.assessment import inside
 from doe_kc.correlation.result import Correlation
 from doe_kc.load_cases import CASE_ORDER
 from doe_kc.report.names import case_label
+from doe_kc.report.table import (
+    NEGATIVE_FILL,
+    Bar,
+    Column,
+    Inside,
+    PageCell,
+    PageLayout,
+    SheetLayout,
+    Table,
+    TerminalCell,
+)
 from doe_kc.targets import Improvement
 from doe_kc.targets.comparison.interval import FLOOR, constraint_interval
 
@@ -77,6 +87,20 @@ class CharacteristicRow:
         return " + ".join(words) or ("held" if self.held else "let go")
 
     @property
+    def note(self) -> str:
+        """Why it is special, in two words."""
+        if not self.active:
+            return self.role
+        if self.constraint and not self.inside:
+            return "outside"
+        return "" if self.entry.counts else "baseline within 3 sd"
+
+    @property
+    def active(self) -> bool:
+        """Whether the correlation works on it."""
+        return self.entry.target.active or self.entry.sought
+
+    @property
     def distance(self) -> float:
         """(final - target) / sd of the target; nan for an exact target."""
         return self._in_sd(self.entry.final)
@@ -111,34 +135,81 @@ def characteristic_rows(correlation: Correlation) -> list[CharacteristicRow]:
     ]
 
 
-def characteristic_frame(correlation: Correlation) -> pd.DataFrame:
-    """One row a characteristic: id, label, load case, unit, values, interval, flags and improvement."""
-    return pd.DataFrame([_record(r) for r in characteristic_rows(correlation)])
+APPENDIX_D_COLUMNS: tuple[Column[CharacteristicRow], ...] = (
+    Column("id", "Id", lambda r: r.id, width=32, json="name", terminal=TerminalCell("characteristic", "34")),
+    Column("label", "Characteristic", lambda r: r.label, width=28,
+           page=PageCell(style="first", attributes=lambda r: {"title": r.id})),
+    Column("load_case", "Load case", lambda r: r.load_case, width=25, page=PageCell()),
+    Column("unit", "Unit", lambda r: r.unit, width=9, page=PageCell(), json="unit"),
+    Column("target", "Target", lambda r: r.entry.target.value, "0.0000", page=PageCell(), json="target",
+           terminal=TerminalCell("target", ">11", ".4g")),
+    Column("target_sd", "Target sd", lambda r: r.entry.target.sd, "0.0000",
+           page=PageCell("± sd", digits=2), json="sd"),
+    Column("baseline", "Baseline", lambda r: r.entry.baseline, "0.0000", page=PageCell(), json="baseline",
+           terminal=TerminalCell("baseline", ">11", ".4g")),
+    Column("final", "Final", lambda r: r.entry.final, "0.0000", page=PageCell(strong=lambda r: True),
+           json="final", terminal=TerminalCell("final", ">11", ".4g")),
+    Column("low", "Low", lambda r: r.interval[0], "0.0000", page=PageCell(), json="low"),
+    Column("high", "High", lambda r: r.interval[1], "0.0000", page=PageCell(), json="high"),
+    Column("inside", "Inside", lambda r: r.inside, width=8),
+    Column("objective", None, lambda r: r.objective),
+    Column("constraint", None, lambda r: r.constraint),
+    Column("held", None, lambda r: r.held, json="held"),
+    Column("reachable", None, lambda r: r.reachable, json="reachable"),
+    Column("role", "Role", lambda r: r.role, width=22, csv=False, page=PageCell(), json="role"),
+    Column("improvement_percent", "Improvement, %", lambda r: r.entry.percent, "0.0", width=13,
+           page=PageCell("Improve\N{SOFT HYPHEN}ment, %", layout=".1f"), json="improvement_percent",
+           terminal=TerminalCell("improved", ">10", text=lambda r: _percent(r.entry.percent))),
+    Column("marked_unit", None, lambda r: r.unit, csv=False,
+           terminal=TerminalCell("  unit", text=lambda r: f" {' ' if inside(r.entry) else '*'}{r.unit}")),
+    Column("counts", "In the mean", lambda r: r.entry.counts, width=9),
+    Column("baseline_distance_sd", "Baseline distance, sd", lambda r: r.baseline_distance, "0.0"),
+    Column("final_distance_sd", "Final distance, sd", lambda r: r.distance, "0.0",
+           page=PageCell("Distance, sd", layout="+.1f", order=lambda r: abs(r.distance))),
+    Column("target_normalized", None, lambda r: 1.0),
+    Column("baseline_normalized", "Baseline, normalised", lambda r: r.normalized(r.entry.baseline), "0.000",
+           width=12),
+    Column("final_normalized", "Final, normalised", lambda r: r.normalized(r.entry.final), "0.000", width=12),
+    Column("note", None, lambda r: r.note, csv=False, page=PageCell(
+        "Remark", style="remark", attributes=lambda r: {"class": "flag" if r.note == "outside" else ""})),
+)  # fmt: skip
 
 
-def _record(r: CharacteristicRow) -> dict[str, object]:
-    e, (low, high) = r.entry, r.interval
-    return {
-        "id": r.id,
-        "label": r.label,
-        "load_case": r.load_case,
-        "unit": r.unit,
-        "target": e.target.value,
-        "target_sd": e.target.sd,
-        "baseline": e.baseline,
-        "final": e.final,
-        "low": low,
-        "high": high,
-        "inside": r.inside,
-        "objective": r.objective,
-        "constraint": r.constraint,
-        "held": r.held,
-        "reachable": "" if r.reachable is None else r.reachable,
-        "improvement_percent": e.percent,
-        "counts": e.counts,
-        "baseline_distance_sd": r.baseline_distance,
-        "final_distance_sd": r.distance,
-        "target_normalized": 1.0,
-        "baseline_normalized": r.normalized(e.baseline),
-        "final_normalized": r.normalized(e.final),
+def characteristic_table(correlation: Correlation) -> Table[CharacteristicRow]:
+    """One row a characteristic: values, interval, flags, improvement; as Appendix D."""
+    return Table(
+        "Characteristics",
+        "Blue: final value inside the interval; orange: outside.",
+        APPENDIX_D_COLUMNS,
+        characteristic_rows(correlation),
+        colors=(Inside("final", "low", "high"), Bar("improvement_percent", NEGATIVE_FILL, 100)),
+        sheet=SheetLayout(frozen="id", paper="A3", single=True, first=("load_case", "label")),
+        page=PageLayout(
+            "characteristics-table",
+            "Characteristics",
+            filtered=True,
+            choices={
+                "active": "objectives and constraints only",
+                "outside": "outside the interval only",
+                "counts": "in the mean only",
+            },
+            tags=_tags,
+            quiet=lambda r: not r.active,
+            first=("label", "load_case", "unit", "target", "target_sd", "baseline", "final", "bar",
+                   "improvement_percent", "final_distance_sd", "note", "role"),
+        ),
+    )  # fmt: skip
+
+
+def _percent(value: float) -> str:
+    return f"{value:.1f} %" if math.isfinite(value) else "-"
+
+
+def _tags(row: CharacteristicRow) -> str:
+    tags = {
+        "active": row.active,
+        "outside": not row.inside,
+        "violated": row.constraint and not row.inside,
+        "counts": row.entry.counts,
     }
+    return " ".join(k for k, on in tags.items() if on)

@@ -132,16 +132,7 @@ def _texts(panel: Panel, y: float, row: CharacteristicRow) -> None:
         _across(COLUMN_PLACES["improvement"]), y, words, size=6.5, across="right", along="center",
         color=colour, weight=weight,
     )  # fmt: skip
-    panel.text(_across(0.88), y, note(row), size=6.0, along="center", color="#555555")
-
-
-def note(row: CharacteristicRow) -> str:
-    """Why a row is special, in two words."""
-    if not row.entry.target.active and not row.entry.sought:
-        return row.role
-    if row.constraint and not row.inside:
-        return "outside"
-    return "" if row.entry.counts else "baseline within 3 sd"
+    panel.text(_across(0.88), y, row.note, size=6.0, along="center", color="#555555")
 
 
 def _legend(page: Sheet) -> None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.typing import FloatArray
+from doe_kc.report.table import Column, SheetLayout, Table
 
 
 @dataclass(frozen=True)
@@ -57,28 +58,60 @@ def history(correlation: Correlation) -> History:
     )
 
 
-def evaluation_frame(correlation: Correlation) -> pd.DataFrame:
-    """One row an evaluation: its figures, then the absolute value of every variable by path."""
-    past = history(correlation)
-    figures = pd.DataFrame(
-        {
-            "evaluation": past.number.astype(int),
-            "origin": past.origin,
-            "merit": past.rating,
-            "best_so_far": past.best,
-            "feasible": past.feasible,
-            "chosen": [i == correlation.run.best for i in range(past.number.size)],
-            "failed_because": [e.outcome.reason for e in correlation.run.evaluated],
-            "predicted_merit": past.predicted,
-            "predicted_sd": past.sd,
-            "seconds": [e.outcome.seconds for e in correlation.run.evaluated],
-        }
+COLUMNS_PER_PAGE = 24
+"""Columns of the sheet that fit the width of one printed page."""
+
+
+@dataclass(frozen=True)
+class EvaluationRow:
+    """One evaluation: `index` in `past` and in the run. values: of every variable by path, absolute."""
+
+    evaluated: Evaluated
+    index: int
+    past: History
+    chosen: bool
+    values: Mapping[str, float]
+
+
+def evaluation_table(correlation: Correlation) -> Table[EvaluationRow]:
+    """Every design that the true solver was asked for: its figures, then the value of every variable."""
+    space, past = correlation.problem.space, history(correlation)
+    rows = [
+        EvaluationRow(e, i, past, i == correlation.run.best, space.values(e.point))
+        for i, e in enumerate(correlation.run.evaluated)
+    ]
+    columns = (*EVALUATION_FIGURES, *(_variable(v.path, v.unit) for v in space.variables))
+    return Table(
+        "Evaluations",
+        "In order; the shaded one is handed over. Values are absolute.",
+        columns,
+        rows,
+        flagged=lambda r: r.chosen,
+        sheet=SheetLayout(
+            frozen="best_so_far",
+            paper="A3",
+            pages_wide=-(-len(columns) // COLUMNS_PER_PAGE),
+            repeat_columns="A:C",
+        ),
     )
-    paths = list(correlation.problem.space.paths)
-    values = pd.DataFrame([_values(correlation, e) for e in correlation.run.evaluated], columns=paths)
-    return pd.concat([figures, values], axis=1)
 
 
-def _values(correlation: Correlation, evaluated: Evaluated) -> list[float]:
-    values = correlation.problem.space.values(evaluated.point)
-    return [values[p] for p in correlation.problem.space.paths]
+EVALUATION_FIGURES: tuple[Column[EvaluationRow], ...] = (
+    Column("evaluation", "Evaluation", lambda r: r.index + 1, "0"),
+    Column("origin", "Origin", lambda r: r.past.origin[r.index], width=23),
+    Column("merit", "Merit", lambda r: float(r.past.rating[r.index]), "0.0000", 13),
+    Column("best_so_far", "Best so far", lambda r: float(r.past.best[r.index]), "0.0000", 13),
+    Column("feasible", "Feasible", lambda r: bool(r.past.feasible[r.index]), width=9),
+    Column("chosen", "Chosen", lambda r: r.chosen, width=9),
+    Column("failed_because", "Failed because", lambda r: r.evaluated.outcome.reason, width=34),
+    Column("predicted_merit", "Predicted merit", lambda r: float(r.past.predicted[r.index]), "0.0000", 13),
+    Column("predicted_sd", "Predicted sd", lambda r: float(r.past.sd[r.index]), "0.0000", 12),
+    Column("seconds", "Seconds", lambda r: r.evaluated.outcome.seconds, "0.00", 9),
+)
+
+
+def _variable(path: str, unit: str) -> Column[EvaluationRow]:
+    """Its head breaks at its blank only, so that the column is as wide as the path."""
+    head = f"{path}, {unit}" if unit else path
+    width = max(11.0, 1.1 * len(head.split(",")[0]) + 1.0)
+    return Column(path, head, lambda r: r.values[path], "0.0000", width)

@@ -7,12 +7,12 @@ from dataclasses import asdict, dataclass
 from typing import Literal
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import number
+from doe_kc.ground.numbers import number, with_sd
+from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table
 from doe_kc.variables import Tie
 
 Role = Literal["variable", "tied", "fixed"]
@@ -135,30 +135,72 @@ def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, flo
     )
 
 
-def parameter_frame(correlation: Correlation) -> pd.DataFrame:
-    """One row a parameter: path, label, group, unit, role, values, bounds, sd and what to think of them."""
-    return pd.DataFrame(
-        [
-            {
-                "path": r.path,
-                "label": r.label,
-                "group": r.group,
-                "unit": r.unit,
-                "role": r.role,
-                "tied_to": r.leader,
-                "baseline": r.baseline,
-                "final": r.final,
-                "change": r.change,
-                "lower": r.lower,
-                "upper": r.upper,
-                "at_bound": r.at_bound,
-                "sd": r.sd,
-                "inward": r.inward,
-                "not_visible": "" if r.visible is None else not r.visible,
-            }
-            for r in parameter_rows(correlation)
-        ]
+APPENDIX_A_COLUMNS: tuple[Column[ParameterRow], ...] = (
+    Column("path", "Path", lambda r: r.path, width=24, page=PageCell(style="first")),
+    Column("label", "Parameter", lambda r: r.label, width=46, page=PageCell(style="wide")),
+    Column("group", "Group", lambda r: r.group, width=14, page=PageCell()),
+    Column("unit", "Unit", lambda r: r.unit, width=8, page=PageCell()),
+    Column("role", "Role", lambda r: r.role, width=10),
+    Column("tied_to", None, lambda r: r.leader),
+    Column("baseline", "Baseline", lambda r: r.baseline, "0.0000", 12, page=PageCell(digits=5),
+           json="baseline"),
+    Column("final", "Final", lambda r: r.final, "0.0000", 12, json="final",
+           page=PageCell("Final ± sd", text=lambda r: with_sd(r.final, r.sd), strong=lambda r: True)),
+    Column("change", "Change", lambda r: r.change, "0.0000", 12, page=PageCell(layout="+.4f")),
+    Column("lower", "Lower", lambda r: r.lower, "0.0000", 12, page=PageCell(digits=5)),
+    Column("upper", "Upper", lambda r: r.upper, "0.0000", 12, page=PageCell(digits=5)),
+    Column("at_bound", "At bound", lambda r: r.at_bound, width=10),
+    Column("sd", "sd", lambda r: r.sd, "0.0000", 12, json="sd"),
+    Column("inward", None, lambda r: r.inward, json="inward"),
+    Column("not_visible", None, lambda r: None if r.visible is None else not r.visible),
+    Column("remark", "Remark", lambda r: r.remark, width=32, csv=False, page=PageCell(
+        style="remark", attributes=lambda r: {"class": "flag" if r.at_bound else ""})),
+)  # fmt: skip
+
+
+def parameter_table(correlation: Correlation) -> Table[ParameterRow]:
+    """One row a parameter, with its bounds and what the measurement says of it; as Appendix A."""
+    return Table(
+        "Parameters",
+        "Shaded: at a bound. Grey: not visible in these measurements, tied or fixed.",
+        APPENDIX_A_COLUMNS,
+        parameter_rows(correlation),
+        muted=_quiet,
+        flagged=lambda r: bool(r.at_bound),
+        sheet=SheetLayout(
+            frozen="unit",
+            paper="A3",
+            single=True,
+            first=("group", "label", "path", "unit", "role", "baseline", "final", "change", "sd"),
+        ),
+        page=PageLayout(
+            "parameters-table",
+            "Parameters",
+            filtered=True,
+            choices={
+                "bound": "at a bound only",
+                "visible": "hide those not visible",
+                "variable": "variables only",
+            },
+            tags=_tags,
+            quiet=_quiet,
+            first=("path", "label", "unit", "baseline", "final", "change", "bar", "remark", "lower", "upper"),
+        ),
     )
+
+
+def _quiet(row: ParameterRow) -> bool:
+    return row.visible is False or row.role != "variable"
+
+
+def _tags(row: ParameterRow) -> str:
+    tags = {
+        "bound": bool(row.at_bound),
+        "unseen": row.visible is False,
+        "visible": row.visible is not False,
+        "variable": row.role == "variable",
+    }
+    return " ".join(k for k, on in tags.items() if on)
 
 
 def remark_sentences(correlation: Correlation) -> list[str]:

@@ -9,7 +9,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.report.correlation_terms import TermRow, term_rows
-from doe_kc.report.workbook_cells import (
+from doe_kc.report.render.cells import (
     HEADER_FILL,
     MUTED,
     PAPER_A3,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
@@ -13,6 +13,7 @@ from doe_kc.characteristics import Characteristic
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
 from doe_kc.report.names import case_label
+from doe_kc.report.table import POSITIVE_FILL, Bar, Column, SheetLayout, Table
 from doe_kc.targets import Constraint, Objective, Rating, Score
 from doe_kc.targets.options import Goal
 
@@ -151,7 +152,32 @@ def curve_rows(correlation: Correlation) -> list[CurveRow]:
     ]
 
 
-def curve_frame(correlation: Correlation) -> pd.DataFrame:
-    """`curve_rows` as a table; its heads stand even when no curve is an objective."""
-    columns = [f.name for f in fields(CurveRow)]
-    return pd.DataFrame([asdict(r) for r in curve_rows(correlation)], columns=columns)
+CURVE_DEVIATION_COLUMNS: tuple[Column[CurveRow], ...] = (
+    Column("id", "Id", lambda r: r.id, width=24),
+    Column("load_case", "Load case", lambda r: r.load_case, width=28,
+           words=lambda r: case_label(r.load_case)),
+    Column("response", "Response", lambda r: r.response, width=32,
+           words=lambda r: RESPONSE_LABELS[r.response]),
+    Column("unit", "Unit", lambda r: r.unit, width=8),
+    Column("rms_baseline", "RMS baseline", lambda r: r.rms_baseline, "0.00000", 13),
+    Column("rms_final", "RMS final", lambda r: r.rms_final, "0.00000", 13),
+    Column("noise_rms", "Noise RMS", lambda r: r.noise_rms, "0.00000", 13),
+    Column("final_over_noise", "Final / noise",
+           lambda r: r.rms_final / r.noise_rms if r.noise_rms else np.nan, "0.00", 13, csv=False),
+    Column("norm", "Norm", lambda r: r.norm, "0.0000", 13),
+    Column("final_percent", "Final, % of Norm", lambda r: 100.0 * r.rms_final / r.norm, "0.00", 13,
+           csv=False),
+)  # fmt: skip
+
+
+def curve_table(correlation: Correlation) -> Table[CurveRow]:
+    """RMS deviation of every curve that is an objective."""
+    return Table(
+        "Curves",
+        "RMS deviation of both wheels' mean curves from the measured ones.",
+        CURVE_DEVIATION_COLUMNS,
+        curve_rows(correlation),
+        colors=(Bar("final_percent", POSITIVE_FILL),),
+        empty="No curve is an objective of this study.",
+        sheet=SheetLayout(first=("load_case", "response")),
+    )

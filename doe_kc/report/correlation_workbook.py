@@ -7,19 +7,40 @@ from pathlib import Path
 
 from openpyxl.workbook import Workbook
 
+from doe_kc import __version__
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
-from doe_kc.report.correlation_legend import CORRELATION_LEGEND
-from doe_kc.report.correlation_rating_sheet import rating_sheet
-from doe_kc.report.correlation_sheets import (
-    characteristics_sheet,
-    curves_sheet,
-    evaluations_sheet,
-    parameters_sheet,
-)
-from doe_kc.report.correlation_summary_sheet import summary_sheet
-from doe_kc.report.workbook_file import new_book, write_book
-from doe_kc.report.workbook_terms import terms_sheet
+from doe_kc.report.correlation_characteristics import characteristic_table
+from doe_kc.report.correlation_evaluations import evaluation_table
+from doe_kc.report.correlation_parameters import parameter_table, remark_sentences
+from doe_kc.report.correlation_rating_sheet import FINAL_RATING, rating_sheet
+from doe_kc.report.correlation_summary import summary
+from doe_kc.report.correlation_terms import curve_table
+from doe_kc.report.render.cells import frame, put
+from doe_kc.report.render.workbook import lines_sheet, new_book, table_sheet, write_book
+
+CORRELATION_LEGEND = {
+    "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Characteristics: left wheel.",
+    "Signs": "Toe-in +, camber top outwards +, caster top rearwards +; forces as their load case has them.",
+    "Paths": "LLF.x is a hardpoint coordinate in mm, llr.Fx a stiffness factor (nominal 1). Both sides "
+    "change alike.",
+    "Rating": "Equation 2.2: 0 = every target met exactly, the more negative the worse. Violated constraints "
+    "weigh by QuadWt 10000 unless the study says otherwise.",
+    "Interval": "target ± 0.15 sqrt(target² + 0.005) (equations 5.1 and 5.2) unless the study gives low and "
+    "high. Where the role has no constraint it is for information only.",
+    "Improvement": "100 % = target met, 0 % = as far off as the baseline, negative = worse. It enters the "
+    "mean where the characteristic is an objective or constraint and its baseline is more than three "
+    "standard deviations of the target away.",
+    "Distance": "(value - target) / sd of the target; empty for a target without error.",
+    "Normalised": "1 + sign(target) (value - target) / sqrt(target² + 0.005): value / target away from zero.",
+    "sd of a parameter": "Standard deviation from the exact sensitivities at the final design, all variables "
+    "free together, prior from the bounds.",
+    "Not visible": "The measurement does not halve what was known before it; the final value says nothing "
+    "about the car.",
+    "Curves": "RMS deviation from the measured mean curve of both wheels; noise is the RMS error of that "
+    "curve: an RMS near it is a perfect fit.",
+    "Rating terms": "Yellow cells can be edited; sums and the live rating of the summary follow.",
+}
 
 
 def correlation_workbook(
@@ -36,13 +57,15 @@ def correlation_workbook(
     the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
     """
     book = new_book(f"Correlation: {study}")
-    summary_sheet(book, correlation, study, date, notes or {}, assessment or assess(correlation))
-    characteristics_sheet(book, correlation, study)
-    parameters_sheet(book, correlation, study)
-    curves_sheet(book, correlation, study)
-    evaluations_sheet(book, correlation, study)
+    _summary_sheet(book, correlation, study, date, notes or {}, assessment or assess(correlation))
+    table_sheet(book, characteristic_table(correlation), study)
+    table_sheet(book, parameter_table(correlation), study)
+    table_sheet(book, curve_table(correlation), study)
+    table_sheet(book, evaluation_table(correlation), study)
     rating_sheet(book, correlation, study)
-    terms_sheet(book, study, CORRELATION_LEGEND)
+    lines_sheet(
+        book, "Legend", "Legend", "How to read this workbook.", list(CORRELATION_LEGEND.items()), study
+    )
     return book
 
 
@@ -58,3 +81,31 @@ def write_correlation_workbook(
     """Write `correlation_workbook`; RunError naming path and remedy when the place is locked or full."""
     book = correlation_workbook(correlation, study=study, date=date, notes=notes, assessment=assessment)
     return write_book(path, book)
+
+
+def _summary_sheet(
+    book: Workbook,
+    correlation: Correlation,
+    study: str,
+    date: str,
+    notes: Mapping[str, str],
+    assessment: Assessment,
+) -> None:
+    """Outcome, what to think of bounds and unseen variables, and where it came from."""
+    remarks = {f"Note {i}": text for i, text in enumerate(remark_sentences(correlation), start=1)}
+    origin = {"Study": study, "Date": date, "Program": f"doe_kc {__version__}", **notes}
+    lines = list({**summary(correlation, assessment), **remarks, **origin}.items())
+    doubts = {
+        "Status": assessment.status != "sound",
+        "Constraints": not correlation.feasible,
+        **dict.fromkeys(remarks, True),
+    }
+    remark = "What the correlation reached, and what to know before using it."
+    flagged = {i for i, (key, _) in enumerate(lines) if doubts.get(key)}
+    ws = lines_sheet(book, "Summary", "Correlation", remark, lines, study, bold=4, flagged=flagged)
+    row = 4 + len(lines)
+    put(ws, row, 1, "Rating, live", bold=True, vertical="top")
+    cell = put(ws, row, 2, None, number="0.000000", horizontal="left")
+    cell.value = f"='Rating terms'!{FINAL_RATING}"
+    put(ws, row + 1, 2, "with the weights, targets and intervals as they stand in the sheet Rating terms")
+    frame(ws, range(row, row + 1), range(1, 3))

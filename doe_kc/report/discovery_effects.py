@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import pandas as pd
-
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.thresholds import CERTAIN, NAME_PROBABILITY
 from doe_kc.discovery.verdict.sentences import against_words
 from doe_kc.effects import EFFECTS
-from doe_kc.report.discovery_sizes import FoundSize, found_sizes
-from doe_kc.report.discovery_words import effect_label, mistaken_words, place_of
+from doe_kc.ground.numbers import sd_format
+from doe_kc.report.discovery_words import FoundSize, effect_label, found_sizes, mistaken_words, place_of
+from doe_kc.report.table import Column, SheetLayout, Table
+
+ODDS = '[>=6]"> 6";0.0'
+"""log10 odds; 6 stands for 6 or more."""
 
 
 @dataclass(frozen=True)
@@ -24,14 +26,24 @@ class EffectRow:
     size: FoundSize | None
 
     @property
+    def effect(self) -> str:
+        """Its id in the library."""
+        return self.finding.hypothesis.effect
+
+    @property
     def label(self) -> str:
         """Name of the effect."""
-        return effect_label(self.finding.hypothesis.effect)
+        return effect_label(self.effect)
 
     @property
     def place(self) -> str:
         """Where or how, in words."""
         return place_of(self.finding.hypothesis)
+
+    @property
+    def sd(self) -> float:
+        """Of the number, in its unit; nan without one."""
+        return self.size.estimate.sd if self.size else math.nan
 
 
 def effect_rows(discovery: Discovery) -> list[EffectRow]:
@@ -59,41 +71,47 @@ def rival_words(finding: Finding) -> str:
     return ", ".join(f"{effect_label(r.effect)} {100.0 * r.probability:.1f} %" for r in finding.rivals)
 
 
-def effect_frame(discovery: Discovery) -> pd.DataFrame:
-    """One row a number of an effect: value, sd, unit, probability, odds, rivals, physics."""
-    return pd.DataFrame([_record(r) for r in effect_rows(discovery)], columns=list(EFFECT_COLUMNS))
-
-
-EFFECT_COLUMNS = (
-    "effect", "label", "place", "kind", "probability", "log10_odds", "against", "size", "value", "sd",
-    "unit", "typical", "times_typical", "in_words", "gain_ln_evidence", "detectability_sd",
-    "wrong_name_chance", "rivals", "physics", "shown_by", "mistaken_for",
+EFFECT_COLUMNS: tuple[Column[EffectRow], ...] = (
+    Column("effect", "Id", lambda r: r.effect, width=24),
+    Column("label", "Effect", lambda r: r.label, width=30),
+    Column("place", "Place", lambda r: r.place, width=16),
+    Column("kind", "Kind", lambda r: r.kind, width=9),
+    Column("probability", "Probability", lambda r: r.finding.probability, "0.0%"),
+    Column("log10_odds", "log10 odds", lambda r: min(r.finding.log10_odds, CERTAIN), ODDS, 8),
+    Column("against", "Against", lambda r: against_words(r.finding), width=22),
+    Column("size", "Size", lambda r: r.size.size.name if r.size else "", width=16),
+    Column("value", "Value", lambda r: r.size.estimate.value if r.size else math.nan,
+           lambda r: sd_format(r.sd), 13),
+    Column("sd", "sd", lambda r: r.sd, lambda r: sd_format(r.sd)),
+    Column("unit", "Unit", lambda r: r.size.size.unit if r.size else "", width=9),
+    Column("typical", "Typical", lambda r: r.size.size.typical if r.size else math.nan, "0.000", 10),
+    Column("times_typical", "Times typical", lambda r: r.size.times if r.size else math.nan, "0.00", 10),
+    Column("in_words", "In words", lambda r: r.size.words if r.size else "present", width=34),
+    Column("gain_ln_evidence", "ln evidence", lambda r: r.finding.gain, "0.0", 12),
+    Column("detectability_sd", "Detectability, sd", lambda r: r.finding.detectability, "0.0", 13),
+    Column("wrong_name_chance", "Chance of a wrong name", lambda r: r.finding.wrong_name, "0.00%", 12),
+    Column("rivals", "Rivals", lambda r: rival_words(r.finding), width=34),
+    Column("physics", "What happens in the car", lambda r: EFFECTS[r.effect].physics, width=44),
+    Column("shown_by", "Shown by", lambda r: EFFECTS[r.effect].shown_by, width=44),
+    Column("mistaken_for", "Mistaken for", lambda r: mistaken_words(r.effect), width=34),
 )  # fmt: skip
 
 
-def _record(row: EffectRow) -> dict[str, object]:
-    f, s = row.finding, row.size
-    ident = f.hypothesis.effect
-    return {
-        "effect": ident,
-        "label": row.label,
-        "place": row.place,
-        "kind": row.kind,
-        "probability": f.probability,
-        "log10_odds": min(f.log10_odds, CERTAIN),
-        "against": against_words(f),
-        "size": s.size.name if s else "",
-        "value": s.estimate.value if s else math.nan,
-        "sd": s.estimate.sd if s else math.nan,
-        "unit": s.size.unit if s else "",
-        "typical": s.size.typical if s else math.nan,
-        "times_typical": s.times if s else math.nan,
-        "in_words": s.words if s else "present",
-        "gain_ln_evidence": f.gain,
-        "detectability_sd": f.detectability,
-        "wrong_name_chance": f.wrong_name,
-        "rivals": rival_words(f),
-        "physics": EFFECTS[ident].physics,
-        "shown_by": EFFECTS[ident].shown_by,
-        "mistaken_for": mistaken_words(ident),
-    }
+def effect_table(discovery: Discovery) -> Table[EffectRow]:
+    """One row a number of an effect: value, sd, unit, probability, odds, rivals, physics. What is the same of
+    every car is not printed."""
+    rows = effect_rows(discovery)
+    return Table(
+        "Effects",
+        "What the records ask for; leads where the verdict is unexplained.",
+        EFFECT_COLUMNS,
+        rows,
+        empty="No effect is asked for.",
+        sheet=SheetLayout(
+            frozen="kind",
+            paper="A3",
+            wrapped=True,
+            printed_to="rivals",
+            printed=max(1, len(rows)),
+        ),
+    )

@@ -9,13 +9,13 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.report.discovery_curves import curve_figure, worst_views
 from doe_kc.report.discovery_evidence import evidence_figure, evidence_steps
-from doe_kc.report.discovery_gaps import gap_figure, gap_rows
-from doe_kc.report.discovery_grid import discovery_grids
-from doe_kc.report.discovery_heat_map import heat_map_figure
+from doe_kc.report.discovery_gaps import gap_figure
+from doe_kc.report.discovery_heat_map import discovery_grids, heat_map_figure
 from doe_kc.report.discovery_held_out import held_out_figure
 from doe_kc.report.discovery_isolability import isolability, isolability_figure
-from doe_kc.report.discovery_parameters import parameter_figure
-from doe_kc.report.discovery_tables import tuned_parameters
+from doe_kc.report.discovery_parameter_figure import parameter_figure
+from doe_kc.report.discovery_parameters import tuned_parameters
+from doe_kc.report.discovery_tables import gap_rows
 from doe_kc.report.series import Job, draw_series
 
 

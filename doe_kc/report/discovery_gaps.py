@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
 from matplotlib.lines import Line2D
 
-from doe_kc.discovery.result import Discovery, Gap
+from doe_kc.discovery.result import Gap
 from doe_kc.report import style
+from doe_kc.report.discovery_tables import GapRow
 from doe_kc.report.discovery_words import MODEL_LABELS
 from doe_kc.report.names import case_label, response_name
 from doe_kc.report.panel import Panel
@@ -26,23 +26,6 @@ MODEL_COLOURS = {
 MARKS = {"nominal": "|", "tuned": "o", "with_effect": "D", "best_decoy": "x"}
 GAP_ROW = 0.165
 LOWEST = 0.7
-
-
-@dataclass(frozen=True)
-class GapRow:
-    """One row; case is empty for all records together."""
-
-    case: str
-    response: str
-    gap: Gap
-
-
-def gap_rows(discovery: Discovery) -> list[GapRow]:
-    """All records, then load case by load case; without effects the last value is left out."""
-    rows = [GapRow("", "", discovery.gap), *(GapRow(g.load_case, g.response, g.gap) for g in discovery.gaps)]
-    if discovery.fitted.model.members:
-        return rows
-    return [GapRow(r.case, r.response, Gap(**{**vars(r.gap), "with_effect": np.nan})) for r in rows]
 
 
 def gap_figure(rows: Sequence[GapRow], study: str) -> Sheet:

@@ -8,6 +8,7 @@ from matplotlib.lines import Line2D
 
 from doe_kc.discovery.verdict.held_out import HeldOut
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
+from doe_kc.report.discovery_tables import gain_words
 from doe_kc.report.names import case_label
 from doe_kc.report.panel import Panel
 from doe_kc.report.sheet import Sheet, sheet
@@ -46,12 +47,6 @@ def _row(panel: Panel, y: float, held: HeldOut) -> None:
     panel.plot(one, y, "", marker="o", color=MODEL_COLOURS["tuned"], mfc="white", ms=5, mew=1.3)
     panel.plot(two, y, "", marker="D", color=MODEL_COLOURS["with_effect"], ms=4.5)
     panel.text(1.02, y, gain_words(held.gain), scales=("panel", "data"), size=7.0, along="center")
-
-
-def gain_words(gain: float) -> str:
-    """ln predictive density won, with its sign."""
-    text = f"{gain:+,.{1 if abs(gain) < 100 else 0}f}".replace(",", " ")
-    return text.replace("-0.0", "0.0").replace("+0.0", "0.0").replace("-", "−")
 
 
 def _handles() -> list[Line2D]:

@@ -1,26 +1,34 @@
-"""The tables of a discovery: disagreement, library, gap, load cases held out, parameters."""
+"""The tables of a discovery: disagreement, gap, load cases held out."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import pandas as pd
 
-from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.verdict.exclusion import HypothesisStatus
-from doe_kc.effects import EFFECTS
-from doe_kc.report.discovery_words import (
-    STATUS_WORDS,
-    effect_label,
-    hypothesis_label,
-    limit_words,
-    mistaken_words,
-    place_of,
-    typical_words,
+from doe_kc.curves import RESPONSE_LABELS
+from doe_kc.discovery.held_out import HeldOut
+from doe_kc.discovery.result import Discovery, Gap
+from doe_kc.report.names import case_label, response_name
+from doe_kc.report.table import (
+    NEUTRAL_FILL,
+    POSITIVE_FILL,
+    Column,
+    PageCell,
+    PageLayout,
+    Scale,
+    SheetLayout,
+    Table,
+    diverging,
 )
+
+PRINTED = 40
+"""Disagreements that are printed where fewer are beyond noise."""
+FULL_COLOUR_LEVEL = 20.0
+"""Standard deviations at which the colour of a disagreement is full."""
+FULL_COLOUR_GAP = 3.0
+"""Gap, in units of noise, at which a cell's colour is full."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +36,7 @@ class DisagreementRow:
     """One contrast; z in standard deviations, nan where re-tuning absorbs it wholly, + = model above.
 
     z_nominal counts the noise alone; the others what re-tuning cannot absorb; nan without an effect.
+    beyond: names of the maps in which noise alone does not explain it.
     """
 
     load_case: str
@@ -37,157 +46,156 @@ class DisagreementRow:
     z_nominal: float
     z_tuned: float
     z_with_effect: float
+    beyond: str
 
 
 def disagreement_rows(discovery: Discovery) -> list[DisagreementRow]:
     """Every contrast of the records."""
     after = (
-        discovery.residual_map.z
-        if discovery.fitted.model.members
-        else np.full(len(discovery.residual_map.names), np.nan)
+        discovery.final.z if discovery.fitted.model.members else np.full(len(discovery.final.names), np.nan)
     )
-    return [
-        DisagreementRow(
-            c.load_case, c.response, c.shape, c.wheels,
-            float(discovery.nominal_map.z[i]), float(discovery.tuned_map.z[i]), float(after[i]),
-        )
-        for i, c in enumerate(discovery.nominal_map.names)
-    ]  # fmt: skip
+    maps = {"nominal": discovery.raw, "re-tuned": discovery.tuned, "with effect": discovery.final}
+    rows = []
+    for i, c in enumerate(discovery.raw.names):
+        z = (float(discovery.raw.z[i]), float(discovery.tuned.z[i]), float(after[i]))
+        beyond = ", ".join(name for name, v in zip(maps, z, strict=True) if abs(v) > maps[name].threshold)
+        rows.append(DisagreementRow(c.load_case, c.response, c.shape, c.wheels, z[0], z[1], z[2], beyond))
+    return rows
 
 
-def disagreement_frame(discovery: Discovery) -> pd.DataFrame:
-    """One row a contrast, as `DisagreementRow`."""
-    return pd.DataFrame([vars(r) for r in disagreement_rows(discovery)])
+DISAGREEMENT_COLUMNS: tuple[Column[DisagreementRow], ...] = (
+    Column("load_case", "Load case", lambda r: r.load_case, width=28,
+           words=lambda r: case_label(r.load_case)),
+    Column("response", "Response", lambda r: r.response, width=32,
+           words=lambda r: RESPONSE_LABELS[r.response]),
+    Column("shape", "Shape", lambda r: r.shape, width=14),
+    Column("wheels", "Wheels", lambda r: r.wheels, width=18,
+           words=lambda r: "both alike" if r.wheels == "both" else "left against right"),
+    Column("z_nominal", "z nominal", lambda r: r.z_nominal, "0.0", 12),
+    Column("z_tuned", "z re-tuned", lambda r: r.z_tuned, "0.0", 12),
+    Column("z_with_effect", "z with effect", lambda r: r.z_with_effect, "0.0", 12),
+    Column("beyond", "Beyond noise", lambda r: r.beyond, width=30, csv=False),
+)  # fmt: skip
 
 
-def library_frame(discovery: Discovery) -> pd.DataFrame:
-    """One row a hypothesis, found ones first; detectable in words and as a multiple of the typical size."""
-    labels = {s.hypothesis.name: hypothesis_label(s.hypothesis) for s in discovery.statuses}
-    return pd.DataFrame([_library(s, labels) for s in ordered_standings(discovery)])
-
-
-STATUS_ORDER = tuple(STATUS_WORDS)
-
-
-def ordered_standings(discovery: Discovery) -> list[HypothesisStatus]:
-    """By status, then in the order of the library."""
-    order = list(EFFECTS)
-    return sorted(
-        discovery.statuses,
-        key=lambda s: (
-            STATUS_ORDER.index(s.status),
-            order.index(s.hypothesis.effect),
-            s.hypothesis.name,
+def disagreement_table(discovery: Discovery, *, worst_first: bool = False) -> Table[DisagreementRow]:
+    """Every contrast of the records with the model. worst_first: those beyond noise before the others, what
+    re-tuning explains worst on top; else in the order of the records."""
+    rows = disagreement_rows(discovery)
+    if worst_first:
+        rows = sorted(rows, key=lambda r: (not r.beyond, -np.nan_to_num(abs(r.z_tuned))))
+    beyond = sum(bool(r.beyond) for r in rows)
+    return Table(
+        "Disagreement",
+        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} "
+        f"(nominal ±{discovery.raw.threshold:.1f}) "
+        "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
+        "Empty: absorbed by re-tuning.",
+        DISAGREEMENT_COLUMNS,
+        rows,
+        colors=(diverging("z_nominal", "z_with_effect", FULL_COLOUR_LEVEL),),
+        sheet=SheetLayout(
+            frozen="z_nominal",
+            printed_to="beyond",
+            printed=max(beyond, min(len(rows), PRINTED)),
         ),
     )
 
 
-def _library(standing: HypothesisStatus, labels: Mapping[str, str]) -> dict[str, object]:
-    h = standing.hypothesis
-    return {
-        "effect": h.effect,
-        "label": effect_label(h.effect),
-        "place": place_of(h),
-        "status": standing.status,
-        "detectable": limit_words(standing),
-        "detectable_times_typical": standing.detectable,
-        "typical": typical_words(h),
-        "absorbed_percent": 100.0 * standing.absorbed,
-        "hidden_by": hidden_words(standing),
-        "parts_to_measure": bench_words(standing),
-        "looks_like": alike_words(standing, labels),
-        "mistaken_for": mistaken_words(h.effect),
-        "physics": EFFECTS[h.effect].physics,
-        "shown_by": EFFECTS[h.effect].shown_by,
-    }
-
-
-def hidden_words(standing: HypothesisStatus) -> str:
-    """Parameters that take the effect's place, with their move in standard deviations of the prior."""
-    return ", ".join(f"{path} ({move:+.1f} sd)" for path, move in standing.hidden_by)
-
-
-def bench_words(standing: HypothesisStatus) -> str:
-    """Parts that a bench has to measure for the effect to show, and by how much it then does."""
-    test = standing.component_test
-    return "" if test is None else f"{', '.join(test.parts)} ({test.separation:.0f} sd)"
-
-
-def alike_words(standing: HypothesisStatus, labels: Mapping[str, str]) -> str:
-    """Hypotheses whose remaining change is the same, with the correlation. labels: by their names."""
-    return "; ".join(f"{labels.get(name, name)} ({r:+.2f})" for name, r in standing.alike)
-
-
-def gap_frame(discovery: Discovery) -> pd.DataFrame:
-    """Whitened RMS of all records, then of each load case and response; 1 is noise."""
-    rows = [{"load_case": "all", "response": "all"} | vars(discovery.gap)]
-    rows += [{"load_case": g.load_case, "response": g.response} | vars(g.gap) for g in discovery.gaps]
-    frame = pd.DataFrame(rows)
-    if not discovery.fitted.model.members:
-        frame["with_effect"] = math.nan
-    return frame[["load_case", "response", "nominal", "tuned", "with_effect", "best_decoy", "noise_floor"]]
-
-
-def held_out_frame(discovery: Discovery) -> pd.DataFrame:
-    """One row a load case that was left out of the fit; RMS in sd of the prediction, gain in ln density."""
-    columns = ["load_case", "rms_tuned", "rms_with_effect", "rms_law_granted", "gain_ln_density"]
-    rows = [
-        (h.load_case, h.tuned.rms, h.with_effect.rms, h.law_granted.rms, h.gain) for h in discovery.held_out
-    ]
-    return pd.DataFrame(rows, columns=columns)
-
-
 @dataclass(frozen=True)
-class TunedParameter:
-    """A tunable parameter, values absolute in `unit`; sd: of the final value; distances from nominal in
-    standard deviations of its prior, nan with effects where there are none; beyond: whether the last value is
-    outside the study's bounds."""
+class GapRow:
+    """One row; case is empty for all records together."""
 
-    path: str
-    label: str
-    group: str
-    unit: str
-    nominal: float
-    tuned: float
-    with_effect: float
-    sd: float
-    tuned_distance: float
-    with_effect_distance: float
-    beyond: bool
-
-    @property
-    def moved(self) -> float:
-        """Largest distance from nominal, sd of the prior."""
-        return float(np.nanmax(np.abs([self.tuned_distance, self.with_effect_distance])))
+    case: str
+    response: str
+    gap: Gap
 
 
-def tuned_parameters(discovery: Discovery) -> list[TunedParameter]:
-    """In the order of the variables."""
-    tuned, final = discovery.search.tuned, discovery.fitted
-    model = final.model
-    has_effect = bool(model.members)
-    sd = np.sqrt(np.diag(final.covariance))
-    out = []
-    for i, v in enumerate(model.space.variables):
-        start, one, two = model.centre[i], tuned.z[i], final.z[i]
-        out.append(
-            TunedParameter(
-                path=v.path,
-                label=v.parameter.label,
-                group=v.parameter.group,
-                unit=v.unit,
-                nominal=v.start,
-                tuned=v.value(one),
-                with_effect=v.value(two) if has_effect else math.nan,
-                sd=float(sd[i]) * v.slope(two),
-                tuned_distance=float((one - start) / model.prior_sd[i]),
-                with_effect_distance=float((two - start) / model.prior_sd[i]) if has_effect else math.nan,
-                beyond=v.path in discovery.beyond,
-            )
-        )
-    return out
+def gap_rows(discovery: Discovery) -> list[GapRow]:
+    """All records, then load case by load case; without effects the last value is left out."""
+    rows = [GapRow("", "", discovery.gap), *(GapRow(g.load_case, g.response, g.gap) for g in discovery.gaps)]
+    if discovery.fitted.model.members:
+        return rows
+    return [GapRow(r.case, r.response, Gap(**{**vars(r.gap), "with_effect": math.nan})) for r in rows]
 
 
-def parameter_frame(discovery: Discovery) -> pd.DataFrame:
-    """One row a tunable parameter, as `TunedParameter`."""
-    return pd.DataFrame([vars(p) for p in tuned_parameters(discovery)])
+def _gap_column(key: str, head: str, *, on_page: bool = True) -> Column[GapRow]:
+    """The gap of one model, on the page from white at noise to full colour at three times that."""
+
+    def value(row: GapRow) -> float:
+        return float(getattr(row.gap, key))
+
+    def shade(row: GapRow) -> dict[str, str]:
+        return {"style": f"background:rgba(242,162,60,{_share(value(row))})"}
+
+    cell = PageCell(layout=".2f", attributes=shade) if on_page else None
+    return Column(key, head, value, "0.00", 13, page=cell)
+
+
+def _share(value: float) -> float:
+    if not math.isfinite(value):
+        return 0.0
+    return round(0.75 * min(max(math.log(max(value, 1.0)) / math.log(FULL_COLOUR_GAP), 0.0), 1.0), 3)
+
+
+GAP_COLUMNS: tuple[Column[GapRow], ...] = (
+    Column("load_case", "Load case", lambda r: r.case or "all", width=28,
+           words=lambda r: case_label(r.case) if r.case else "All",
+           page=PageCell(text=lambda r: case_label(r.case) if r.case else "All records", style="first")),
+    Column("response", "Response", lambda r: r.response or "all", width=34,
+           words=lambda r: RESPONSE_LABELS.get(r.response, "All"),
+           page=PageCell(text=lambda r: response_name(r.response) if r.response else "all")),
+    _gap_column("nominal", "Nominal"),
+    _gap_column("tuned", "Re-tuned"),
+    _gap_column("with_effect", "With effect"),
+    _gap_column("best_decoy", "Best decoy"),
+    _gap_column("noise_floor", "Noise floor", on_page=False),
+)  # fmt: skip
+
+
+def gap_table(discovery: Discovery) -> Table[GapRow]:
+    """Whitened RMS of all records, then of each load case and response; 1 is noise."""
+    first = ("load_case", "response", "nominal", "tuned", "best_decoy")
+    return Table(
+        "Gap",
+        "Whitened RMS of model minus measured; 1 is noise. First row: all records.",
+        GAP_COLUMNS,
+        gap_rows(discovery),
+        colors=(Scale("nominal", "best_decoy", ((1, NEUTRAL_FILL), (3, "FCE0BC"), (10, POSITIVE_FILL))),),
+        sheet=SheetLayout(frozen="nominal", single=True),
+        page=PageLayout("gap-table", "Gap", filtered=True, first=first),
+    )
+
+
+def gain_words(gain: float) -> str:
+    """ln predictive density won, with its sign."""
+    text = f"{gain:+,.{1 if abs(gain) < 100 else 0}f}".replace(",", " ")
+    return text.replace("-0.0", "0.0").replace("+0.0", "0.0").replace("-", "−")
+
+
+HELD_OUT_COLUMNS: tuple[Column[HeldOut], ...] = (
+    Column("load_case", "Load case", lambda h: h.load_case, width=30, words=lambda h: case_label(h.load_case),
+           page=PageCell(style="first")),
+    Column("rms_tuned", "RMS re-tuned", lambda h: h.tuned.rms, "0.00", 15,
+           page=PageCell("RMS re-tuned without an effect", layout=".2f")),
+    Column("rms_with_effect", "RMS with effect", lambda h: h.with_effect.rms, "0.00", 15,
+           page=PageCell("RMS with the effect", layout=".2f", strong=lambda h: True)),
+    Column("rms_law_granted", "RMS, law granted", lambda h: h.law_granted.rms, "0.00", 17,
+           page=PageCell(layout=".2f")),
+    Column("gain_ln_density", "Gain, ln density", lambda h: h.gain, "0.0", 17,
+           page=PageCell("Gain, ln predictive density", text=lambda h: gain_words(h.gain),
+                         attributes=lambda h: {"class": "flag" if h.gain < 0 else ""})),
+)  # fmt: skip
+
+
+def held_out_table(discovery: Discovery) -> Table[HeldOut]:
+    """One row a load case that was left out of the fit; RMS in sd of the prediction, gain in ln density."""
+    return Table(
+        "Held out",
+        "Each load case predicted by models fitted to all others; RMS 1 = as good as predicted.",
+        HELD_OUT_COLUMNS,
+        discovery.held_out,
+        title="Load cases held out",
+        empty="No effect was found, so there is nothing to predict better.",
+        page=PageLayout("held-out-table", "Load cases held out"),
+    )

@@ -1,17 +1,20 @@
-"""What is said of a discovery in the same words everywhere: effects, shapes, sizes."""
+"""What is said of a discovery in the same words everywhere: effects, shapes, sizes with their uncertainty."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
-from doe_kc.discovery.result import Discovery, VerdictKind
-from doe_kc.discovery.screening.contrasts import Contrast
-from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
+from doe_kc.discovery.amplitudes import amplitudes
+from doe_kc.discovery.contrasts import Contrast
+from doe_kc.discovery.exclusion import HypothesisStatus, Status, exclusion_limit
+from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
+from doe_kc.discovery.thresholds import ONE_SIDED
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.ground.numbers import number, unit_words
+from doe_kc.ground.numbers import number, unit_words, with_sd
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.report.names import case_label, response_name
 
@@ -127,3 +130,55 @@ def _number_at(size: Size, amplitude: float, digits: int = 3) -> str:
 def typical_words(hypothesis: Hypothesis) -> str:
     """Typical size, e.g. `force_N 250 N`."""
     return "; ".join(f"{s.key} {number(s.typical)}{unit_words(s.unit)}" for s in merged_sizes(hypothesis))
+
+
+SIZE_LEVEL = 2.0
+"""Standard deviations above zero from which a size that cannot be negative is told from none."""
+
+
+@dataclass(frozen=True)
+class FoundSize:
+    """One number of a found effect. times: as a multiple of the typical size (shapes: sd off typical)."""
+
+    size: Size
+    estimate: ParameterEstimate
+    times: float
+    limit: float
+    seen: bool
+
+    @property
+    def words(self) -> str:
+        """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
+        unit = unit_words(self.size.unit)
+        if self.seen:
+            return f"{with_sd(self.estimate.value, self.estimate.sd)}{unit}"
+        limit = f"{number(self.limit)}{unit}"
+        if self.size.growth == "compliance":
+            return f"not told from rigid (above {limit}, 95 %)"
+        return f"not told from none (below {limit}, 95 %)"
+
+    @property
+    def sentence(self) -> str:
+        """The option's name with `words`."""
+        return f"{self.size.name} {'= ' if self.seen else ''}{self.words}"
+
+
+def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
+    """The numbers of a finding in the order of its hypothesis."""
+    known = zip(*amplitudes(discovery.fitted, finding.hypothesis), strict=True)
+    for size, estimate, (amplitude, sd) in zip(
+        finding.hypothesis.sizes, finding.estimates, known, strict=True
+    ):
+        one_sided = not (size.signed or size.shape or size.growth == "factor")
+        yield FoundSize(
+            size,
+            estimate,
+            float(amplitude),
+            size.value(float(amplitude + ONE_SIDED * sd)),
+            bool(not one_sided or amplitude >= SIZE_LEVEL * sd),
+        )
+
+
+def size_words(discovery: Discovery, finding: Finding) -> str:
+    """All sizes of a finding in one line."""
+    return "; ".join(s.sentence for s in found_sizes(discovery, finding))

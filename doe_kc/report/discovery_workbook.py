@@ -7,19 +7,96 @@ from pathlib import Path
 
 from openpyxl.workbook import Workbook
 
-from doe_kc.discovery.result import Discovery
-from doe_kc.report.discovery_legend import DISCOVERY_LEGEND
-from doe_kc.report.discovery_sheets import (
-    disagreement_sheet,
-    effects_sheet,
-    gap_sheet,
-    held_out_sheet,
-    library_sheet,
-    parameters_sheet,
+from doe_kc import __version__
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.thresholds import RELEVANT
+from doe_kc.effects import EFFECTS
+from doe_kc.report.discovery_effects import effect_table
+from doe_kc.report.discovery_library import library_table
+from doe_kc.report.discovery_parameters import tuned_table
+from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
+from doe_kc.report.discovery_words import (
+    HEADLINES,
+    contrast_words,
+    effect_label,
+    hypothesis_label,
+    own_sentences,
+    size_words,
 )
-from doe_kc.report.discovery_verdict_sheet import verdict_sheet
-from doe_kc.report.workbook_file import new_book, write_book
-from doe_kc.report.workbook_terms import terms_sheet
+from doe_kc.report.render.workbook import lines_sheet, new_book, table_sheet, write_book
+
+SCAN_PLACES = 3
+"""Places of the generic scan that are listed."""
+VERDICT_LINE_LENGTH = 125
+"""Characters that fit one line of the text column."""
+DISCOVERY_LEGEND = {
+    "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0.",
+    "Signs": "Toe-in +, camber top outwards +, caster top rearwards +; forces as their load case has them.",
+    "Verdict": (
+        "Effect named: the records ask for it, noise explains what remains, held-out load cases are "
+        "predicted better. One of several: an effect is missing, but these records cannot tell which. No "
+        "effect missing: re-tuning explains all records. Unexplained: something is missing, but no effect"
+        " of the library is convincing; what is listed are leads."
+    ),
+    "Nominal": "The axle as it is in its file.",
+    "Re-tuned": "The most probable axle without any effect: parameters within their production scatter.",
+    "With effect": "The most probable axle with the effects found, all parameters re-tuned with them.",
+    "Best decoy": (
+        "The best other effect in place of the one found, refitted alike: a gap that a decoy closes as "
+        "well is no evidence for a name."
+    ),
+    "Gap": (
+        "RMS of model minus measured in units of the records' noise, correlations of the noise respected;"
+        " 1 is noise. Noise floor: what the right model would reach, as its parameters follow the noise."
+    ),
+    "Disagreement": (
+        "How much of one shape a curve's deviation holds, in standard deviations. Gradient: slope at "
+        "static; curvature: even; progression: odd and cubic; dead band: a step about zero; loop width "
+        "and loop tilt: of the half-width of the loop, (falling - rising) / 2; offset: constant, tyre "
+        "load only."
+    ),
+    "Re-tuned z": (
+        "Only what no re-tuning can absorb. With effect: the shape of its law is left open as far as the "
+        "records ask for."
+    ),
+    "Wheels": "Both alike: sum of both wheels; left against right: their difference.",
+    "Size, sd": (
+        "Most probable value and its standard deviation, all parameters free together. 'Not told from "
+        "rigid / none': the limit that the value passes with a chance of 5 %."
+    ),
+    "Probability": (
+        "That it is this effect, in whatever place, all other effects in the model: among it, its removal "
+        "and its rivals in its place, each refitted. An effect outside the library is another question: see "
+        "the adequacy."
+    ),
+    "log10 odds": (
+        "Of the effect against the best alternative, all others in the model: 2 is a hundred to one; 6 says "
+        "6 or more."
+    ),
+    "Adequacy": (
+        "How often noise alone leaves as much as remains: on the map of disagreements, and of load cases "
+        "held out. Something that the library does not list has odds of 2 % before the records; what "
+        "remains can raise them to the stated probability at most."
+    ),
+    "Trace": f"The records show it, but it is less than {RELEVANT:g} of its typical size.",
+    "ln evidence": "Gained over the model without it; the price of its extra freedom is paid.",
+    "Detectability": "Standard deviations that the effect makes after re-tuning.",
+    "Detectable size": (
+        "Would be found in four of five cars, and is above the 95 % limit of what the records say of it, if "
+        "the model is right but for this effect; of several numbers all together. For a stiffness 'below': a "
+        "softer part would have been found."
+    ),
+    "Absorbed": (
+        "Share of the effect that re-tuning hides. Hidden by: the parameters that move most for it at its"
+        " typical size, in standard deviations of their prior."
+    ),
+    "Looks like": "Hypotheses that change the records nearly alike after re-tuning, with the correlation.",
+    "Held out": (
+        "Each load case is left out of the fit and predicted; RMS in standard deviations of the "
+        "prediction. Law granted: with what the laws of the effects leave open among the errors; by "
+        "that the verdict goes. Gain: ln predictive density won by the effect."
+    ),
+}
 
 
 def discovery_workbook(
@@ -31,14 +108,25 @@ def discovery_workbook(
     of that, title -> text (axle file, measurement, ...).
     """
     book = new_book(f"Missing effects: {study}")
-    verdict_sheet(book, discovery, study, date, notes or {})
-    disagreement_sheet(book, discovery, study)
-    effects_sheet(book, discovery, study)
-    library_sheet(book, discovery, study)
-    gap_sheet(book, discovery, study)
-    held_out_sheet(book, discovery, study)
-    parameters_sheet(book, discovery, study)
-    terms_sheet(book, study, DISCOVERY_LEGEND)
+    origin = {"Study": study, "Date": date, "Program": f"doe_kc {__version__}", **(notes or {})}
+    lines_sheet(
+        book,
+        "Verdict",
+        "Missing effects",
+        "What the model lacks, how sure that is, and what to test next.",
+        [*verdict_lines(discovery), *origin.items()],
+        study,
+        bold=1,
+        flagged=(0,) if discovery.verdict in ("class", "unexplained") else (),
+        length=VERDICT_LINE_LENGTH,
+    )
+    table_sheet(book, disagreement_table(discovery, worst_first=True), study)
+    table_sheet(book, effect_table(discovery), study)
+    table_sheet(book, library_table(discovery), study)
+    table_sheet(book, gap_table(discovery), study)
+    table_sheet(book, held_out_table(discovery), study)
+    table_sheet(book, tuned_table(discovery), study)
+    lines_sheet(book, "Legend", "Legend", "How to read this workbook.", list(DISCOVERY_LEGEND.items()), study)
     return book
 
 
@@ -47,3 +135,39 @@ def write_discovery_workbook(
 ) -> Path:
     """Write `discovery_workbook`; RunError naming path and remedy when the place is locked or full."""
     return write_book(path, discovery_workbook(discovery, study=study, date=date, notes=notes))
+
+
+def verdict_lines(discovery: Discovery) -> list[tuple[str, str]]:
+    """(head, sentence): the verdict, each effect, what stays open, what to test next; heads only once."""
+    out = [("Verdict", f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}")]
+    out += _headed("In words", own_sentences(discovery)[1:])
+    head = "Lead" if discovery.verdict == "unexplained" else "Effect"
+    out += _headed(head, [finding_words(discovery, f) for f in discovery.findings])
+    traces = [f"{hypothesis_label(f.hypothesis)}: {size_words(discovery, f)}" for f in discovery.traces]
+    out += _headed("Seen, too small", traces)
+    alike = [" or ".join(effect_label(e) for e in group) for group in discovery.classes]
+    out += _headed("Cannot be told apart", alike)
+    open_ = [f"{contrast_words(c)}: {z:+.1f} standard deviations" for c, z in discovery.unexplained]
+    out += _headed("Unexplained at", open_)
+    out += _headed("Without the library", scan_lines(discovery))
+    return out + _headed("Test next", discovery.next_tests)
+
+
+def finding_words(discovery: Discovery, finding: Finding) -> str:
+    """Name and place, sizes, and what happens in the car."""
+    sizes = f": {size_words(discovery, finding)}" if finding.hypothesis.sizes else ""
+    return f"{hypothesis_label(finding.hypothesis)}{sizes}. {EFFECTS[finding.hypothesis.effect].physics}"
+
+
+def scan_lines(discovery: Discovery) -> list[str]:
+    """Where a generic scan of all interfaces puts what re-tuning leaves, the most probable places."""
+    places = discovery.scan.places[:SCAN_PLACES] if discovery.scan is not None else ()
+    return [
+        f"{p.words[0].upper()}{p.words[1:]}: probability {100.0 * p.probability:.0f} %, closes "
+        f"{100.0 * p.closed:.0f} % of what re-tuning leaves"
+        for p in places
+    ]
+
+
+def _headed(head: str, texts: list[str] | tuple[str, ...]) -> list[tuple[str, str]]:
+    return [(head if i == 0 else "", text) for i, text in enumerate(texts)]

@@ -15,14 +15,14 @@ from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.parameter_influence.result import Influence
 from doe_kc.report.color_scale import STRIPS, draw_color_scale
+from doe_kc.report.influence_layout import Layout, layout
 from doe_kc.report.names import case_label
 from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.report.style import PALETTE
+from doe_kc.report.table import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
 from doe_kc.report.words import POINTS, text_width
-from doe_kc.report.workbook_cells import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
-from doe_kc.report.workbook_matrix import Layout, layout
 
 ANNOTATE = 5.0
 """Percent from which a cell shows its number."""

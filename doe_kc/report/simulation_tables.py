@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from doe_kc.characteristics import CHARACTERISTICS, reduce_all
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.curves import SIDES
 from doe_kc.ground.output import write_csv
+from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.json import table_records
+from doe_kc.report.table import Column, Table
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
 from doe_kc.solver.result import BranchSolution, CaseSolution, Solution
@@ -49,24 +53,43 @@ def _branch_frame(solution: Solution, case: CaseSolution, branch: BranchSolution
     return pd.DataFrame(columns)
 
 
-def characteristics_frame(solution: Solution) -> pd.DataFrame:
-    """name, load_case, response, unit, value of every characteristic that the solution has."""
+@dataclass(frozen=True)
+class SimulatedCharacteristic:
+    """One characteristic of a simulation, in `entry.unit`."""
+
+    entry: Characteristic
+    value: float
+
+
+SIMULATED_COLUMNS: tuple[Column[SimulatedCharacteristic], ...] = (
+    Column("name", "Id", lambda r: r.entry.id),
+    Column("load_case", "Load case", lambda r: r.entry.load_case, json="load_case"),
+    Column("response", "Response", lambda r: r.entry.response),
+    Column("unit", "Unit", lambda r: r.entry.unit, json="unit"),
+    Column("value", "Value", lambda r: r.value, "0.0000", json="value"),
+)
+
+
+def simulated_characteristic_table(solution: Solution) -> Table[SimulatedCharacteristic]:
+    """Every characteristic that the solution has."""
     values = reduce_all(curve_set(solution))
     rows = [
-        (name, entry.load_case, entry.response, entry.unit, values[name])
+        SimulatedCharacteristic(entry, values[name])
         for name, entry in CHARACTERISTICS.items()
         if math.isfinite(values[name])
     ]
-    return pd.DataFrame(rows, columns=["name", "load_case", "response", "unit", "value"])
+    return Table("Characteristics", "Of the simulated axle, left wheel.", SIMULATED_COLUMNS, rows)
+
+
+def characteristics_frame(solution: Solution) -> pd.DataFrame:
+    """name, load_case, response, unit, value of every characteristic that the solution has."""
+    return table_frame(simulated_characteristic_table(solution))
 
 
 def characteristics_document(solution: Solution, seconds: float) -> dict[str, Any]:
     """`{"characteristics": {name: {"value", "unit", "load_case"}}, "seconds"}`."""
-    frame = characteristics_frame(solution)
-    entries = {
-        row["name"]: {key: row[key] for key in ("value", "unit", "load_case")}
-        for row in frame.to_dict("records")
-    }
+    table = simulated_characteristic_table(solution)
+    entries = dict(zip((r.entry.id for r in table.rows), table_records(table), strict=True))
     return {"characteristics": entries, "seconds": seconds}
 
 

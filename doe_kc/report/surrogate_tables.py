@@ -2,46 +2,108 @@
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
 
+from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
+from doe_kc.report.names import case_label
+from doe_kc.report.render.json import table_records
+from doe_kc.report.table import Column, SheetLayout, Table, TerminalCell, Value, three_digits
+from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.surrogates.study import Judged
+from doe_kc.surrogates.validation import Quality
 
 
-def judged_document(report: SurrogateReport, model: str) -> dict[str, dict[str, Any]]:
-    """Characteristic -> what cross-validation says of a model for it."""
-    judged = report.fitted.models[model]
-    q = judged.quality
-    return {
-        entry.id: {
-            "q2": q.q2[j],
-            "rmse": q.rmse[j],
-            "unit": entry.unit,
-            "coverage": q.coverage[j],
-            "calibrated_coverage": judged.covered[j],
-            "sharpness": q.sharpness[j],
-            "variance_factor": judged.factors[j],
-        }
-        for j, entry in enumerate(report.designs.characteristics)
-    }
+@dataclass(frozen=True)
+class QualityRow:
+    """What cross-validation says of a model for one characteristic. chosen: whether it is the model in use.
+    index: of the characteristic in all arrays."""
+
+    entry: Characteristic
+    model: str
+    fit: Judged
+    index: int
+    chosen: bool
+
+    @property
+    def id(self) -> str:
+        """`load_case.name`."""
+        return self.entry.id
+
+    @property
+    def quality(self) -> Quality:
+        """Arrays over all characteristics."""
+        return self.fit.quality
 
 
-def quality_frame(report: SurrogateReport) -> pd.DataFrame:
+QUALITY_COLUMNS: tuple[Column[QualityRow], ...] = (
+    Column("characteristic", "Characteristic", lambda r: r.id, width=34, words=lambda r: r.entry.label,
+           terminal=TerminalCell("characteristic", "32")),
+    Column("load_case", "Load case", lambda r: case_label(r.entry.load_case), width=24, csv=False),
+    Column("model", "Model", lambda r: r.model, width=22, words=lambda r: SURROGATES[r.model].label,
+           terminal=TerminalCell("model", ">10")),
+    Column("chosen", None, lambda r: r.chosen),
+    Column("q2", "Q2", lambda r: float(r.quality.q2[r.index]), "0.0000", 12, json="q2",
+           terminal=TerminalCell("Q2", ">9", ".4f")),
+    Column("rmse", "RMSE", lambda r: float(r.quality.rmse[r.index]),
+           lambda r: three_digits(float(r.quality.rmse[r.index])), 12, json="rmse",
+           terminal=TerminalCell("rmse", ">11", ".3g")),
+    Column("unit", "Unit", lambda r: r.entry.unit, width=9, json="unit",
+           terminal=TerminalCell(" unit", "11", text=lambda r: f" {r.entry.unit}")),
+    Column("coverage", "Coverage", lambda r: float(r.quality.coverage[r.index]), "0.0000", 12,
+           json="coverage", terminal=TerminalCell("coverage", ">9", ".2f")),
+    Column("calibrated_coverage", "Calibrated", lambda r: float(r.fit.covered[r.index]), "0.0000", 12,
+           json="calibrated_coverage", terminal=TerminalCell("calibrated", ">11", ".2f")),
+    Column("sharpness", "Sharpness", lambda r: float(r.quality.sharpness[r.index]), "0.0000", 12,
+           json="sharpness"),
+    Column("variance_factor", None, lambda r: float(r.fit.factors[r.index]), json="variance_factor"),
+)  # fmt: skip
+
+
+def quality_table(report: SurrogateReport) -> Table[QualityRow]:
     """One row a characteristic and model; `chosen` marks the model in use."""
-    chosen = {
-        c.id: name for c, name in zip(report.designs.characteristics, report.fitted.chosen, strict=True)
-    }
     rows = [
-        {"characteristic": entry, "model": model, "chosen": chosen[entry] == model, **values}
-        for model in report.fitted.models
-        for entry, values in judged_document(report, model).items()
+        QualityRow(entry, model, fit, j, model == chosen)
+        for j, (entry, chosen) in enumerate(
+            zip(report.designs.characteristics, report.fitted.chosen, strict=True)
+        )
+        for model, fit in report.fitted.models.items()
     ]
-    order = {c.id: j for j, c in enumerate(report.designs.characteristics)}
-    frame = pd.DataFrame(rows)
-    return frame.sort_values("characteristic", key=lambda s: s.map(order), kind="stable", ignore_index=True)
+    return Table(
+        "Quality",
+        f"Cross-validation over {len(report.designs.x)} designs; the model in use and all others.",
+        QUALITY_COLUMNS,
+        rows,
+        title="Surrogates",
+        sheet=SheetLayout(
+            frozen="unit", paper="A3", single=True, first=("load_case", "characteristic", "unit")
+        ),
+    )
+
+
+def chosen_table(report: SurrogateReport) -> Table[QualityRow]:
+    """The models in use, and beside each what all models reach."""
+    table = quality_table(report)
+    others = tuple(_q2_column(name, fit) for name, fit in report.fitted.models.items())
+    return replace(table, rows=[r for r in table.rows if r.chosen], columns=(*table.columns, *others))
+
+
+def _q2_column(model: str, fit: Judged) -> Column[QualityRow]:
+    def q2(row: QualityRow) -> float:
+        return float(fit.quality.q2[row.index])
+
+    return Column(f"q2_{model}", f"Q2 {model}", q2, "0.0000", 12, csv=False)
+
+
+def quality_document(report: SurrogateReport, model: str) -> dict[str, dict[str, Value]]:
+    """Characteristic -> what cross-validation says of a model for it."""
+    table = quality_table(report)
+    rows = [r for r in table.rows if r.model == model]
+    return dict(zip((r.id for r in rows), table_records(replace(table, rows=rows)), strict=True))
 
 
 def left_out_predictions(report: SurrogateReport) -> FloatArray:
@@ -98,3 +160,34 @@ def agreement_document(report: SurrogateReport) -> dict[str, dict[str, float]]:
         }
         for j, entry in enumerate(report.designs.characteristics)
     }
+
+
+@dataclass(frozen=True)
+class MatrixRow:
+    """One parameter of a matrix: percent of every characteristic."""
+
+    path: str
+    step: str
+    percent: FloatArray
+
+
+def matrix_table(report: SurrogateReport, name: str, remark: str, percent: FloatArray) -> Table[MatrixRow]:
+    """A row a parameter, a column a characteristic. percent: (d, m)."""
+    rows = [
+        MatrixRow(v.path, f"{v.parameter.step:g} {v.unit}".removesuffix(" -"), values)
+        for v, values in zip(report.space.variables, percent, strict=True)
+    ]
+    columns: tuple[Column[MatrixRow], ...] = (
+        Column("parameter", "Path", lambda r: r.path, width=36),
+        Column("step", "Step", lambda r: r.step, width=12),
+        *(_matrix_column(j, entry) for j, entry in enumerate(report.designs.characteristics)),
+    )
+    layout = SheetLayout(frozen=columns[2].key, paper="A3", single=True)
+    return Table(name, remark, columns, rows, title=f"{name} by surrogates", sheet=layout)
+
+
+def _matrix_column(j: int, entry: Characteristic) -> Column[MatrixRow]:
+    def value(row: MatrixRow) -> Value:
+        return float(row.percent[j]) if np.isfinite(row.percent[j]) else None
+
+    return Column(entry.id, f"{case_label(entry.load_case)}: {entry.label}", value, "0", 7.0)

@@ -16,13 +16,13 @@ from doe_kc.curves import CurveSet
 from doe_kc.discovery.model import NO_CHARACTERISTICS
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
-from doe_kc.report.discovery_sizes import size_words
-from doe_kc.report.discovery_words import effect_label
+from doe_kc.report.correlation_characteristics import characteristic_table
+from doe_kc.report.discovery_words import effect_label, size_words
+from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
-from doe_kc.workflow.write_correlation import characteristic_entries
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def summary_document(
         "axle": axle_path,
         "verdict": record.verdict,
         "effects": record.effects,
-        "characteristics": characteristic_entries(correlation),
+        "characteristics": table_records(characteristic_table(correlation)),
         "gap": None if record.gap is None else record.gap.model_dump(),
         "rating": correlation.rating,
         "mean_improvement_percent": correlation.mean_improvement,

@@ -9,6 +9,10 @@ from doe_kc.curves import CurveSet
 from doe_kc.ground.output import write_csv
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
+from doe_kc.report.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.json import table_records
+from doe_kc.report.render.terminal import table_lines
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison, compare
 
@@ -25,8 +29,8 @@ def write_comparison(
 ) -> list[Path]:
     """characteristics.csv, curves.csv (RMS) and one figure a load case."""
     written = [
-        write_csv(folder / "characteristics.csv", comparison.characteristics_frame()),
-        write_csv(folder / "curves.csv", comparison.curves_frame()),
+        write_csv(folder / "characteristics.csv", table_frame(compared_characteristic_table(comparison))),
+        write_csv(folder / "curves.csv", table_frame(compared_curve_table(comparison))),
     ]
     if pictures == "none":
         return written
@@ -37,13 +41,7 @@ def write_comparison(
 
 def comparison_lines(comparison: Comparison) -> list[str]:
     """The table for a terminal; * marks what lies outside its constraint interval."""
-    lines = [f"{'characteristic':34}{'model':>12}{'target':>12}{'difference':>12}  unit"]
-    for row in comparison.characteristics:
-        mark = " " if row.inside else "*"
-        lines.append(
-            f"{row.entry.id:34}{row.value:>12.5g}{row.target:>12.5g}{row.difference:>12.3g} {mark}"
-            f"{row.entry.unit}"
-        )
+    lines = table_lines(compared_characteristic_table(comparison))
     outside = sum(not row.inside for row in comparison.characteristics)
     lines.append(f"{outside} of {len(comparison.characteristics)} outside their constraint interval (*)")
     return lines
@@ -52,6 +50,6 @@ def comparison_lines(comparison: Comparison) -> list[str]:
 def comparison_document(comparison: Comparison) -> dict[str, Any]:
     """Characteristics and RMS deviations as records."""
     return {
-        "characteristics": comparison.characteristics_frame().to_dict("records"),
-        "curves": comparison.curves_frame().to_dict("records"),
+        "characteristics": table_records(compared_characteristic_table(comparison)),
+        "curves": table_records(compared_curve_table(comparison)),
     }

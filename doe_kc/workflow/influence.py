@@ -18,7 +18,7 @@ from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.parameter_influence.study import influence_study
-from doe_kc.report.workbook import write_influence_workbook
+from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
 from doe_kc.targets.comparison.interval import constraint_interval

@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable, Mapping
 from datetime import date
 from pathlib import Path
 from typing import Any
 
 from doe_kc.axle_file.write import write_axle
-from doe_kc.correlation.assessment import Assessment, assess, inside
+from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_csv
 from doe_kc.measurement import Measurement
-from doe_kc.report.correlation_characteristics import characteristic_frame, characteristic_rows
-from doe_kc.report.correlation_evaluations import evaluation_frame
-from doe_kc.report.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
+from doe_kc.report.correlation_characteristics import characteristic_table
+from doe_kc.report.correlation_evaluations import evaluation_table
+from doe_kc.report.correlation_parameters import parameter_table, remark_sentences
 from doe_kc.report.correlation_summary import summary
-from doe_kc.report.correlation_terms import curve_frame, term_frame
+from doe_kc.report.correlation_terms import curve_table, term_frame
 from doe_kc.report.correlation_workbook import write_correlation_workbook
 from doe_kc.report.page import write_correlation_page
+from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.json import table_records
+from doe_kc.report.render.terminal import table_lines
+from doe_kc.report.table import Table
 from doe_kc.study import Study
 
-CORRELATION_TABLES = {
-    "parameters.csv": parameter_frame,
-    "characteristics.csv": characteristic_frame,
-    "curves.csv": curve_frame,
-    "rating_terms.csv": term_frame,
-    "evaluations.csv": evaluation_frame,
+CORRELATION_TABLES: Mapping[str, Callable[[Correlation], Table[Any]]] = {
+    "parameters.csv": parameter_table,
+    "characteristics.csv": characteristic_table,
+    "curves.csv": curve_table,
+    "evaluations.csv": evaluation_table,
 }
 AXLE = "axle.toml"
 
@@ -61,7 +64,8 @@ def write_correlation(
     }
     return [
         axle,
-        *(write_csv(folder / name, make(correlation)) for name, make in CORRELATION_TABLES.items()),
+        *(write_csv(folder / name, table_frame(of(correlation))) for name, of in CORRELATION_TABLES.items()),
+        write_csv(folder / "rating_terms.csv", term_frame(correlation)),
         write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
         write_correlation_page(folder / "report.html", correlation, measurement, **words),
         *_write_figures(study, correlation, measurement, folder, workers),
@@ -99,36 +103,16 @@ def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[P
     return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
 
 
-def characteristic_entries(correlation: Correlation) -> list[dict[str, Any]]:
-    """Every characteristic with a target. low, high: the constraint interval; where the study sets none, that
-    of equations 5.1 and 5.2. held, reachable: as in `CharacteristicRow`."""
-    return [
-        {
-            "name": r.id,
-            "unit": r.unit,
-            "target": r.entry.target.value,
-            "sd": r.entry.target.sd,
-            "baseline": r.entry.baseline,
-            "final": r.entry.final,
-            "improvement_percent": r.entry.percent,
-            "low": r.interval[0],
-            "high": r.interval[1],
-            "role": r.role,
-            "held": r.held,
-            "reachable": r.reachable,
-        }
-        for r in characteristic_rows(correlation)
-    ]
-
-
 def correlation_document(
     correlation: Correlation, axle_path: Path, assessment: Assessment | None = None
 ) -> dict[str, Any]:
     """What `correlate --json` writes. Numbers that are not finite become null in the file.
 
-    parameters: sd is null at a bound, where `inward` tells how far inside the value may lie (68 %).
+    characteristics: every one with a target; low, high: the constraint interval, where the study sets none
+    that of equations 5.1 and 5.2; held, reachable: as in `CharacteristicRow`. parameters: sd is null at a
+    bound, where `inward` tells how far inside the value may lie (68 %).
     """
-    verdict = assessment or assess(correlation)
+    verdict, parameters = assessment or assess(correlation), parameter_table(correlation)
     return {
         "status": verdict.status,
         "reasons": list(verdict.reasons),
@@ -137,11 +121,8 @@ def correlation_document(
         "rating": correlation.rating,
         "feasible": correlation.feasible,
         "mean_improvement_percent": correlation.mean_improvement,
-        "characteristics": characteristic_entries(correlation),
-        "parameters": {
-            r.path: {"baseline": r.baseline, "final": r.final, "sd": r.sd, "inward": r.inward}
-            for r in parameter_rows(correlation)
-        },
+        "characteristics": table_records(characteristic_table(correlation)),
+        "parameters": dict(zip((r.path for r in parameters.rows), table_records(parameters), strict=True)),
         "axle": str(axle_path),
         "seconds": correlation.seconds,
         "stopped": correlation.run.stopped,
@@ -153,14 +134,6 @@ def correlation_document(
 def correlation_lines(correlation: Correlation, assessment: Assessment | None = None) -> list[str]:
     """The outcome for a terminal, its status first; * marks what lies outside interval and noise."""
     words = summary(correlation, assessment)
-    head = f"{'characteristic':34}{'target':>11}{'baseline':>11}{'final':>11}{'improved':>10}  unit"
-    lines = [words.pop("Status"), head]
-    for r in characteristic_rows(correlation):
-        e = r.entry
-        percent = f"{e.percent:.1f} %" if math.isfinite(e.percent) else "-"
-        mark = " " if inside(e) else "*"
-        lines.append(
-            f"{r.id:34}{e.target.value:>11.4g}{e.baseline:>11.4g}{e.final:>11.4g}{percent:>10} {mark}{r.unit}"
-        )
+    lines = [words.pop("Status"), *table_lines(characteristic_table(correlation))]
     lines += [f"{key}: {text}" for key, text in words.items()]
     return lines + remark_sentences(correlation)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -10,28 +11,26 @@ from doe_kc.axle_file.write import write_axle
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.output import write_csv
 from doe_kc.measurement import Measurement
-from doe_kc.report.discovery_effects import effect_frame
+from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_figures import write_discovery_figures
-from doe_kc.report.discovery_tables import (
-    disagreement_frame,
-    gap_frame,
-    held_out_frame,
-    library_frame,
-    parameter_frame,
-)
+from doe_kc.report.discovery_library import library_table
+from doe_kc.report.discovery_parameters import tuned_table
+from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
 from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
+from doe_kc.report.render.csv import table_frame
+from doe_kc.report.table import Table
 from doe_kc.study import Study
 from doe_kc.workflow.write_correlation import AXLE
 
-DISCOVERY_TABLES = {
-    "disagreement.csv": disagreement_frame,
-    "effects.csv": effect_frame,
-    "library.csv": library_frame,
-    "gap.csv": gap_frame,
-    "held_out.csv": held_out_frame,
-    "parameters.csv": parameter_frame,
+DISCOVERY_TABLES: Mapping[str, Callable[[Discovery], Table[Any]]] = {
+    "disagreement.csv": disagreement_table,
+    "effects.csv": effect_table,
+    "library.csv": library_table,
+    "gap.csv": gap_table,
+    "held_out.csv": held_out_table,
+    "parameters.csv": tuned_table,
 }
 EFFECTS_ONLY = "axle_effects_only.toml"
 
@@ -63,7 +62,7 @@ def write_discovery(
     known = {"Measurement": measurement.manifest.name, **notes}
     return [
         *written,
-        *(write_csv(folder / name, make(discovery)) for name, make in DISCOVERY_TABLES.items()),
+        *(write_csv(folder / name, table_frame(of(discovery))) for name, of in DISCOVERY_TABLES.items()),
         write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
         write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words),
         *write_discovery_figures(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,8 @@ import numpy as np
 
 from doe_kc.ground.output import write_csv
 from doe_kc.report import surrogate_tables as tables
+from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.terminal import table_lines
 from doe_kc.report.surrogate_figures import write_surrogate_figures
 from doe_kc.report.surrogate_workbook import write_surrogate_workbook
 from doe_kc.study import Study
@@ -26,7 +27,7 @@ def write_surrogates(
         folder / "surrogates.xlsx", report, study=study.name, date=date.today().isoformat()
     )
     frames = {
-        "quality": tables.quality_frame(report),
+        "quality": table_frame(tables.quality_table(report)),
         "predictions": tables.predictions_frame(report),
         "influence": tables.matrix_frame(report, report.changes),
         "shares": tables.matrix_frame(report, report.shares),
@@ -51,7 +52,7 @@ def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
         "elsewhere": report.designs.elsewhere,
         "chosen": dict(zip(ids, report.fitted.chosen, strict=True)),
         "models": {
-            name: {"seconds": judged.seconds, "characteristics": tables.judged_document(report, name)}
+            name: {"seconds": judged.seconds, "characteristics": tables.quality_document(report, name)}
             for name, judged in report.fitted.models.items()
         },
         "skipped": report.fitted.skipped,
@@ -63,10 +64,7 @@ def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
 
 def surrogate_lines(report: SurrogateReport) -> list[str]:
     """For a terminal: the chosen model of every characteristic and its quality, then what was left out."""
-    frame = tables.quality_frame(report)
-    heads = f"{'model':>10}{'Q2':>9}{'rmse':>11} {'unit':10}{'coverage':>9}{'calibrated':>11}"
-    lines = [f"{'characteristic':32}{heads}"]
-    lines += [_row(row) for row in frame[frame["chosen"]].to_dict("records")]
+    lines = table_lines(tables.chosen_table(report))
     lines += [f"{name}: {_average(report, name)}" for name in report.fitted.models]
     lines += [f"{name} left out: {reason}" for name, reason in report.fitted.skipped.items()]
     r = report.agreement.correlation
@@ -81,13 +79,6 @@ def surrogate_lines(report: SurrogateReport) -> list[str]:
         "other variables or bounds left out"
     )
     return lines
-
-
-def _row(row: Mapping[Any, Any]) -> str:
-    return (
-        f"{row['characteristic']:32}{row['model']:>10}{row['q2']:9.4f}{row['rmse']:11.3g} {row['unit']:10}"
-        f"{row['coverage']:9.2f}{row['calibrated_coverage']:11.2f}"
-    )
 
 
 def _average(report: SurrogateReport, name: str) -> str:

@@ -14,7 +14,8 @@ import pytest
 
 from doe_kc.ground import output
 from doe_kc.ground.errors import RunError
-from doe_kc.report import style, workbook_file
+from doe_kc.report import style
+from doe_kc.report.render import workbook
 from tests.cli.runner import (
     AXLE,
     Outcome,
@@ -85,7 +86,7 @@ def test_full_disk_during_influence(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         outcome = fails(1, "close the file in other programs", "influence", study)
     assert str(book) in outcome.err
     assert book.read_bytes() == b"the old workbook" and not leftovers(tmp_path)
-    assert workbook_file.write_whole is output.write_whole
+    assert workbook.write_whole is output.write_whole
 
 
 def test_full_disk_while_drawing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -8,11 +8,12 @@ import pytest
 
 from doe_kc.axle import parameter_value
 from doe_kc.correlation.result import Correlation
-from doe_kc.report.correlation_characteristics import characteristic_frame, characteristic_rows
-from doe_kc.report.correlation_evaluations import evaluation_frame, history
-from doe_kc.report.correlation_parameters import parameter_frame, parameter_rows, remark_sentences
+from doe_kc.report.correlation_characteristics import characteristic_rows, characteristic_table
+from doe_kc.report.correlation_evaluations import evaluation_table, history
+from doe_kc.report.correlation_parameters import parameter_rows, parameter_table, remark_sentences
 from doe_kc.report.correlation_summary import summary
-from doe_kc.report.correlation_terms import curve_frame, term_frame
+from doe_kc.report.correlation_terms import curve_table, term_frame
+from doe_kc.report.render.csv import table_frame
 from tests.report.correlations import all_three, odd, real, typed
 
 NAMES = ("real", "odd", "typed")
@@ -28,7 +29,7 @@ def by(frame: pd.DataFrame, key: str) -> dict[str, dict[str, object]]:
 
 
 def test_parameters_hold_the_values_of_the_axles(found: Correlation) -> None:
-    frame = parameter_frame(found)
+    frame = table_frame(parameter_table(found))
     for row in frame.to_dict("records"):
         assert row["final"] == pytest.approx(parameter_value(found.axle, row["path"]), abs=1e-12)
         assert row["change"] == row["final"] - row["baseline"]
@@ -49,7 +50,7 @@ def test_sd_is_in_the_parameters_unit() -> None:
 
 
 def test_bounds_ties_and_fixed_ones_are_marked() -> None:
-    rows = by(parameter_frame(odd()), "path")
+    rows = by(table_frame(parameter_table(odd())), "path")
     assert (rows["llf.Fy"]["at_bound"], rows["llr.Fy"]["at_bound"]) == ("lower", "upper")
     assert [p for p, r in rows.items() if r["at_bound"]] == ["llf.Fy", "llr.Fy"]
     assert (rows["sfr.Fy"]["role"], rows["sfr.Fy"]["tied_to"]) == ("tied", "sff.Fy")
@@ -62,13 +63,13 @@ def test_bounds_ties_and_fixed_ones_are_marked() -> None:
 
 
 def test_without_posterior_nothing_is_said_of_visibility() -> None:
-    frame = parameter_frame(typed())
+    frame = table_frame(parameter_table(typed()))
     assert frame["sd"].isna().all() and (frame["not_visible"] == "").all()
     assert "No standard deviations" in remark_sentences(typed())[-1]
 
 
 def test_improvement_is_appendix_d(found: Correlation) -> None:
-    for r in characteristic_frame(found).to_dict("records"):
+    for r in table_frame(characteristic_table(found)).to_dict("records"):
         before, after = abs(r["baseline"] - r["target"]), abs(r["final"] - r["target"])
         if before:
             assert r["improvement_percent"] == pytest.approx(100 * (1 - after / before))
@@ -81,7 +82,7 @@ def test_improvement_is_appendix_d(found: Correlation) -> None:
 
 
 def test_normalised_values_are_ratios_away_from_zero_and_soft_near_it() -> None:
-    rows = by(characteristic_frame(real()), "id")
+    rows = by(table_frame(characteristic_table(real())), "id")
     caster, toe = rows["static.caster"], rows["static.toe"]
     assert caster["baseline_normalized"] == pytest.approx(caster["baseline"] / caster["target"], abs=1e-3)
     assert toe["target"] == pytest.approx(0.027)
@@ -99,15 +100,18 @@ def test_terms_sum_to_the_rating(found: Correlation) -> None:
 
 
 def test_curves_come_with_their_noise() -> None:
-    frame = curve_frame(real())
+    frame = table_frame(curve_table(real()))
     assert len(frame) == len(real().problem.targets.curves) > 10
     assert (frame["rms_final"] < frame["rms_baseline"]).all()
     assert (frame["rms_final"] / frame["noise_rms"]).median() < 2.0
-    assert list(curve_frame(typed()).columns) == list(frame.columns) and curve_frame(typed()).empty
+    assert (
+        list(table_frame(curve_table(typed())).columns) == list(frame.columns)
+        and table_frame(curve_table(typed())).empty
+    )
 
 
 def test_evaluations_tell_failures_predictions_and_the_best_so_far() -> None:
-    frame = evaluation_frame(odd())
+    frame = table_frame(evaluation_table(odd()))
     assert list(frame["evaluation"]) == list(range(1, 11))
     assert list(np.flatnonzero(frame["failed_because"] != "")) == [2, 6]
     assert frame["merit"].isna().sum() == 2

@@ -13,13 +13,13 @@ from doe_kc.ground.errors import RunError
 from doe_kc.report.discovery_curves import curve_figure, worst_views
 from doe_kc.report.discovery_evidence import evidence_figure, evidence_steps
 from doe_kc.report.discovery_figures import discovery_jobs, write_discovery_figures
-from doe_kc.report.discovery_gaps import gap_figure, gap_rows
-from doe_kc.report.discovery_grid import discovery_grids
-from doe_kc.report.discovery_heat_map import heat_map_figure, signed
+from doe_kc.report.discovery_gaps import gap_figure
+from doe_kc.report.discovery_heat_map import discovery_grids, heat_map_figure, signed
 from doe_kc.report.discovery_held_out import gain_words, held_out_figure
 from doe_kc.report.discovery_isolability import isolability, isolability_figure
-from doe_kc.report.discovery_parameters import moved_parameters, parameter_figure
-from doe_kc.report.discovery_tables import tuned_parameters
+from doe_kc.report.discovery_parameter_figure import moved_parameters, parameter_figure
+from doe_kc.report.discovery_parameters import tuned_parameters
+from doe_kc.report.discovery_tables import gap_rows
 from doe_kc.report.sheet import Sheet
 from tests.discovery.cases import LOAD_CASES, discovery
 

@@ -7,40 +7,42 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.verdict.exclusion import HypothesisStatus
+from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.report.discovery_effects import effect_frame, effect_rows
+from doe_kc.report.discovery_curves import model_values, model_views, view_gaps
+from doe_kc.report.discovery_effects import effect_rows, effect_table
 from doe_kc.report.discovery_evidence import evidence_steps
-from doe_kc.report.discovery_grid import discovery_grids
+from doe_kc.report.discovery_heat_map import discovery_grids
 from doe_kc.report.discovery_isolability import isolability
-from doe_kc.report.discovery_sizes import found_sizes, size_words
-from doe_kc.report.discovery_tables import (
-    disagreement_frame,
-    gap_frame,
-    held_out_frame,
-    library_frame,
-    parameter_frame,
-    tuned_parameters,
+from doe_kc.report.discovery_library import library_table
+from doe_kc.report.discovery_parameters import tuned_parameters, tuned_table
+from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
+from doe_kc.report.discovery_words import (
+    HEADLINES,
+    found_sizes,
+    hypothesis_label,
+    limit_words,
+    place_words,
+    size_words,
 )
-from doe_kc.report.discovery_views import model_values, model_views, view_gaps
-from doe_kc.report.discovery_words import HEADLINES, hypothesis_label, limit_words, place_words
+from doe_kc.report.render.csv import table_frame
 from tests.discovery.cases import LOAD_CASES, discovery, records
 
 
 def test_disagreement_has_every_contrast_and_every_map() -> None:
     found = discovery("named")
-    frame = disagreement_frame(found)
-    assert len(frame) == len(found.nominal_map.names)
-    np.testing.assert_array_equal(frame["z_tuned"], found.tuned_map.z)
-    np.testing.assert_array_equal(frame["z_with_effect"], found.residual_map.z)
-    assert disagreement_frame(discovery("none"))["z_with_effect"].isna().all()
+    frame = table_frame(disagreement_table(found))
+    assert len(frame) == len(found.raw.names)
+    np.testing.assert_array_equal(frame["z_tuned"], found.tuned.z)
+    np.testing.assert_array_equal(frame["z_with_effect"], found.final.z)
+    assert table_frame(disagreement_table(discovery("none")))["z_with_effect"].isna().all()
 
 
 def test_a_grid_holds_the_largest_of_each_load_case_and_response() -> None:
     found = discovery("named")
     nominal, tuned, final = discovery_grids(found)
-    frame = disagreement_frame(found)
+    frame = table_frame(disagreement_table(found))
     largest = frame.assign(size=frame["z_tuned"].abs()).groupby(["load_case", "response"])["size"].max()
     assert {key: abs(cell.z) for key, cell in tuned.cells.items()} == pytest.approx(largest.to_dict())
     assert nominal.cases == ["static", *LOAD_CASES]
@@ -50,7 +52,7 @@ def test_a_grid_holds_the_largest_of_each_load_case_and_response() -> None:
 
 def test_gaps_of_views_are_those_of_the_engine() -> None:
     found = discovery("named")
-    frame = gap_frame(found).set_index(["load_case", "response"])
+    frame = table_frame(gap_table(found)).set_index(["load_case", "response"])
     assert frame.loc[("all", "all"), "with_effect"] == pytest.approx(found.gap.with_effect)
     key = ("lateral", "camber")
     parts = [view_gaps(found)[(*key, branches)] for branches in ("mean", "half_width")]
@@ -58,7 +60,7 @@ def test_gaps_of_views_are_those_of_the_engine() -> None:
     for model in ("nominal", "tuned", "with_effect", "best_decoy"):
         squares = sum(n * p[model] ** 2 for n, p in zip(sizes, parts, strict=True))
         assert np.sqrt(squares / sum(sizes)) == pytest.approx(frame.loc[key, model], rel=1e-6)
-    assert gap_frame(discovery("none"))["with_effect"].isna().all()
+    assert table_frame(gap_table(discovery("none")))["with_effect"].isna().all()
 
 
 def test_views_hold_the_measured_curves_and_the_models_own() -> None:
@@ -75,7 +77,7 @@ def test_views_hold_the_measured_curves_and_the_models_own() -> None:
 
 def test_library_names_every_hypothesis_once() -> None:
     found = discovery("named")
-    frame = library_frame(found)
+    frame = table_frame(library_table(found))
     assert len(frame) == len(found.statuses)
     first = frame.iloc[0]
     assert (first["effect"], first["status"]) == ("hub_compliance", "found")
@@ -91,13 +93,13 @@ def test_parameters_are_absolute_with_their_distances() -> None:
     values = found.fitted.model.space.values(found.fitted.z[: found.fitted.model.parameters])
     assert rows["LLF.z"].with_effect == pytest.approx(values["LLF.z"])
     assert all(p.sd > 0 for p in rows.values())
-    assert list(parameter_frame(found)["path"]) == list(found.fitted.model.space.paths)
-    assert parameter_frame(discovery("none"))["with_effect"].isna().all()
+    assert list(table_frame(tuned_table(found))["path"]) == list(found.fitted.model.space.paths)
+    assert table_frame(tuned_table(discovery("none")))["with_effect"].isna().all()
 
 
 def test_held_out_has_a_row_a_load_case() -> None:
-    assert list(held_out_frame(discovery("named"))["load_case"]) == list(LOAD_CASES)
-    assert held_out_frame(discovery("none")).empty
+    assert list(table_frame(held_out_table(discovery("named")))["load_case"]) == list(LOAD_CASES)
+    assert table_frame(held_out_table(discovery("none"))).empty
 
 
 @pytest.mark.parametrize(
@@ -115,7 +117,7 @@ def test_effects_have_a_row_for_each_number(car: str, kinds: list[str]) -> None:
     rows = effect_rows(found)
     assert sorted({r.kind for r in rows if r.finding.relevant}) == kinds
     sizes = sum(max(1, len(f.estimates)) for f in (*found.findings, *found.traces))
-    assert len(effect_frame(found)) == len(rows) == sizes
+    assert len(table_frame(effect_table(found))) == len(rows) == sizes
     assert found.verdict in HEADLINES
 
 

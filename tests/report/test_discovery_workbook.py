@@ -10,9 +10,8 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.errors import RunError
-from doe_kc.report.discovery_verdict_sheet import verdict_lines
 from doe_kc.report.discovery_words import STATUS_WORDS
-from doe_kc.report.discovery_workbook import write_discovery_workbook
+from doe_kc.report.discovery_workbook import verdict_lines, write_discovery_workbook
 from tests.discovery.cases import discovery
 from tests.report.correlations import EVIL
 

@@ -17,8 +17,8 @@ from doe_kc.correlation.record import run_document
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_json
-from doe_kc.report.correlation_characteristics import characteristic_frame
-from doe_kc.report.correlation_evaluations import evaluation_frame
+from doe_kc.report.correlation_characteristics import characteristic_table
+from doe_kc.report.correlation_evaluations import evaluation_table
 from doe_kc.report.correlation_terms import term_frame
 from doe_kc.study import Study, read_study
 from doe_kc.targets import CharacteristicOptions
@@ -97,7 +97,7 @@ def test_other_weights_need_no_evaluation(tmp_path: Path) -> None:
     now = term_frame(again)
     assert again.feasible and set(objectives["id"]) <= set(now[now["kind"] == "objective"]["id"])
     assert again.rating == pytest.approx(now["final_term"].sum())
-    assert len(evaluation_frame(again)) == 10 and not characteristic_frame(again).empty
+    assert len(evaluation_table(again).rows) == 10 and characteristic_table(again).rows
 
 
 def test_the_fit_keeps_the_design_that_it_chose(tmp_path: Path) -> None:

@@ -17,7 +17,8 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.sentences import odds_words
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.errors import RunError
-from doe_kc.report.discovery_effects import effect_frame
+from doe_kc.report.discovery_effects import effect_table
+from doe_kc.report.render.csv import table_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
@@ -130,7 +131,7 @@ def test_odds_are_said_alike_everywhere(log10_odds: float, against: str, words: 
     assert odds_words(finding) == words
     entry = effect_entry(finding)
     assert (entry["log10_odds"], entry["against"]) == (min(log10_odds, 6.0), against or None)
-    frame = effect_frame(changed)
+    frame = table_frame(effect_table(changed))
     assert (frame["log10_odds"] == min(log10_odds, 6.0)).all()
     assert words.endswith(f"against {frame['against'].iloc[0]}")
 

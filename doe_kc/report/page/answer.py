@@ -8,8 +8,8 @@ from pathlib import Path
 from doe_kc.correlation.assessment import STATUS_LABELS, Assessment
 from doe_kc.correlation.result import Correlation
 from doe_kc.report.page.axle import axle_section
-from doe_kc.report.page.characteristics import characteristics_section
-from doe_kc.report.page.section import Section, render, write_page
+from doe_kc.report.page.correlation import characteristics_section
+from doe_kc.report.render.page import Section, render, write_page
 
 RESULT_FILES: Mapping[str, str] = {
     "discover/report.html": "what the model lacks, how that was found, what to test next",

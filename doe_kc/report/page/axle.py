@@ -10,7 +10,7 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 
 from doe_kc.correlation.result import Correlation
 from doe_kc.report.axle_views import AxleView, axle_figure, correlation_view
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, render
 from doe_kc.report.style import RC
 
 AXLE_LEAD = (

@@ -2,11 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from doe_kc.discovery.result import Discovery
+from markupsafe import Markup
+from matplotlib.colors import LogNorm, to_hex
+
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.sentences import against_words, odds_number
+from doe_kc.effects import EFFECTS
+from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import Measurement
+from doe_kc.report.discovery_effects import kind_of, rival_words
+from doe_kc.report.discovery_gaps import MODEL_COLOURS
+from doe_kc.report.discovery_heat_map import (
+    DISAGREEMENT_MAP,
+    QUIET_COLOUR,
+    GridCell,
+    MapGrid,
+    beyond_words,
+    discovery_grids,
+    shape_words,
+    signed,
+)
+from doe_kc.report.discovery_library import library_table
+from doe_kc.report.discovery_parameter_figure import arrow_colour
+from doe_kc.report.discovery_parameters import TunedParameter, tuned_table
+from doe_kc.report.discovery_words import (
+    HEADLINES,
+    contrast_words,
+    effect_label,
+    found_sizes,
+    hypothesis_label,
+    own_sentences,
+)
+from doe_kc.report.names import case_label, response_name
 from doe_kc.report.page.discovery_candidates import (
     candidates_section,
     held_out_section,
@@ -14,11 +47,155 @@ from doe_kc.report.page.discovery_candidates import (
     tests_section,
 )
 from doe_kc.report.page.discovery_curves import curves_section, gap_section
-from doe_kc.report.page.discovery_library import library_section
-from doe_kc.report.page.discovery_maps import maps_section
-from doe_kc.report.page.discovery_parameters import parameters_section
-from doe_kc.report.page.discovery_verdict import verdict_section
-from doe_kc.report.page.section import Section, write_page
+from doe_kc.report.render.page import Section, render, table_html, write_page
+from doe_kc.report.table import Column, PageCell
+
+
+def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:
+    """Tiles, sentences, a row for each effect, what stays open."""
+    better = sum(h.gain > 0.0 for h in discovery.held_out)
+    html = render(
+        "discovery_verdict.html",
+        headline=HEADLINES[discovery.verdict],
+        clear=discovery.verdict in ("named", "none"),
+        top=discovery.findings[0] if discovery.findings else None,
+        top_odds=odds_number(discovery.findings[0].log10_odds) if discovery.findings else "",
+        top_label=effect_label(discovery.findings[0].hypothesis.effect) if discovery.findings else "",
+        gap=discovery.gap,
+        has_effect=bool(discovery.fitted.model.members),
+        better=better,
+        cases=len(discovery.held_out),
+        sentences=own_sentences(discovery),
+        effects=[_effect(discovery, f) for f in (*discovery.findings, *discovery.traces)],
+        alike=[" or ".join(effect_label(e) for e in group) for group in discovery.classes],
+        unexplained=[(contrast_words(c), z) for c, z in discovery.unexplained],
+        notes=notes,
+    )
+    return Section("Verdict", html)
+
+
+def _effect(discovery: Discovery, finding: Finding) -> dict[str, Any]:
+    ident = finding.hypothesis.effect
+    kind = kind_of(discovery, finding)
+    return {
+        "label": hypothesis_label(finding.hypothesis),
+        "kind": "seen, too small to matter" if kind == "trace" else kind,
+        "quiet": kind == "trace",
+        "odds": odds_number(finding.log10_odds),
+        "log10_odds": finding.log10_odds,
+        "against": against_words(finding),
+        "sizes": [s.sentence for s in found_sizes(discovery, finding)],
+        "rivals": rival_words(finding) or "–",
+        "physics": EFFECTS[ident].physics,
+        "shown_by": EFFECTS[ident].shown_by,
+    }
+
+
+MAPS_LEAD = (
+    "The largest disagreement of each load case and response in standard deviations of the noise, and its "
+    "shape. +: the model's value is above the measured one; grey: within the noise; L−R: the wheels disagree "
+    "in opposite ways. After re-tuning, only what no re-tuning within production scatter can absorb counts."
+)
+DARK = 0.6
+"""Place on the colour scale from which white text is read better."""
+
+
+def maps_section(discovery: Discovery) -> Section:
+    """One table a map, the same colours in all."""
+    grids = discovery_grids(discovery)
+    largest = max((abs(c.z) for g in grids for c in g.cells.values()), default=1.0)
+    norm = LogNorm(min(g.threshold for g in grids), max(largest, 10.0 * grids[0].threshold))
+    html = render("discovery_maps.html", maps=[_map(g, norm) for g in grids])
+    return Section("Where they disagree", html, MAPS_LEAD)
+
+
+def _map(grid: MapGrid, norm: LogNorm) -> dict[str, Any]:
+    return {
+        "title": grid.title,
+        "words": beyond_words(grid),
+        "threshold": grid.threshold,
+        "heads": [response_name(r) for r in grid.responses],
+        "rows": [
+            (case_label(case), [_map_cell(grid, grid.cells.get((case, r)), norm) for r in grid.responses])
+            for case in grid.cases
+        ],
+    }
+
+
+def _map_cell(grid: MapGrid, cell: GridCell | None, norm: LogNorm) -> dict[str, str] | None:
+    if cell is None:
+        return None
+    quiet = abs(cell.z) <= grid.threshold
+    place = float(norm(abs(cell.z)))
+    return {
+        "z": signed(cell.z),
+        "shape": shape_words(cell),
+        "title": f"{contrast_words(cell.contrast)}: {signed(cell.z)} standard deviations",
+        "back": QUIET_COLOUR if quiet else to_hex(DISAGREEMENT_MAP(place)),
+        "ink": "#5b6670" if quiet else "#ffffff" if place > DARK else "#000000",
+    }
+
+
+BIAS_LEAD = (
+    "Where an effect is missing, re-tuning bends parameters that have nothing to do with it. Circles: "
+    "distance from nominal after re-tuning without an effect, in standard deviations of the prior; "
+    "arrows lead to the place with the effect."
+)
+BIAS_REACH, BIAS_WIDTH = 2.5, 200.0
+"""Distance at the ends of the drawing, and its width in units."""
+
+
+def parameters_section(discovery: Discovery) -> Section:
+    """One row a tunable parameter, sortable and filterable, those furthest off first."""
+    table = tuned_table(discovery)
+    rows = sorted(table.rows, key=lambda p: -abs(p.tuned_distance))
+    columns = (*table.columns, *_page_columns(bool(discovery.fitted.model.members)))
+    html = table_html(replace(table, rows=rows, columns=columns))
+    return Section("Parameters with and without the effect", html, BIAS_LEAD)
+
+
+def _page_columns(has_effect: bool) -> Iterator[Column[TunedParameter]]:
+    """The last value with its standard deviation, and the distances as a drawing."""
+
+    def last(p: TunedParameter) -> float:
+        return p.with_effect if has_effect else p.tuned
+
+    head = f"{'With effect' if has_effect else 'Re-tuned'} ± sd"
+    shown = PageCell[TunedParameter](head, text=lambda p: with_sd(last(p), p.sd), strong=lambda p: True)
+    yield Column("last", None, last, "0.0000", csv=False, page=shown)
+    drawing = PageCell[TunedParameter](
+        "Distance from nominal, ±2.5 sd", text=_distance_bar, order=lambda p: abs(p.tuned_distance)
+    )
+    yield Column("bar", None, lambda p: p.tuned_distance, csv=False, page=drawing)
+
+
+def _distance_bar(p: TunedParameter) -> Markup:
+    known = math.isfinite(p.with_effect_distance)
+    return render(
+        "tuned.svg",
+        p=p,
+        width=BIAS_WIDTH,
+        start=_distance_place(p.tuned_distance),
+        end=_distance_place(p.with_effect_distance) if known else None,
+        colour=arrow_colour(p) if known else "",
+        circle=MODEL_COLOURS["tuned"],
+    )
+
+
+def _distance_place(distance: float) -> float:
+    """Unit across the drawing, cut off at its ends."""
+    share = min(max(distance / BIAS_REACH, -1.0), 1.0)
+    return round(0.5 * BIAS_WIDTH * (1.0 + 0.94 * share), 1)
+
+
+LIBRARY_LEAD = (
+    "Would have shown: it would have been found from the detectable size on, in four of five cars, if the "
+    "model is right but for this; for a stiffness, a softer part would have been found. Not resolved: the "
+    "same, but the model does not explain the records, so that nothing follows. Not testable: re-tuning "
+    "absorbs it or it shows too little in these load cases; the parameters that hide it are named with the "
+    "move that does so, and the parts that, measured on a bench, would show it, with the standard deviations "
+    "that its typical size would then make."
+)
 
 
 def discovery_sections(
@@ -36,6 +213,11 @@ def discovery_sections(
     if discovery.held_out:
         sections.append(held_out_section(discovery))
     return [*sections, parameters_section(discovery), library_section(discovery), tests_section(discovery)]
+
+
+def library_section(discovery: Discovery) -> Section:
+    """One row a hypothesis, sortable and filterable."""
+    return Section("Library of effects", table_html(library_table(discovery)), LIBRARY_LEAD)
 
 
 def write_discovery_page(

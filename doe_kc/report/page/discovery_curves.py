@@ -10,12 +10,12 @@ import numpy as np
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray
-from doe_kc.report.discovery_curves import worst_views
-from doe_kc.report.discovery_gaps import MODEL_COLOURS, gap_rows
-from doe_kc.report.discovery_views import ModelView, model_names, model_views
+from doe_kc.report.discovery_curves import ModelView, model_names, model_views, worst_views
+from doe_kc.report.discovery_gaps import MODEL_COLOURS
+from doe_kc.report.discovery_tables import gap_table
 from doe_kc.report.names import case_label, response_axis, response_name
 from doe_kc.report.page.curves import ShownModel, curves_html
-from doe_kc.report.page.section import Section, render
+from doe_kc.report.render.page import Section, table_html
 
 DISCOVERY_CURVES_LEAD = (
     "Angles and wheel centre are changes from static; the half-width of a loop is (falling − rising) / 2. "
@@ -32,8 +32,6 @@ DISCOVERY_MODELS = (
     ShownModel("tuned", "re-tuned without an effect", MODEL_COLOURS["tuned"], "7 4"),
     ShownModel("with_effect", "re-tuned with the effect", MODEL_COLOURS["with_effect"]),
 )
-FULL_COLOUR_GAP = 3.0
-"""Gap, in units of noise, at which a cell's colour is full."""
 
 
 def curves_section(discovery: Discovery) -> list[Section]:
@@ -101,20 +99,4 @@ def _half(view: ModelView, loops: dict[str, ModelView]) -> FloatArray:
 
 def gap_section(discovery: Discovery) -> Section:
     """A row a load case and response."""
-    rows = [
-        {
-            "case": case_label(r.case) if r.case else "All records",
-            "response": response_name(r.response) if r.response else "all",
-            "cells": [_gap(v) for v in (r.gap.nominal, r.gap.tuned, r.gap.best_decoy, r.gap.with_effect)],
-        }
-        for r in gap_rows(discovery)
-    ]
-    return Section("Gap", render("discovery_gap.html", rows=rows), GAP_WORDS)
-
-
-def _gap(value: float) -> dict[str, Any]:
-    """Text and colour, from white at noise to full at three times that."""
-    if not math.isfinite(value):
-        return {"value": value, "text": "–", "share": 0.0}
-    share = min(max(math.log(max(value, 1.0)) / math.log(FULL_COLOUR_GAP), 0.0), 1.0)
-    return {"value": value, "text": f"{value:.2f}", "share": round(0.75 * share, 3)}
+    return Section("Gap", table_html(gap_table(discovery)), GAP_WORDS)

@@ -5,18 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
-from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES, CaseCurves, CurveSet
+from doe_kc.curves import RIG_RESPONSES, SIDES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.targets.comparison.deviation import rms_deviation
 from doe_kc.targets.comparison.interval import constraint_interval
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -66,48 +62,6 @@ class Comparison:
     characteristics: tuple[CharacteristicComparison, ...]
     curves: tuple[CurveComparison, ...]
     curve_sd: Mapping[str, Mapping[str, FloatArray]] = field(default_factory=dict)
-
-    def characteristics_frame(self) -> pd.DataFrame:
-        """One row a characteristic: name, load_case, unit, model, target, target_sd, difference, low, ..."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            [
-                {
-                    "name": c.entry.id,
-                    "label": c.entry.label,
-                    "load_case": c.entry.load_case,
-                    "unit": c.entry.unit,
-                    "model": c.value,
-                    "target": c.target,
-                    "target_sd": c.target_sd,
-                    "difference": c.difference,
-                    "low": c.low,
-                    "high": c.high,
-                    "inside": c.inside,
-                }
-                for c in self.characteristics
-            ]
-        )
-
-    def curves_frame(self) -> pd.DataFrame:
-        """One row a curve: load_case, response, unit, side, rms, rms_half_width, span."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            [
-                {
-                    "load_case": c.load_case,
-                    "response": c.response,
-                    "unit": RESPONSE_UNITS[c.response],
-                    "side": c.side,
-                    "rms": c.rms,
-                    "rms_half_width": c.rms_half_width,
-                    "span": c.span,
-                }
-                for c in self.curves
-            ]
-        )
 
 
 def compare(

@@ -152,14 +152,3 @@ def test_windows_reach_both_sides() -> None:
     )
     assert narrow["brake.brake_steer"] < wide["brake.brake_steer"] / 5
     assert narrow["brake.wind_up"] == pytest.approx(wide["brake.wind_up"])
-
-
-def test_tables_hold_one_row_each() -> None:
-    found = compare(curve_set(VERTICAL, BRAKE), curve_set(VERTICAL, BRAKE))
-    table = found.characteristics_frame()
-    assert list(table["name"]) == [c.entry.id for c in found.characteristics]
-    assert list(table["unit"]) == [CHARACTERISTICS[n].unit for n in table["name"]]
-    assert table["inside"].all() and (table["high"] > table["low"]).all()
-    curves = found.curves_frame()
-    assert len(curves) == len(found.curves)
-    assert list(curves["unit"]) == [RESPONSE_UNITS[r] for r in curves["response"]]

@@ -1,8 +1,7 @@
-"""Cells of the influence workbook: one look, and text that never becomes a formula."""
+"""Cells of a workbook: one look, and text that never becomes a formula."""
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
@@ -15,8 +14,7 @@ from openpyxl.styles import Alignment, Border, Font, PatternFill, Side
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.worksheet import Worksheet
 
-NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL = "5AA5DC", "FFFFFF", "F2A23C"
-"""Blue, white, orange: told apart by the colour-blind, black text readable on each."""
+from doe_kc.report.table import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
 
 
 class CellFont(Font):  # type: ignore[misc]
@@ -130,12 +128,6 @@ def title(ws: Worksheet, text: str, below: str) -> None:
     """Rows 1 and 2: what the sheet is, and how to read it."""
     put(ws, 1, 1, text).font = Font(name="Calibri", size=14, bold=True)
     put(ws, 2, 1, below, color=MUTED)
-
-
-def three_digits(value: float) -> str:
-    """Number format that shows three significant digits of a number of this size, seven decimals at most."""
-    places = min(7, max(0, 2 - math.floor(math.log10(abs(value))))) if value else 0
-    return f"0.{'0' * places}" if places else "0"
 
 
 def colour_scale(ws: Worksheet, cells: str) -> None:

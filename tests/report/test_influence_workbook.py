@@ -23,9 +23,10 @@ from doe_kc.parameter_influence.relations import relations
 from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.report.workbook import write_influence_workbook
-from doe_kc.report.workbook_cells import clean
-from doe_kc.report.workbook_matrix import FIRST_MATRIX_ROW, LABELS, layout, step_text
+from doe_kc.report.influence_layout import FIRST_MATRIX_ROW, LABELS, layout
+from doe_kc.report.influence_sheets import step_text
+from doe_kc.report.influence_workbook import write_influence_workbook
+from doe_kc.report.render.cells import clean
 from tests.parameter_influence.studies import parameter, real_study, study
 
 EVIL = ("=1+1", "+1+1", "-1+1", "@SUM(A1)", '=HYPERLINK("x")', "\t=1+1")

@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from doe_kc.ground.errors import RunError
 from doe_kc.report.page import Section, embedded, page_html, write_correlation_page
-from doe_kc.report.page.section import significant
+from doe_kc.report.render.page import significant
 from tests.correlation.cases import measured
 from tests.report.correlations import CAR, EVIL, real, typed
 

@@ -1,4 +1,4 @@
-"""Sections and the page that holds them: everything inline, nothing fetched, all text escaped."""
+"""Sections, tables and the page that holds them: everything inline, nothing fetched, all text escaped."""
 
 from __future__ import annotations
 
@@ -16,9 +16,14 @@ from markupsafe import Markup
 
 from doe_kc import __version__
 from doe_kc.ground.output import write_whole
+from doe_kc.report.table import Column, PageCell, Row, Table, Value
 
 CHART_DIGITS = 7
 """Significant digits of the numbers that the page's charts hold."""
+NUMBER_STYLE = "n"
+"""CSS class of cells that hold numbers."""
+HEAD_STYLES = ("first", NUMBER_STYLE)
+"""Classes that a head shares with the cells below it."""
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
 
 
@@ -98,3 +103,70 @@ def _plain(value: Any) -> Any:
     if isinstance(value, float):
         return float(f"{value:.{CHART_DIGITS}g}") if math.isfinite(value) else None
     return value
+
+
+def table_html(table: Table[Row], *, notice: Markup | None = None) -> Markup:
+    """Search field and boxes, then the table. notice: below them."""
+    layout = table.page
+    if layout is None:
+        raise ValueError(f"table {table.name} has no place in a page")
+    columns = [(c, c.page) for c in table.page_columns if c.page is not None]
+    return render(
+        "table.html",
+        layout=layout,
+        choices=layout.choices or {},
+        notice=notice or "",
+        heads=[(_head(c, p), _attributes({"class": _head_style(c, p)}), _sorted(c, p)) for c, p in columns],
+        rows=[
+            (
+                layout.tags(row) if layout.tags is not None else None,
+                layout.quiet is not None and layout.quiet(row),
+                [(_cell(c, p, row), _text(c, p, row)) for c, p in columns],
+            )
+            for row in table.rows
+        ],
+    )
+
+
+def _head(column: Column[Row], cell: PageCell[Row]) -> str:
+    return cell.head if cell.head is not None else column.head or ""
+
+
+def _sorted(column: Column[Row], cell: PageCell[Row]) -> bool:
+    """Whether it is sorted as numbers."""
+    return bool(column.number) or cell.order is not None
+
+
+def _head_style(column: Column[Row], cell: PageCell[Row]) -> str:
+    words = _style(column, cell).split()
+    return " ".join(w for w in words if w in HEAD_STYLES)
+
+
+def _style(column: Column[Row], cell: PageCell[Row]) -> str:
+    return f"{cell.style} {NUMBER_STYLE if column.number else ''}".strip()
+
+
+def _cell(column: Column[Row], cell: PageCell[Row], row: Row) -> Markup:
+    own = dict(cell.attributes(row)) if cell.attributes is not None else {}
+    attributes = {"class": f"{_style(column, cell)} {own.pop('class', '')}".strip()}
+    if _sorted(column, cell):
+        attributes["data-value"] = str((cell.order or column.value)(row))
+    return _attributes(attributes | own)
+
+
+def _attributes(attributes: dict[str, str]) -> Markup:
+    return Markup("").join(Markup(' {}="{}"').format(k, v) for k, v in attributes.items() if v)
+
+
+def _text(column: Column[Row], cell: PageCell[Row], row: Row) -> str:
+    text = cell.text(row) if cell.text is not None else _words(column.read(row), cell)
+    strong = cell.strong is not None and cell.strong(row)
+    return Markup("<b>{}</b>").format(text) if strong else text
+
+
+def _words(value: Value, cell: PageCell[Row]) -> str:
+    if value is None or isinstance(value, str):
+        return value or ""
+    if cell.layout and math.isfinite(value):
+        return format(value, cell.layout)
+    return significant(value, cell.digits)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
@@ -11,12 +10,22 @@ from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
-from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.load_cases import LOAD_CASES
 from doe_kc.parameter_influence.result import Influence
+from doe_kc.report.influence_layout import (
+    BASELINE_ROW,
+    CASE_ROW,
+    FIRST_MATRIX_ROW,
+    LABELS,
+    NAME_ROW,
+    SECTION_ROW,
+    UNIT_ROW,
+    Layout,
+    layout,
+    section,
+)
 from doe_kc.report.names import case_label
-from doe_kc.report.workbook_cells import (
+from doe_kc.report.render.cells import (
     FLAGGED,
     HEADER_FILL,
     MUTED,
@@ -26,71 +35,15 @@ from doe_kc.report.workbook_cells import (
     page,
     put,
     remark,
-    three_digits,
     title,
     widths,
 )
+from doe_kc.report.table import three_digits
+from doe_kc.sampling.one_at_a_time import is_one_sided
 
-KINEMATICS = ("static", "vertical", "roll", "steer")
-COMPLIANCES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")
-GROUPS = ("HARDPOINTS", "BUSHINGS", "OTHER")
-SECTION_ROW, CASE_ROW, NAME_ROW, BASELINE_ROW, UNIT_ROW, FIRST_MATRIX_ROW = 4, 5, 6, 7, 8, 9
-"""Rows: section, load case, characteristic, nominal value, unit (with the filter), first parameter."""
 REMARK = "Description, remark"
-LABELS = 4
-"""Columns before the matrix: group, label, path, step."""
 PERCENT_WIDTH = 8.0
 """Characters of a percent column; values with their decimals need more."""
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Order of rows and columns in the sheets: indices into the arrays of an `Influence`."""
-
-    rows: tuple[int, ...]
-    columns: tuple[int, ...]
-    row_breaks: tuple[int, ...]
-    column_breaks: tuple[int, ...]
-
-    @property
-    def last_row(self) -> int:
-        """Sheet row of the last parameter."""
-        return FIRST_MATRIX_ROW + len(self.rows) - 1
-
-    @property
-    def last_column(self) -> int:
-        """Sheet column of the last characteristic."""
-        return LABELS + len(self.columns)
-
-    @property
-    def area(self) -> str:
-        """Sheet range of the matrix."""
-        first, last = get_column_letter(LABELS + 1), get_column_letter(self.last_column)
-        return f"{first}{FIRST_MATRIX_ROW}:{last}{self.last_row}"
-
-
-def section(entry: Characteristic) -> str:
-    """KINEMATICS or COMPLIANCES, as Appendix C splits the load cases."""
-    return "KINEMATICS" if entry.load_case in KINEMATICS else "COMPLIANCES"
-
-
-def layout(influence: Influence) -> Layout:
-    """Columns by load case in the order of Appendix C, rows by group; both otherwise as they come."""
-    cases = [c.load_case for c in influence.characteristics]
-    order = {name: i for i, name in enumerate(dict.fromkeys((*KINEMATICS, *COMPLIANCES, *LOAD_CASES)))}
-    columns = sorted(range(len(cases)), key=lambda j: order.get(cases[j], len(order)))
-    groups = [p.group for p in influence.parameters]
-    rows = sorted(range(len(groups)), key=lambda i: GROUPS.index(groups[i]))
-    return Layout(
-        rows=tuple(rows),
-        columns=tuple(columns),
-        row_breaks=tuple(FIRST_MATRIX_ROW + k for k in _breaks([groups[i] for i in rows])),
-        column_breaks=tuple(LABELS + 1 + k for k in _breaks([cases[j] for j in columns])),
-    )
-
-
-def _breaks(names: list[str]) -> list[int]:
-    return [k for k, name in enumerate(names) if k == 0 or name != names[k - 1]]
 
 
 def influence_sheet(book: Workbook, influence: Influence, study: str) -> None:
