@@ -19,10 +19,11 @@ from doe_kc.correlation.problem import Evaluated
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.report.correlation_characteristics import characteristic_frame, characteristic_rows
-from doe_kc.report.correlation_evaluations import evaluation_frame
-from doe_kc.report.correlation_parameters import parameter_frame
-from doe_kc.report.correlation_terms import curve_frame
+from doe_kc.report.correlation_characteristics import characteristic_rows, characteristic_table
+from doe_kc.report.correlation_evaluations import evaluation_table
+from doe_kc.report.correlation_parameters import parameter_table
+from doe_kc.report.correlation_terms import curve_table
+from doe_kc.report.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.correlate import correlate as run_correlation
@@ -64,23 +65,23 @@ class CorrelationResult(FrameResult):
     def characteristics(self) -> pd.DataFrame:
         """One row a characteristic with a target, its id as index: unit, target, target_sd, baseline, final,
         low, high, inside, improvement_percent, ... in `unit`."""
-        return characteristic_frame(self.correlation).set_index("id")
+        return table_frame(characteristic_table(self.correlation)).set_index("id")
 
     @cached_property
     def parameters(self) -> pd.DataFrame:
         """One row a parameter, its path as index: unit, baseline, final, lower, upper, sd of the posterior,
         at_bound, visible, ... absolute in `unit`."""
-        return parameter_frame(self.correlation).set_index("path")
+        return table_frame(parameter_table(self.correlation)).set_index("path")
 
     @property
     def curves(self) -> pd.DataFrame:
         """One row a measured curve with its RMS deviation before and after."""
-        return curve_frame(self.correlation)
+        return table_frame(curve_table(self.correlation))
 
     @property
     def evaluations(self) -> pd.DataFrame:
         """One row a true-solver evaluation, in their order."""
-        return evaluation_frame(self.correlation)
+        return table_frame(evaluation_table(self.correlation))
 
     def to_frame(self) -> pd.DataFrame:
         """`characteristics`."""

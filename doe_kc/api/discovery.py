@@ -15,8 +15,11 @@ from doe_kc.api.studies import Progress, as_study, stored
 from doe_kc.axle import Axle
 from doe_kc.discovery.result import Discovery, Gap, VerdictKind
 from doe_kc.measurement import Measurement
-from doe_kc.report.discovery_effects import effect_frame
-from doe_kc.report.discovery_tables import gap_frame, held_out_frame, library_frame, parameter_frame
+from doe_kc.report.discovery_effects import effect_table
+from doe_kc.report.discovery_library import library_table
+from doe_kc.report.discovery_parameters import tuned_table
+from doe_kc.report.discovery_tables import gap_table, held_out_table
+from doe_kc.report.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study, expected_steps
 from doe_kc.workflow.discovery_document import discovery_lines
@@ -64,27 +67,27 @@ class DiscoveryResult(FrameResult):
     def effects(self) -> pd.DataFrame:
         """One row a number of an effect: effect, place, kind, probability, size, value, sd, unit, ...; empty
         where none is needed."""
-        return effect_frame(self.discovery)
+        return table_frame(effect_table(self.discovery))
 
     @property
     def library(self) -> pd.DataFrame:
         """One row a hypothesis that was looked at, and what became of it."""
-        return library_frame(self.discovery)
+        return table_frame(library_table(self.discovery))
 
     @property
     def gaps(self) -> pd.DataFrame:
         """The gap of every response in every load case."""
-        return gap_frame(self.discovery)
+        return table_frame(gap_table(self.discovery))
 
     @property
     def held_out(self) -> pd.DataFrame:
         """One row a load case that was predicted from the others."""
-        return held_out_frame(self.discovery)
+        return table_frame(held_out_table(self.discovery))
 
     @property
     def parameters(self) -> pd.DataFrame:
         """One row a tunable parameter: nominal, without and with the effects."""
-        return parameter_frame(self.discovery)
+        return table_frame(tuned_table(self.discovery))
 
     def to_frame(self) -> pd.DataFrame:
         """`effects`."""

@@ -11,9 +11,9 @@ from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.typing import ColorType
 
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.disagreement import Map
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.screening.contrasts import Contrast
+from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.load_cases import CASE_ORDER
 from doe_kc.report.color_scale import STRIPS, draw_color_scale, outline
 from doe_kc.report.names import case_label, response_name
@@ -72,11 +72,11 @@ def map_grid(name: str, title: str, disagreement: Map) -> MapGrid:
 def discovery_grids(discovery: Discovery) -> list[MapGrid]:
     """Nominal, re-tuned and, where there is any, with the effects."""
     grids = [
-        map_grid("nominal", "Nominal axle", discovery.raw),
-        map_grid("tuned", "Re-tuned without an effect", discovery.tuned),
+        map_grid("nominal", "Nominal axle", discovery.nominal_map),
+        map_grid("tuned", "Re-tuned without an effect", discovery.tuned_map),
     ]
     if discovery.fitted.model.members:
-        grids.append(map_grid("with_effect", "Re-tuned with the effect", discovery.final))
+        grids.append(map_grid("with_effect", "Re-tuned with the effect", discovery.residual_map))
     return grids
 
 

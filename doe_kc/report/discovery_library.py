@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from doe_kc.discovery.exclusion import HypothesisStatus
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_words import (
     STATUS_WORDS,
@@ -48,7 +48,7 @@ class LibraryRow:
     @property
     def parts_to_measure(self) -> str:
         """Parts that a bench has to measure for the effect to show, and by how much it then does."""
-        test = self.status.bench
+        test = self.status.component_test
         return "" if test is None else f"{', '.join(test.parts)} ({test.separation:.0f} sd)"
 
     @property

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.curves import RESPONSE_LABELS
-from doe_kc.discovery.held_out import HeldOut
 from doe_kc.discovery.result import Discovery, Gap
+from doe_kc.discovery.verdict.held_out import HeldOut
 from doe_kc.report.names import case_label, response_name
 from doe_kc.report.table import (
     NEUTRAL_FILL,
@@ -52,12 +52,18 @@ class DisagreementRow:
 def disagreement_rows(discovery: Discovery) -> list[DisagreementRow]:
     """Every contrast of the records."""
     after = (
-        discovery.final.z if discovery.fitted.model.members else np.full(len(discovery.final.names), np.nan)
+        discovery.residual_map.z
+        if discovery.fitted.model.members
+        else np.full(len(discovery.residual_map.names), np.nan)
     )
-    maps = {"nominal": discovery.raw, "re-tuned": discovery.tuned, "with effect": discovery.final}
+    maps = {
+        "nominal": discovery.nominal_map,
+        "re-tuned": discovery.tuned_map,
+        "with effect": discovery.residual_map,
+    }
     rows = []
-    for i, c in enumerate(discovery.raw.names):
-        z = (float(discovery.raw.z[i]), float(discovery.tuned.z[i]), float(after[i]))
+    for i, c in enumerate(discovery.nominal_map.names):
+        z = (float(discovery.nominal_map.z[i]), float(discovery.tuned_map.z[i]), float(after[i]))
         beyond = ", ".join(name for name, v in zip(maps, z, strict=True) if abs(v) > maps[name].threshold)
         rows.append(DisagreementRow(c.load_case, c.response, c.shape, c.wheels, z[0], z[1], z[2], beyond))
     return rows
@@ -87,8 +93,8 @@ def disagreement_table(discovery: Discovery, *, worst_first: bool = False) -> Ta
     beyond = sum(bool(r.beyond) for r in rows)
     return Table(
         "Disagreement",
-        f"Standard deviations; beyond ±{discovery.tuned.threshold:.1f} "
-        f"(nominal ±{discovery.raw.threshold:.1f}) "
+        f"Standard deviations; beyond ±{discovery.tuned_map.threshold:.1f} "
+        f"(nominal ±{discovery.nominal_map.threshold:.1f}) "
         "noise alone does not explain it: these rows come first, and are printed. +: model above measured. "
         "Empty: absorbed by re-tuning.",
         DISAGREEMENT_COLUMNS,

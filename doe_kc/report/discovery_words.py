@@ -7,11 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
-from doe_kc.discovery.amplitudes import amplitudes
-from doe_kc.discovery.contrasts import Contrast
-from doe_kc.discovery.exclusion import HypothesisStatus, Status, exclusion_limit
+from doe_kc.discovery.fit import amplitude_estimates
 from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
+from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.thresholds import ONE_SIDED
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.numbers import number, unit_words, with_sd
@@ -165,7 +165,7 @@ class FoundSize:
 
 def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
-    known = zip(*amplitudes(discovery.fitted, finding.hypothesis), strict=True)
+    known = zip(*amplitude_estimates(discovery.fitted, finding.hypothesis), strict=True)
     for size, estimate, (amplitude, sd) in zip(
         finding.hypothesis.sizes, finding.estimates, known, strict=True
     ):

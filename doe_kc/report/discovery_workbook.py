@@ -164,7 +164,7 @@ def scan_lines(discovery: Discovery) -> list[str]:
     places = discovery.scan.places[:SCAN_PLACES] if discovery.scan is not None else ()
     return [
         f"{p.words[0].upper()}{p.words[1:]}: probability {100.0 * p.probability:.0f} %, closes "
-        f"{100.0 * p.closed:.0f} % of what re-tuning leaves"
+        f"{100.0 * p.explained:.0f} % of what re-tuning leaves"
         for p in places
     ]
 

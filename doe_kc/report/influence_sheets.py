@@ -39,7 +39,6 @@ from doe_kc.report.render.cells import (
     widths,
 )
 from doe_kc.report.table import three_digits
-from doe_kc.sampling.one_at_a_time import is_one_sided
 
 REMARK = "Description, remark"
 PERCENT_WIDTH = 8.0

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.exclusion import HypothesisStatus
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.report.discovery_curves import model_values, model_views, view_gaps

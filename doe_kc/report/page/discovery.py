@@ -12,7 +12,7 @@ from markupsafe import Markup
 from matplotlib.colors import LogNorm, to_hex
 
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.sentences import against_words, odds_number
+from doe_kc.discovery.verdict.sentences import against_words, odds_number
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import Measurement

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.scan import Place
+from doe_kc.discovery.screening.scan import Place
 from doe_kc.report.discovery_evidence import EvidenceBar, EvidenceStep, evidence_steps
 from doe_kc.report.discovery_tables import gain_words, held_out_table
 from doe_kc.report.render.page import Section, render, table_html
@@ -65,8 +65,8 @@ SCAN_COLUMNS: tuple[Column[Place], ...] = (
     Column("words", "Place and law", lambda p: p.words, page=PageCell(style="first wide")),
     Column("probability", "Probability", lambda p: p.probability, "0.0%",
            page=PageCell(text=lambda p: f"{100 * p.probability:.1f} %")),
-    Column("closed", "Closes, % of what re-tuning leaves", lambda p: p.closed, "0%",
-           page=PageCell(text=lambda p: f"{100 * p.closed:.0f}")),
+    Column("closed", "Closes, % of what re-tuning leaves", lambda p: p.explained, "0%",
+           page=PageCell(text=lambda p: f"{100 * p.explained:.0f}")),
     Column("score", "Score, sd", lambda p: p.score, "0.0", page=PageCell(layout=".1f")),
 )  # fmt: skip
 
