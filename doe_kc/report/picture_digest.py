@@ -93,12 +93,10 @@ def shows(path: Path, digest: str) -> bool:
 
 
 def _sha(*parts: str | bytes) -> bytes:
-    out = hashlib.sha256()
-    for part in parts:
-        data = part.encode() if isinstance(part, str) else part
-        out.update(len(data).to_bytes(8, "little"))
-        out.update(data)
-    return out.digest()
+    data = [part.encode() if isinstance(part, str) else part for part in parts]
+    return hashlib.sha256(
+        b"".join(piece for d in data for piece in (len(d).to_bytes(8, "little"), d))
+    ).digest()
 
 
 @cache

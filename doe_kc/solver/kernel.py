@@ -27,8 +27,8 @@ KERNEL_LIBRARY = "kernel"
 
 @dataclass(frozen=True)
 class Kernel:
-    """Numbers of one topology's equations: residual (nx,), jacobian (nnz,), outputs (ny,), state_update (nz,) of
-    (x, c, u, z).
+    """Numbers of one topology's equations: residual (nx,), jacobian (nnz,), outputs (ny,), state_update (nz,)
+    of (x, c, u, z).
 
     Its equations are assembled when their expressions are asked for: a loaded library does without.
     """
@@ -101,7 +101,7 @@ class Kernel:
     def constant_values(self, values: dict[str, float]) -> FloatArray:
         """(nc,) constants from the axle's internal values."""
         p = np.array([values[name] for name in self.layout.parameter_names])
-        return np.asarray(self.constants(p)).ravel()
+        return Buffered(self.constants)(p).copy()
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
