@@ -52,7 +52,7 @@ class Bench:
         if isinstance(found, Failure):
             raise NotConverged(found)
         self._static: StaticState = found
-        names = self._kernel.equations.output_names
+        names = self._kernel.layout.output_names
         self._columns = {r: [names.index(f"{r}@{side}") for side in SIDES] for r in RIG_RESPONSES}
 
     @property

@@ -15,6 +15,8 @@ from doe_kc.api.studies import as_study
 from doe_kc.axle import Axle
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
+from doe_kc.report.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.report.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison
 from doe_kc.workflow.compare import compare_model, write_comparison
@@ -36,12 +38,12 @@ class ComparisonResult(FrameResult):
     def characteristics(self) -> pd.DataFrame:
         """One row a characteristic that was measured, its id as index: label, load_case, unit, model, target,
         target_sd, difference (model minus target), low, high (constraint interval), inside."""
-        return self.comparison.characteristics_frame().set_index("name")
+        return table_frame(compared_characteristic_table(self.comparison)).set_index("name")
 
     @property
     def curves(self) -> pd.DataFrame:
         """One row a curve: load_case, response, unit, side, rms and rms_half_width (deviation), span."""
-        return self.comparison.curves_frame()
+        return table_frame(compared_curve_table(self.comparison))
 
     def to_frame(self) -> pd.DataFrame:
         """`characteristics`."""

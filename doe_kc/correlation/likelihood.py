@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.linalg import cholesky, solve_triangular
-from scipy.ndimage import maximum_filter, median_filter
 
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
@@ -93,7 +93,7 @@ class Likelihood:
     curves: tuple[CurveData, ...]
     figures: tuple[Figure, ...]
 
-    @property
+    @cached_property
     def size(self) -> int:
         """M, the number of data."""
         return sum(c.size for c in self.curves) + len(self.figures)
@@ -235,15 +235,18 @@ def corner_error(curve: FloatArray, sd: FloatArray) -> FloatArray:
     exceeds four times its noise; a jump is two of opposite sign next to each other. Their error is granted
     to the neighbours too. sd: (n,) of the curve's white noise.
     """
+    if curve.size < 3:
+        return np.zeros(curve.size)
     second = np.diff(curve, 2)
     bend = np.zeros(curve.size)
-    bend[1:-1] = second - median_filter(second, MEDIAN_WINDOW, mode="mirror")
+    around = np.pad(second, MEDIAN_WINDOW // 2, mode="reflect")
+    bend[1:-1] = second - np.median(sliding_window_view(around, MEDIAN_WINDOW), axis=1)
     bend[np.abs(bend) < 4.0 * np.sqrt(6.0) * sd] = 0.0
     size = np.abs(bend)
     jump = np.where(bend[:-1] * bend[1:] < 0.0, np.minimum(size[:-1], size[1:]), 0.0)
     beside = np.maximum(np.append(jump, 0.0), np.append(0.0, jump))
     own = size / 8.0 + beside / 2.0
-    return np.asarray(maximum_filter(own, 3, mode="constant"))
+    return np.asarray(sliding_window_view(np.pad(own, 1), 3).max(axis=1))
 
 
 def _static(measurement: Measurement) -> Iterator[Figure]:

@@ -40,7 +40,7 @@ def influence_study(
     started = time.perf_counter()
     rows = list(parameters) if parameters is not None else design_parameters(axle)
     columns = list(characteristics) if characteristics is not None else appendix_c()
-    with Campaign(AxleSolver(axle, dict(windows or {})), workers=workers) as campaign:
+    with Campaign(AxleSolver(axle, dict(windows or {}), curves=False), workers=workers) as campaign:
         designs = list(one_at_a_time(rows).rows())
         outcomes = campaign.evaluate(designs, "influence", progress, curves=False)
     if outcomes[0].failed:

@@ -20,6 +20,7 @@ FILE_HEAD, FILE_TAIL = 8192, 32
 """Bytes of a file in which the digest, and the mark of a whole file, are looked for."""
 ENDS = {".png": b"IEND", ".svg": b"</svg>"}
 SCALARS = (type(None), bool, int, float, complex, str, bytes, Path)
+NUMBERS, CODE, SEQUENCES = (np.generic, np.ndarray), (FunctionType, BuiltinFunctionType, type), (list, tuple)
 
 
 class PictureDigests:
@@ -39,12 +40,13 @@ class PictureDigests:
         return hashlib.sha256(_drawing_code() + content).hexdigest()
 
     def _of(self, value: object) -> bytes:
+        """Bytes that differ for another value: of a scalar its text, of everything else a digest."""
         if isinstance(value, SCALARS):
-            return _sha(type(value).__name__, repr(value))
-        if isinstance(value, np.generic | np.ndarray) and value.dtype.kind != "O":
+            return f"{type(value).__name__} {value!r}".encode()
+        if isinstance(value, NUMBERS) and value.dtype.kind != "O":
             array = np.ascontiguousarray(value)
             return _sha("array", array.dtype.str, repr(array.shape), array.tobytes())
-        if isinstance(value, FunctionType | BuiltinFunctionType | type):
+        if isinstance(value, CODE):
             if getattr(value, "__closure__", None):
                 raise TypeError("a closure has no digest")
             return _sha("code", value.__module__ or "", value.__qualname__)
@@ -66,15 +68,15 @@ class PictureDigests:
             return [self._of(v) for v in (value.func, value.args, value.keywords)]
         if isinstance(value, MethodType):
             return [self._of(value.__func__), self._of(value.__self__)]
+        if isinstance(value, SEQUENCES):
+            return [self._of(part) for part in value]
         if isinstance(value, Mapping):
             return [self._of(part) for item in value.items() for part in item]
-        if isinstance(value, list | tuple):
-            return [self._of(part) for part in value]
         if isinstance(value, set | frozenset):
             return sorted(self._of(part) for part in value)
         if dataclasses.is_dataclass(value):
-            names = [f.name for f in dataclasses.fields(value) if f.name not in RUN_TIMES]
-            return [self._of((name, getattr(value, name))) for name in names]
+            names = _field_names(value.__class__)
+            return [part for name in names for part in (name.encode(), self._of(getattr(value, name)))]
         if not hasattr(value, "__dict__"):
             raise TypeError(f"{type(value).__name__} has no digest")
         return [self._of(item) for item in sorted(vars(value).items()) if item[0] not in RUN_TIMES]
@@ -92,13 +94,16 @@ def shows(path: Path, digest: str) -> bool:
     return digest.encode() in head and ENDS[path.suffix] in tail
 
 
+@cache
+def _field_names(kind: type) -> list[str]:
+    return [f.name for f in dataclasses.fields(kind) if f.name not in RUN_TIMES]
+
+
 def _sha(*parts: str | bytes) -> bytes:
-    out = hashlib.sha256()
-    for part in parts:
-        data = part.encode() if isinstance(part, str) else part
-        out.update(len(data).to_bytes(8, "little"))
-        out.update(data)
-    return out.digest()
+    data = [part.encode() if isinstance(part, str) else part for part in parts]
+    return hashlib.sha256(
+        b"".join(piece for d in data for piece in (len(d).to_bytes(8, "little"), d))
+    ).digest()
 
 
 @cache

@@ -12,14 +12,10 @@ from scipy import sparse
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.compiled import (
-    COMPILE_VARIABLE,
-    CompileError,
-    compiled_kernel,
-    generate,
-    library_of,
-)
+from doe_kc.solver.assembly import assemble
+from doe_kc.solver.compiled import compiled_kernel
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, generate, library_of
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""
@@ -65,7 +61,7 @@ def _function(name: str) -> str:
 def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
     """The same as symbolic expressions have them."""
     k = kernel(topology)
-    eq = k.equations
+    eq = assemble(topology)
     symbols = [eq.x, eq.c, eq.u, eq.z]
     of = {"R": eq.residual, "Y": eq.outputs, "Z": eq.next_state}
     by = {"x": eq.x, "c": eq.c, "u": eq.u, "z": eq.z}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.curves import ANGLES, RESPONSE_UNITS, TYRE_LOAD, CaseCurves, CurveSet
+from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import CaseSolution, Solution
 
@@ -35,13 +35,22 @@ def case_curves(solution: Solution, case: CaseSolution) -> CaseCurves:
     grid = rising(case)
     mean, half = mean_and_half_width(case, [b.y for b in case.branches])
     zero = int(np.argmin(np.abs(grid)))
-    means, halves = {}, {}
-    for response in RESPONSE_UNITS:
-        columns = [solution.column(f"{response}@{side}") for side in ("L", "R")]
-        curve = mean[:, columns].T
-        means[response] = curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
-        halves[response] = half[:, columns].T
-    return CaseCurves(case.load_case.id, case.load_case.unit, grid, means, halves)
+    names = solution.output_names
+    columns = [names.index(f"{response}@{side}") for response in RESPONSE_UNITS for side in SIDES]
+    shape = (len(RESPONSE_UNITS), len(SIDES), grid.size)
+    absolute, halves = mean.T[columns].reshape(shape), half.T[columns].reshape(shape)
+    changes = absolute - absolute[:, :, zero : zero + 1]
+    means = {
+        response: absolute[i] if response == TYRE_LOAD else changes[i]
+        for i, response in enumerate(RESPONSE_UNITS)
+    }
+    return CaseCurves(
+        case.load_case.id,
+        case.load_case.unit,
+        grid,
+        means,
+        dict(zip(RESPONSE_UNITS, halves, strict=True)),
+    )
 
 
 def curve_set(solution: Solution) -> CurveSet:

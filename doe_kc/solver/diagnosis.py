@@ -77,7 +77,7 @@ def largest_deflection(k: Kernel, x: FloatArray) -> str:
     """
     sizes = {
         (joint, scale): float(np.linalg.norm(x[_rows(k, joint, scale)]))
-        for joint in dict.fromkeys(u.joint for u in k.equations.unknowns)
+        for joint in dict.fromkeys(u.joint for u in k.layout.unknowns)
         for scale in (FORCE_SCALE, MOMENT_SCALE)
         if _rows(k, joint, scale).any()
     }
@@ -90,25 +90,25 @@ def largest_deflection(k: Kernel, x: FloatArray) -> str:
 
 def _rows(k: Kernel, joint: str, scale: float) -> np.ndarray:
     """(nx,) which unknowns are a joint's shifts or turns; forces and the tail are neither."""
-    last = len(k.equations.unknowns) - k.equations.tail
+    last = len(k.layout.unknowns) - k.layout.tail
     return np.array(
         [
             u.joint == joint and u.scale == scale and i < last and not u.name.startswith(TWIST)
-            for i, u in enumerate(k.equations.unknowns)
+            for i, u in enumerate(k.layout.unknowns)
         ]
     )
 
 
 def cause(k: Kernel, c: FloatArray, start: Start, halt: Halt, s: float, u: FloatArray, *, full: bool) -> str:
     """The likely cause that there is no equilibrium at s under the controls u (nu,), in one clause."""
-    active = k.nx if full else k.nx - k.equations.tail
+    active = k.nx if full else k.nx - k.layout.tail
     weakest = unresisted(k, c, halt, active)
     if weakest:
         return f"no stiffness along {weakest}"
     newton = Newton(k, c, active, NewtonSettings())
     begin = Halt(float(start.s[-1]), start.x[-1], start.u, start.z, 0.0)
     first, ahead = (_travel(newton, at, s, u) for at in (begin, halt))
-    joint = in_words(k.equations.unknowns[int(np.argmax(ahead))].joint)
+    joint = in_words(k.layout.unknowns[int(np.argmax(ahead))].joint)
     if halt.snap > 0.0 or ahead.max() > RUNAWAY * first.max():
         far = f"; the next equilibrium is a snap of {halt.snap:.3g} mm away" if halt.snap else ""
         return f"over-centre: {joint} moves ever faster and would fold over{far}"
@@ -125,8 +125,8 @@ def _travel(newton: Newton, at: Halt, s: float, u: FloatArray) -> FloatArray:
     part = at.u + TANGENT_SHARE * (u - at.u)
     newton.forget()
     moved = newton.step_from(newton.with_tail(at.x.copy(), part), part, at.z) - at.x
-    moved[(k.scale < FORCE_SCALE) | (np.arange(k.nx) >= k.nx - k.equations.tail)] = 0.0
-    moved[[u.name.startswith(TWIST) for u in k.equations.unknowns]] = 0.0
+    moved[(k.scale < FORCE_SCALE) | (np.arange(k.nx) >= k.nx - k.layout.tail)] = 0.0
+    moved[[u.name.startswith(TWIST) for u in k.layout.unknowns]] = 0.0
     return np.asarray(np.abs(moved) * k.scale / (TANGENT_SHARE * abs(s - at.s)))
 
 
@@ -140,4 +140,4 @@ def unresisted(k: Kernel, c: FloatArray, halt: Halt, active: int) -> str:
     _, values, directions = np.linalg.svd(stiffness)
     if values[-1] > SINGULAR * values[0]:
         return ""
-    return in_words(k.equations.unknowns[int(np.argmax(np.abs(directions[-1])))].name)
+    return in_words(k.layout.unknowns[int(np.argmax(np.abs(directions[-1])))].name)

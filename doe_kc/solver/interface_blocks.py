@@ -30,10 +30,10 @@ class _ProbeFunctions:
 @lru_cache(maxsize=TOPOLOGY_CACHE)
 def _functions(topology: Topology) -> _ProbeFunctions:
     """Of a topology without probes: theirs are zero, so that both have the same equilibria."""
-    plain, eq = kernel(topology).equations, assemble(replace(topology, probes=True))
+    plain, eq = kernel(topology).layout, assemble(replace(topology, probes=True))
     for name in ("unknowns", "control_names", "output_names"):
         assert getattr(plain, name) == getattr(eq, name), f"probes change the {name}"
-    assert plain.z.shape == eq.z.shape
+    assert plain.states == eq.z.numel()
     symbols = [eq.x, eq.c, eq.u, eq.z]
     parts = {"R_e": eq.residual, "Y_e": eq.outputs} | ({"Z_e": eq.next_state} if eq.z.numel() else {})
     expressions = {name: ca.jacobian(e, eq.e) for name, e in parts.items()} | {"seen": ca.densify(eq.seen)}

@@ -99,8 +99,8 @@ def _static(blocks: InterfaceBlocks, s: StaticState) -> StaticInfluences:
     k, m = blocks.kernel, len(blocks.probes)
     z0 = np.zeros(k.nz)
     unknowns = [k.index(name) for name in ("pad L", "pad R", "preload")]
-    controls = [k.equations.control_names.index(name) for name in ("pad_L", "pad_R", "preload")]
-    centres = [k.equations.output_names.index(name) for name in WHEEL_CENTRES]
+    controls = [k.layout.control_names.index(name) for name in ("pad_L", "pad_R", "preload")]
+    centres = [k.layout.output_names.index(name) for name in WHEEL_CENTRES]
     design = blocks.at(s.x0, s.u0, z0, np.zeros((k.nu, AT_REST)))
     du = np.zeros((k.nu, AT_REST))
     du[controls, GIVEN] = 1.0

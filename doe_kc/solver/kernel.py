@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import casadi as ca
 import numpy as np
@@ -11,89 +13,127 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
-from doe_kc.solver.equations import Equations
+from doe_kc.solver.layout import EquationLayout, layout_of, layout_text, read_layout
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, store_text, stored_library, stored_text
+
+COMPILER_FLAGS = {"driver": "-O3", "jacobian": "-O0"}
+"""By part; the rest -O1. The Jacobian is long and rarely called: at -O1 it takes 8 s to compile instead of
+2 s, and a design of 370 equilibria would gain 2 ms."""
+MARCHED = ("residual", "jacobian", "outputs", "state_update")
+"""Functions of (x, c, u, z) that a kernel's library holds, beside `constants` and the driver."""
+KERNEL_LIBRARY = "kernel"
+"""Kind of a kernel's library."""
 
 
 @dataclass(frozen=True)
 class Kernel:
-    """residual (nx,), jacobian (nnz,), outputs (ny,), state_update (nz,) of (x, c, u, z).
+    """Numbers of one topology's equations: residual (nx,), jacobian (nnz,), outputs (ny,), state_update (nz,)
+    of (x, c, u, z).
 
-    constants: (nc,) of the parameters p.
-    rows, cols: of the Jacobian's nonzeros. scale: (nx,) residual that weighs as much as 1 N.
+    Its equations are assembled when their expressions are asked for: a loaded library does without.
     """
 
     topology: Topology
-    equations: Equations
-    functions: dict[str, ca.Function]
-    constants: ca.Function
-    rows: np.ndarray
-    cols: np.ndarray
-    scale: FloatArray
+    layout: EquationLayout
+
+    @cached_property
+    def functions(self) -> dict[str, ca.Function]:
+        """Interpreted ones by name."""
+        return interpreted_functions(self.topology)
+
+    @cached_property
+    def constants(self) -> ca.Function:
+        """(nc,) of the parameters p; compiled where the kernel's library is there already."""
+        if os.environ.get(COMPILE_VARIABLE) != "0":
+            with suppress(CompileError):
+                path = stored_library(self.topology, KERNEL_LIBRARY, COMPILER_FLAGS)
+                if path is not None:
+                    return ca.external("constants", str(path))
+        return self.functions["constants"]
+
+    @cached_property
+    def scale(self) -> FloatArray:
+        """(nx,) residual that weighs as much as 1 N."""
+        return np.array([u.scale for u in self.layout.unknowns])
+
+    @property
+    def rows(self) -> np.ndarray:
+        """(nnz,) of the Jacobian's nonzeros."""
+        return self.layout.rows
+
+    @property
+    def cols(self) -> np.ndarray:
+        """(nnz,) of the Jacobian's nonzeros."""
+        return self.layout.cols
 
     @property
     def nx(self) -> int:
-        return len(self.equations.unknowns)
+        return len(self.layout.unknowns)
 
     @property
     def nz(self) -> int:
-        return int(self.equations.z.numel())
+        return self.layout.states
 
     @property
     def nu(self) -> int:
-        return len(self.equations.control_names)
+        return len(self.layout.control_names)
 
     @property
     def ny(self) -> int:
-        return len(self.equations.output_names)
+        return len(self.layout.output_names)
 
     def index(self, unknown: str) -> int:
         """Place of an unknown in x."""
-        return [u.name for u in self.equations.unknowns].index(unknown)
+        return [u.name for u in self.layout.unknowns].index(unknown)
 
-    @property
+    @cached_property
     def slips(self) -> np.ndarray:
         """Places in x of the motions that friction resists."""
-        return np.array([self.index(name) for name in self.equations.slips], dtype=np.int32)
+        return np.array([self.index(name) for name in self.layout.slips], dtype=np.int32)
 
-    @property
+    @cached_property
     def tail_controls(self) -> np.ndarray:
         """Index of the control that prescribes each tail unknown."""
         names = {"pad L": "pad_L", "pad R": "pad_R", "preload": "preload"}
-        tail = self.equations.unknowns[-self.equations.tail :]
-        return np.array([self.equations.control_names.index(names[t.name]) for t in tail], dtype=np.int32)
+        tail = self.layout.unknowns[-self.layout.tail :]
+        return np.array([self.layout.control_names.index(names[t.name]) for t in tail], dtype=np.int32)
 
     def constant_values(self, values: dict[str, float]) -> FloatArray:
         """(nc,) constants from the axle's internal values."""
-        p = np.array([values[name] for name in self.equations.parameter_names])
-        return np.asarray(self.constants(p)).ravel()
+        p = np.array([values[name] for name in self.layout.parameter_names])
+        return Buffered(self.constants)(p).copy()
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
-def kernel(topology: Topology) -> Kernel:
-    """The kernel of a topology (cached: a pure function of it)."""
+def interpreted_functions(topology: Topology) -> dict[str, ca.Function]:
+    """Functions of a topology's expressions by name: those of `MARCHED`, and `constants`."""
     eq = assemble(topology)
     symbols = [eq.x, eq.c, eq.u, eq.z]
-    jacobian = ca.jacobian(eq.residual, eq.x)
 
     def function(name: str, expression: ca.SX, *, cse: bool = True) -> ca.Function:
         return ca.Function(name, symbols, [expression], {"cse": cse})
 
-    rows, cols = jacobian.sparsity().get_triplet()
-    return Kernel(
-        topology=topology,
-        equations=eq,
-        functions={
-            "residual": function("residual", ca.densify(eq.residual)),
-            # common subexpressions would save a seventh of its run time and cost a quarter of a second
-            "jacobian": function("jacobian", jacobian, cse=False),
-            "outputs": function("outputs", ca.densify(eq.outputs)),
-            "state_update": function("state_update", ca.densify(eq.next_state)),
-        },
-        constants=ca.Function("constants", [eq.p], [ca.densify(eq.constants)], {"cse": True}),
-        rows=np.array(rows, dtype=np.int32),
-        cols=np.array(cols, dtype=np.int32),
-        scale=np.array([u.scale for u in eq.unknowns]),
-    )
+    return {
+        "residual": function("residual", ca.densify(eq.residual)),
+        # common subexpressions would save a seventh of its run time and cost a quarter of a second
+        "jacobian": function("jacobian", ca.jacobian(eq.residual, eq.x), cse=False),
+        "outputs": function("outputs", ca.densify(eq.outputs)),
+        "state_update": function("state_update", ca.densify(eq.next_state)),
+        "constants": ca.Function("constants", [eq.p], [ca.densify(eq.constants)], {"cse": True}),
+    }
+
+
+@lru_cache(maxsize=TOPOLOGY_CACHE)
+def kernel(topology: Topology) -> Kernel:
+    """The kernel of a topology (cached: a pure function of it); its layout comes from the user's cache."""
+    text = stored_text(topology, "layout")
+    if text is not None:
+        with suppress(ValueError, KeyError, TypeError):
+            return Kernel(topology, read_layout(text))
+    rows, cols = interpreted_functions(topology)["jacobian"].sparsity_out(0).get_triplet()
+    layout = layout_of(assemble(topology), np.array(rows), np.array(cols))
+    store_text(topology, "layout", layout_text(layout))
+    return Kernel(topology, layout)
 
 
 class Buffered:

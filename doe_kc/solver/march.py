@@ -53,7 +53,7 @@ def march(
     full: solve for the tail (pads, preload) too; otherwise the controls prescribe it.
     """
     chosen = settings or NewtonSettings()
-    active = kernel.nx if full else kernel.nx - kernel.equations.tail
+    active = kernel.nx if full else kernel.nx - kernel.layout.tail
     if compiled is not None:
         return compiled.march(kernel, c, start, s, u, active, chosen)
     return _Marcher(kernel, c, start, active, chosen).run(s, u)

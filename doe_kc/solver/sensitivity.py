@@ -63,8 +63,8 @@ def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensi
 def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:
     """The same equilibria as states of a topology that has further unknowns, zero there."""
     a, b = kernel(old), kernel(new)
-    unknowns = np.array([b.index(u.name) for u in a.equations.unknowns])
-    controls = np.array([b.equations.control_names.index(name) for name in a.equations.control_names])
+    unknowns = np.array([b.index(u.name) for u in a.layout.unknowns])
+    controls = np.array([b.layout.control_names.index(name) for name in a.layout.control_names])
 
     def placed(rows: FloatArray, places: np.ndarray, width: int) -> FloatArray:
         out = np.zeros((*rows.shape[:-1], width))
@@ -97,14 +97,14 @@ class _Differentiator:
         functions = blocks(axle.topology)
         self._block = {n: Block(f) for n, f in functions.items() if n != "constants"}
         self._dp = self._parameter_directions()
-        p = np.array([axle.values[n] for n in self._kernel.equations.parameter_names])
+        p = np.array([axle.values[n] for n in self._kernel.layout.parameter_names])
         self._dc = sparse.csr_array(Block(functions["constants"])(p) @ self._dp)
         self._parts = ("R", "Y", "Z") if self._kernel.nz else ("R", "Y")
-        self._outputs = self._kernel.equations.output_names
+        self._outputs = self._kernel.layout.output_names
 
     def _parameter_directions(self) -> FloatArray:
         """(internal parameters, paths): how internal values move with each path."""
-        names = {n: i for i, n in enumerate(self._kernel.equations.parameter_names)}
+        names = {n: i for i, n in enumerate(self._kernel.layout.parameter_names)}
         out = np.zeros((len(names), len(self._paths)))
         for column, path in enumerate(self._paths):
             for internal, weight in internal_gradient(self._axle, path).items():
@@ -170,11 +170,11 @@ class _Differentiator:
             ("pad_R", "pad R", raised),
             ("preload", "preload", 0.0),
         ):
-            du[k.equations.control_names.index(control)] = dx0[k.index(unknown)] + shift
+            du[k.layout.control_names.index(control)] = dx0[k.index(unknown)] + shift
         dx, dy, dz = self._point(s.x, s.u, z0, du, no_z)
         heights = [dy[self._outputs.index(f"wc_z@{side}")] for side in ("L", "R")]
-        pads = [du[k.equations.control_names.index(f"pad_{side}")] for side in ("L", "R")]
-        preload = du[k.equations.control_names.index("preload")]
+        pads = [du[k.layout.control_names.index(f"pad_{side}")] for side in ("L", "R")]
+        preload = du[k.layout.control_names.index("preload")]
         dimensions = [-self._change_of("WLC.y@L"), self._change_of("steering.rack_mm_per_rev")]
         return dx, dy, dz, np.array([*pads, *heights, preload, *dimensions])
 

@@ -22,8 +22,8 @@ def control_matrix(kernel: Kernel, values: dict[str, float | FloatArray], n: int
     """(n, nu) controls by column; those not named are zero."""
     u = np.zeros((n, kernel.nu))
     for name, value in values.items():
-        if name in kernel.equations.control_names:
-            u[:, kernel.equations.control_names.index(name)] = value
+        if name in kernel.layout.control_names:
+            u[:, kernel.layout.control_names.index(name)] = value
     return u
 
 
@@ -58,7 +58,7 @@ def static_state(
     if raised.failed is not None:
         names = ("static equilibrium", "ride height", "mm")
         return sweep_failure(kernel, c, start, raised, s, u, names, full=False)
-    read = dict(zip(kernel.equations.output_names, raised.y[0], strict=True))
+    read = dict(zip(kernel.layout.output_names, raised.y[0], strict=True))
     datum = Datum(
         pad=pads,
         wheel_centre_z=(read["wc_z@L"], read["wc_z@R"]),

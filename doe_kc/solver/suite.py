@@ -14,15 +14,11 @@ from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER, LoadCase
-from doe_kc.solver.compiled import (
-    COMPILE_VARIABLE,
-    CompiledKernel,
-    CompileError,
-    compiled_kernel,
-)
+from doe_kc.solver.compiled import CompiledKernel, compiled_kernel
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel, kernel
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError
 from doe_kc.solver.march import march
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import (
@@ -93,7 +89,7 @@ def _ended(
 ) -> Solution:
     if failure is not None and throw:
         raise NotConverged(failure)
-    return Solution(axle.name, k.equations.output_names, static, cases, failure, axle.half_track)
+    return Solution(axle.name, k.layout.output_names, static, cases, failure, axle.half_track)
 
 
 def library_for(topology: Topology, compiled: bool | None) -> CompiledKernel | None:

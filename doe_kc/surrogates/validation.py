@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
 
 NOMINAL = 0.95
 """Coverage that an interval promises."""
-NOMINAL_WIDTH = float(norm.ppf(0.5 + NOMINAL / 2.0))
+NOMINAL_WIDTH = float(ndtri(0.5 + NOMINAL / 2.0))
 """Standard deviations to either side of it."""
 
 

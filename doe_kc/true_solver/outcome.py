@@ -45,7 +45,9 @@ def from_curves(curves: CurveSet, windows: Mapping[str, float] | None, seconds: 
     reason = fault(curves)
     if reason:
         return failure(reason, seconds)
-    return checked(Outcome(curves, reduced(curves, windows), "", seconds))
+    outcome = Outcome(curves, reduced(curves, windows), "", seconds)
+    reason = _bad_characteristic(outcome)
+    return failure(reason, seconds) if reason else outcome
 
 
 def reduced(curves: CurveSet, windows: Mapping[str, float] | None) -> FloatArray:
@@ -69,6 +71,9 @@ def fault(curves: CurveSet) -> str:
         if not np.isfinite(value).all():
             return f"response not finite: static {name}"
     for case in curves.cases.values():
+        everything = [*case.mean.values(), *case.half_width.values()]
+        if np.isfinite(sum(float(curve.sum()) for curve in everything)):  # so each number is
+            continue
         for response, curve in [*case.mean.items(), *case.half_width.items()]:
             if not np.isfinite(curve).all():
                 return f"response not finite: load case {case.load_case}, {_place(case, response, curve)}"

@@ -23,13 +23,15 @@ COMPILE_FROM = 50
 
 @dataclass(frozen=True)
 class AxleSolver:
-    """windows: as in `reduce_all`. compiled: topologies to run compiled where that is possible.
+    """windows: as in `reduce_all`. curves: whether outcomes hold them, or characteristics alone.
 
-    asked: how many designs of each topology have been announced by `prepare`.
+    compiled: topologies to run compiled where that is possible. asked: how many designs of each topology
+    have been announced by `prepare`.
     """
 
     axle: Axle
     windows: Mapping[str, float] = field(default_factory=dict)
+    curves: bool = True
     compiled: frozenset[Topology] = frozenset()
     asked: Mapping[Topology, int] = field(default_factory=dict)
 
@@ -71,7 +73,8 @@ class AxleSolver:
         seconds = time.perf_counter() - started
         if solution.failure is not None:
             return failure(str(solution.failure), seconds)
-        return from_curves(observed(changed, curve_set(solution)), self.windows, seconds)
+        outcome = from_curves(observed(changed, curve_set(solution)), self.windows, seconds)
+        return outcome if self.curves else replace(outcome, curves=None)
 
 
 def describe_axle(axle: Axle) -> dict[str, str]:

@@ -55,7 +55,7 @@ def position(axle: Axle, name: str, side: str) -> np.ndarray:
 
 
 def poses(axle: Axle, kernel: Kernel, x: np.ndarray) -> dict[str, Pose]:
-    value = {u.name: float(v) for u, v in zip(kernel.equations.unknowns, x, strict=True)}
+    value = {u.name: float(v) for u, v in zip(kernel.layout.unknowns, x, strict=True)}
 
     def shift(name: str) -> np.ndarray:
         return np.array([value[f"{name}.{a}"] for a in "xyz"])
@@ -123,8 +123,8 @@ def _stop_energy(axle: Axle, name: str, side: str, points: int, travel: float) -
 def evaluate(axle: Axle, kernel: Kernel, x: np.ndarray, u: np.ndarray) -> State:
     """The axle without effects at state x under the controls u."""
     state = State(poses(axle, kernel, x))
-    value = {n.name: float(v) for n, v in zip(kernel.equations.unknowns, x, strict=True)}
-    control = dict(zip(kernel.equations.control_names, u, strict=True))
+    value = {n.name: float(v) for n, v in zip(kernel.layout.unknowns, x, strict=True)}
+    control = dict(zip(kernel.layout.control_names, u, strict=True))
     values = axle.values
     heights = []
     for side in SIDES:

@@ -8,6 +8,7 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.axle import Axle
+from doe_kc.solver.assembly import assemble
 from doe_kc.solver.equilibria import March, Start
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.march import march
@@ -54,19 +55,19 @@ class Rig:
 
     def output(self, path: March, name: str) -> np.ndarray:
         """Output along the path, the static state first."""
-        column = self.kernel.equations.output_names.index(name)
+        column = self.kernel.layout.output_names.index(name)
         return np.concatenate([[self.static.y[column]], path.y[:, column]])
 
     def input(self, name: str) -> np.ndarray:
         """Control along the last path, the static state first."""
-        column = self.kernel.equations.control_names.index(name)
+        column = self.kernel.layout.control_names.index(name)
         return np.concatenate([[self.controls(1, {})[0][column]], self.u[:, column]])
 
     def tangent(
         self, x: np.ndarray, u: np.ndarray, outputs: Sequence[str], inputs: Sequence[str]
     ) -> np.ndarray:
         """dy/du by the implicit function theorem at an equilibrium with prescribed pads."""
-        eq = self.kernel.equations
+        eq = assemble(self.kernel.topology)
         symbols = [eq.x, eq.c, eq.u, eq.z]
         wanted = [eq.output_names.index(n) for n in outputs]
         blocks = [ca.jacobian(e, s) for e in (eq.residual, eq.outputs[wanted]) for s in (eq.x, eq.u)]

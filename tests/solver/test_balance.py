@@ -52,7 +52,7 @@ def unbalanced(axle, solution: Solution, case: str) -> tuple[float, float]:
     forces, moments = [], []
     for branch in solution.cases[case].branches:
         for row in (0, len(branch.x) // 2, -1):
-            control = dict(zip(k.equations.control_names, branch.u[row], strict=True))
+            control = dict(zip(k.layout.control_names, branch.u[row], strict=True))
             y = dict(zip(solution.output_names, branch.y[row], strict=True))
             force, moment = external(control, y)
             state = evaluate(axle, k, branch.x[row], branch.u[row])
@@ -78,7 +78,7 @@ def test_the_balance_notices_a_missing_force(solved) -> None:
     branch = solution.cases["lateral"].branches[0]
     state = evaluate(axle, k, branch.x[-1], branch.u[-1])
     y = dict(zip(solution.output_names, branch.y[-1], strict=True))
-    no_lateral = dict.fromkeys(k.equations.control_names, 0.0)
+    no_lateral = dict.fromkeys(k.layout.control_names, 0.0)
     force, _ = external(no_lateral, y)
     assert np.abs(force + sum(f for f, _ in state.reactions))[1] == pytest.approx(4000.0, rel=1e-6)
 

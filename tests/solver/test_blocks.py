@@ -11,8 +11,8 @@ from scipy import sparse
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change, interpreted_blocks
-from doe_kc.solver.compiled import find_compiler
 from doe_kc.solver.kernel import kernel
+from doe_kc.solver.library import find_compiler
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 

@@ -10,15 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.solver import compiled, suite
-from doe_kc.solver.compiled import (
-    CACHE_VARIABLE,
-    CompileError,
-    cache_folder,
-    compiled_kernel,
-    find_compiler,
-    library_of,
-)
+from doe_kc.solver import library, suite
+from doe_kc.solver.compiled import compiled_kernel
+from doe_kc.solver.library import CACHE_VARIABLE, CompileError, cache_folder, find_compiler, library_of
 from doe_kc.solver.suite import library_for, solve
 from tests.reference import nominal
 
@@ -53,7 +47,7 @@ def test_compiled_and_interpreted_agree() -> None:
 def test_without_a_compiler_everything_works_with_one_notice(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(compiled, "find_compiler", lambda: None)
+    monkeypatch.setattr(library, "find_compiler", lambda: None)
     with caplog.at_level(logging.INFO, logger="doe_kc"):
         for _ in range(3):
             found = solve(nominal(), ["drive"])
@@ -84,7 +78,7 @@ def test_a_compiler_that_fails_is_named(monkeypatch: pytest.MonkeyPatch, tmp_pat
     broken = tmp_path / "cc"
     broken.write_text("#!/bin/sh\necho 'license expired' >&2\nexit 1\n")
     broken.chmod(0o755)
-    monkeypatch.setattr(compiled, "find_compiler", lambda: str(broken))
+    monkeypatch.setattr(library, "find_compiler", lambda: str(broken))
     with caplog.at_level(logging.INFO, logger="doe_kc"):
         assert solve(nominal(), ["drive"]).failure is None
     assert "license expired" in caplog.text
@@ -93,11 +87,11 @@ def test_a_compiler_that_fails_is_named(monkeypatch: pytest.MonkeyPatch, tmp_pat
 @needs_compiler
 def test_a_library_is_built_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
-    first = compiled.build(TINY)
+    first = library.build(TINY)
     stamp = first.stat().st_mtime_ns
-    assert compiled.build(TINY) == first
+    assert library.build(TINY) == first
     assert first.stat().st_mtime_ns == stamp
-    assert compiled.build({"one": "int one(void) { return 2; }\n"}) != first
+    assert library.build({"one": "int one(void) { return 2; }\n"}) != first
     assert [p.suffix for p in tmp_path.iterdir()] == [first.suffix] * 2
     assert ctypes.CDLL(str(first)).one() == 1
 
@@ -109,10 +103,10 @@ def test_a_truncated_library_is_replaced(
 ) -> None:
     """Loading it would kill the process, so its content is checked first."""
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
-    path = compiled.build(TINY)
+    path = library.build(TINY)
     whole = path.read_bytes()
     path.write_bytes(whole[: int(keep if keep >= 1 else keep * len(whole))])
-    again = compiled.build(TINY)
+    again = library.build(TINY)
     assert again.read_bytes()[:4] == whole[:4]
     assert ctypes.CDLL(str(again)).one() == 1
     assert list(tmp_path.iterdir()) == [again]
@@ -134,7 +128,7 @@ def test_a_library_is_found_again_without_its_sources(
     library_of(replace(TOPOLOGY, hub=True), "test", sources, {})
     library_of(TOPOLOGY, "other", sources, {})
     assert len(asked) == 3
-    monkeypatch.setattr(compiled, "_origins", lambda: "the package after a change")
+    monkeypatch.setattr(library, "_origins", lambda: "the package after a change")
     assert library_of(TOPOLOGY, "test", sources, {}) == first and len(asked) == 4
 
 

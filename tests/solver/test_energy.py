@@ -48,7 +48,7 @@ def work(rig: Rig, path: March, steps: int) -> np.ndarray:
 
 def stored(rig: Rig, path: March) -> np.ndarray:
     """Energy in N mm at the start and at every equilibrium."""
-    names = rig.kernel.equations.output_names
+    names = rig.kernel.layout.output_names
     rows = [(rig.static.x, rig.controls(1, {})[0], rig.static.y), *zip(path.x, rig.u, path.y, strict=True)]
     return np.array(
         [

@@ -102,7 +102,7 @@ def test_what_nothing_resists_is_named() -> None:
         axle = axle_from_document(document, source="test")
         k = kernel(axle.topology)
         design = Halt(0.0, np.zeros(k.nx), np.zeros(k.nu), np.zeros(k.nz), 0.0)
-        active = k.nx - k.equations.tail
+        active = k.nx - k.layout.tail
         found = unresisted(k, k.constant_values(dict(axle.values)), design, active)
         assert found == "" if resists else found.startswith("strut twist ")
 

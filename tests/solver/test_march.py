@@ -10,7 +10,7 @@ import pytest
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.model import HARDPOINTS
 from doe_kc.effects import apply_effect
-from doe_kc.solver.compiled import find_compiler
+from doe_kc.solver.library import find_compiler
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 

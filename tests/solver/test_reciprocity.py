@@ -69,7 +69,7 @@ def test_lateral_force_and_drive_force_are_reciprocal() -> None:
     ((ahead,),) = rig.tangent(x, u, ["wc_x@L"], ["lateral_L"])
     outputs = ["wc_x@L", "wc_y@L", "wc_z@L", "toe@L", "camber@L", "spin@L"]
     by_drive = rig.tangent(x, u, outputs, ["drive_L"])[:, 0]
-    y = dict(zip(rig.kernel.equations.output_names, rig.static.y, strict=True))
+    y = dict(zip(rig.kernel.layout.output_names, rig.static.y, strict=True))
     toe, camber = np.radians(y["toe@L"]), np.radians(y["camber@L"])
     # the wheel's rotation about x from the spin axis s = (-sin toe, -cos toe, -tan camber) cos camber
     d_toe, d_camber, d_spin = np.radians(by_drive[3:])

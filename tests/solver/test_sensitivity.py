@@ -70,7 +70,7 @@ def worst(axle: Axle, exact: Sensitivities, path: str) -> tuple[float, str]:
     """Largest relative difference over all equilibria and outputs, beyond what rounding explains."""
     h, column = step_of(axle, path), exact.paths.index(path)
     near, far = differences(axle, path, h), differences(axle, path, 2 * h)
-    names = kernel(axle.topology).equations.output_names
+    names = kernel(axle.topology).layout.output_names
     floor = np.array([ROUND_OFF[unit] for unit in output_units(names)]) / h
     found = (0.0, "")
     for case, branches in exact.branches.items():

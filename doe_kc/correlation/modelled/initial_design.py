@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import qmc
 
 from doe_kc.correlation.modelled.output_model import level_steps
 from doe_kc.correlation.problem import Candidate
@@ -38,6 +37,8 @@ class InitialDesign:
         The bounds are drawn in towards the start, but to a level beside it at least: none of them is passed,
         and a start beside its bound has as many designs as another.
         """
+        from scipy.stats import qmc  # half a second that searches without a sample need not wait for
+
         sampler = qmc.LatinHypercube(
             space.dimension,
             rng=np.random.default_rng(seed),

@@ -98,11 +98,13 @@ def _plain(value: Any) -> Any:
         return {str(k): _plain(v) for k, v in value.items()}
     if hasattr(value, "tolist"):
         value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, float):
-        return float(f"{value:.{CHART_DIGITS}g}") if math.isfinite(value) else None
-    return value
+    if isinstance(value, (list, tuple)):  # a tuple of types is asked in half the time of their union
+        return [_plain_number(v) if type(v) is float else _plain(v) for v in value]
+    return _plain_number(value) if isinstance(value, float) else value
+
+
+def _plain_number(value: float) -> float | None:
+    return float(f"{value:.{CHART_DIGITS}g}") if math.isfinite(value) else None
 
 
 def table_html(table: Table[Row], *, notice: Markup | None = None) -> Markup:

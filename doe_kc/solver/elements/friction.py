@@ -12,7 +12,6 @@ from typing import ClassVar
 
 import casadi as ca
 import numpy as np
-from scipy.special import gammaincinv
 
 from doe_kc.axle.topology import FrictionLaw
 from doe_kc.curves import SIDES
@@ -24,6 +23,8 @@ IWAN_ELEMENTS = 8
 
 def iwan_yields(count: int = IWAN_ELEMENTS) -> np.ndarray:
     """(count,) yield displacements over x_pre of elements of equal strength, at the mid-quantiles."""
+    from scipy.special import gammaincinv
+
     return np.asarray(gammaincinv(2.0, (np.arange(count) + 0.5) / count))
 
 

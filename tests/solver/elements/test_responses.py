@@ -19,12 +19,12 @@ def at_design() -> dict[str, float]:
     u = np.zeros(K.nu)
     c = K.constant_values(dict(nominal().values))
     y = np.asarray(K.functions["outputs"](x, c, u, np.zeros(K.nz))).ravel()
-    return dict(zip(K.equations.output_names, y, strict=True))
+    return dict(zip(K.layout.output_names, y, strict=True))
 
 
 def test_every_output_has_a_unit_and_every_unit_an_output() -> None:
     expected = [f"{n}@{s}" for s in ("L", "R") for n in OUTPUT_UNITS] + list(AXLE_OUTPUT_UNITS)
-    assert sorted(K.equations.output_names) == sorted(expected)
+    assert sorted(K.layout.output_names) == sorted(expected)
     assert set(OUTPUT_UNITS.values()) | set(AXLE_OUTPUT_UNITS.values()) <= {"deg", "mm", "N"}
 
 

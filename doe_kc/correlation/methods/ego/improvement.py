@@ -12,8 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.special import expit, logsumexp
-from scipy.stats import norm, qmc
+from scipy.special import expit, logsumexp, ndtri
 
 from doe_kc.correlation.modelled.composite import Composite
 from doe_kc.correlation.modelled.trust_region import TrustBox
@@ -46,8 +45,10 @@ class ExpectedImprovement:
         self._doubt = doubt
         self._model, self._composite, self._best = model, composite, best
         self._failed = failed
+        from scipy.stats import qmc  # half a second that a search without exploration need not wait for
+
         sampler = qmc.Sobol(model.outputs, rng=np.random.default_rng(seed))
-        self._z = norm.ppf(np.clip(sampler.random(IMPROVEMENT_SAMPLES), 1e-6, 1.0 - 1e-6))
+        self._z = ndtri(np.clip(sampler.random(IMPROVEMENT_SAMPLES), 1e-6, 1.0 - 1e-6))
         self._temperature = SHARPNESS * max(abs(best), 1e-3)
 
     def log(self, point: FloatArray) -> tuple[float, FloatArray]:
