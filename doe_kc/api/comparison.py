@@ -13,10 +13,10 @@ from doe_kc.api.axle import as_axle
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import as_study
 from doe_kc.axle import Axle
-from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.suite import solve
 from doe_kc.report.comparison_tables import compared_characteristic_table, compared_curve_table
 from doe_kc.report.render.csv import table_frame
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison
 from doe_kc.workflow.compare import compare_model, write_comparison
