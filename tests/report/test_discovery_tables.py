@@ -33,9 +33,9 @@ from tests.discovery.cases import LOAD_CASES, discovery, records
 def test_disagreement_has_every_contrast_and_every_map() -> None:
     found = discovery("named")
     frame = table_frame(disagreement_table(found))
-    assert len(frame) == len(found.raw.names)
-    np.testing.assert_array_equal(frame["z_tuned"], found.tuned.z)
-    np.testing.assert_array_equal(frame["z_with_effect"], found.final.z)
+    assert len(frame) == len(found.nominal_map.names)
+    np.testing.assert_array_equal(frame["z_tuned"], found.tuned_map.z)
+    np.testing.assert_array_equal(frame["z_with_effect"], found.residual_map.z)
     assert table_frame(disagreement_table(discovery("none")))["z_with_effect"].isna().all()
 
 

@@ -42,7 +42,7 @@ def handed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_file_is_there(handed: Path) -> None:
     names = {p.name for p in handed.iterdir()}
     assert names >= FILES and not any(n.startswith(".") for n in names)
-    assert [sum(n.endswith(end) for n in names) for end in (".png", ".svg")] == [11, 0]
+    assert [sum(n.endswith(end) for n in names) for end in (".png", ".svg")] == [12, 0]
 
 
 def test_the_axle_handed_over_rates_the_same(handed: Path) -> None:
