@@ -75,6 +75,6 @@ def outcome_of(record: StoredEvaluation, windows: Mapping[str, float], *, curves
     return Outcome(found if curves else None, values, "", packed.seconds)
 
 
-def _reduced_again(curves: CurveSet, windows: Mapping[str, float], given: FloatArray) -> FloatArray:
+def _reduced_again(curves: CurveSet, windows: Mapping[str, float], stored: FloatArray) -> FloatArray:
     values = reduced(curves, windows)
-    return np.where(np.isnan(values), given, values)
+    return np.where(np.isnan(values), stored, values)

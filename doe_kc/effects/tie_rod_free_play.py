@@ -49,16 +49,16 @@ class TieRodFreePlay(Effect):
         places = {"ROB": list(JOINTS)} | {joint: [joint] for joint in JOINTS}
         return tuple(Hypothesis(self.id, p, sizes, {"joints": joints}) for p, joints in places.items())
 
-    def read(self, given: Mapping[str, Any], source: str) -> dict[str, Any]:
-        options = super().read(given, source)
-        joints = options["joints"]
+    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+        checked = super().read(options, source)
+        joints = checked["joints"]
         joints = list(joints) if isinstance(joints, list | tuple) else [joints]
         wrong = [j for j in joints if j not in JOINTS]
         if wrong or not joints:
             raise InputError(
                 f"{source}: effect {self.id}: joints = {joints!r}, expected a list of {', '.join(JOINTS)}."
             )
-        return options | {"joints": joints}
+        return checked | {"joints": joints}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         topology = replace(

@@ -70,18 +70,18 @@ def given_outcome(study: Study) -> Outcome:
 
 
 def sought_problem(
-    study: Study, problem: Problem, start: Outcome, given: Outcome | None = None
+    study: Study, problem: Problem, start: Outcome, reference: Outcome | None = None
 ) -> tuple[Problem, Relaxation | None]:
     """The problem with the targets of its search, and the targets out of reach (None: not known).
 
-    start: answer to the design that the run starts from. given: of the axle whose distances hold, where that
-    is another one. Without sensitivities of the study's solver those of the package's own serve, where it
-    answers alike.
+    start: answer to the design that the run starts from. reference: answer of the axle whose distances hold,
+    where that is another one. Without sensitivities of the study's solver those of the package's own serve,
+    where it answers alike.
     """
     curves = start.curves is not None
     wide = all_measured(problem.targets, curves=curves)
-    held = given or start
-    baseline = score(wide, held.characteristics, held.curves)
+    before = reference or start
+    baseline = score(wide, before.characteristics, before.curves)
     expansion = start_expansion(problem, start)
     relaxed = None if expansion is None else reach_of(problem, start, expansion)
     likelihood = problem.likelihood.without(relaxed_places(problem.targets, relaxed))
