@@ -134,7 +134,7 @@ def axle_figure(view: AxleView) -> Sheet:
 
     The right side is the mirror image, but for what the axle file says of it alone.
     """
-    low, high = _extent(view.before)
+    low, high = view_extent(view.before)
     span = high - low
     width = style.A4[0] * POINTS
     scale = (width - LEFT_EDGE - BETWEEN_ACROSS - RIGHT_EDGE) / (span[0] + span[1])
@@ -155,15 +155,15 @@ def axle_figure(view: AxleView) -> Sheet:
         panel.y.set_locator(ticks(6))
         panel.set_labels(AXIS_WORDS_OF[across], AXIS_WORDS_OF[up])
         panel.set_title({"side": "From the left", "top": "From above", "rear": "From behind"}[name])
-        _draw(panel, view, name)
+        draw_view(panel, view, name)
     if view.after is not None:
         _table(page, view, middle, KEY_ROOM + scale * span[1])
-    page.add_legend(_handles(view), columns=3, size=7.5)
+    page.add_legend(view_handles(view), columns=3, size=7.5)
     page.set_heading(view.title, 1.0 - 18.0 / height)
     return page
 
 
-def _extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
+def view_extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
     """(3,) lowest and highest place of what is drawn, mm."""
     points = np.array([point(axle, name) for name in HARDPOINTS])
     wheel, radius = point(axle, "WLC"), float(point(axle, "WLC")[2])
@@ -173,7 +173,7 @@ def _extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
     return low, high
 
 
-def _draw(panel: Panel, view: AxleView, name: View) -> None:
+def draw_view(panel: Panel, view: AxleView, name: View) -> None:
     across, up = PLANES[name]
     axle = view.before
     if up == 2:
@@ -263,7 +263,7 @@ def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:
             page.write((x + place) / page.width, height, words, along="top", **look)
 
 
-def _handles(view: AxleView) -> list[Line2D]:
+def view_handles(view: AxleView) -> list[Line2D]:
     out = [Line2D([], [], color=c, lw=1.5, label=name) for name, c in MEMBER_COLOURS.items()]
     out.append(Line2D([], [], color="#555555", lw=1.2, label="wheel (plane and rolling radius)"))
     if view.after is not None:

@@ -11,7 +11,7 @@ import numpy as np
 from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import number, with_sd
+from doe_kc.ground.numbers import at_sd, number, signed, with_sd
 from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table
 from doe_kc.variables import Tie
 
@@ -138,15 +138,16 @@ def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, flo
 APPENDIX_A_COLUMNS: tuple[Column[ParameterRow], ...] = (
     Column("path", "Path", lambda r: r.path, width=24, page=PageCell(style="first")),
     Column("label", "Parameter", lambda r: r.label, width=46, page=PageCell(style="wide")),
-    Column("group", "Group", lambda r: r.group, width=14, page=PageCell()),
+    Column("group", "Group", lambda r: r.group, width=14),
     Column("unit", "Unit", lambda r: r.unit, width=8, page=PageCell()),
     Column("role", "Role", lambda r: r.role, width=10),
     Column("tied_to", None, lambda r: r.leader),
-    Column("baseline", "Baseline", lambda r: r.baseline, "0.0000", 12, page=PageCell(digits=5),
-           json="baseline"),
+    Column("baseline", "Baseline", lambda r: r.baseline, "0.0000", 12, json="baseline",
+           page=PageCell(text=lambda r: at_sd(r.baseline, r.sd))),
     Column("final", "Final", lambda r: r.final, "0.0000", 12, json="final",
            page=PageCell("Final ± sd", text=lambda r: with_sd(r.final, r.sd), strong=lambda r: True)),
-    Column("change", "Change", lambda r: r.change, "0.0000", 12, page=PageCell(layout="+.4f")),
+    Column("change", "Change", lambda r: r.change, "0.0000", 12,
+           page=PageCell(text=lambda r: signed(r.change, r.sd).partition(" ")[0])),
     Column("lower", "Lower", lambda r: r.lower, "0.0000", 12, page=PageCell(digits=5)),
     Column("upper", "Upper", lambda r: r.upper, "0.0000", 12, page=PageCell(digits=5)),
     Column("at_bound", "At bound", lambda r: r.at_bound, width=10),

@@ -9,6 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from doe_kc.discovery.result import Discovery
+from doe_kc.ground.numbers import at_sd
 from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table, diverging
 
 FULL_COLOUR_DISTANCE = 2.0
@@ -75,14 +76,16 @@ TUNED_COLUMNS: tuple[Column[TunedParameter], ...] = (
     Column("label", "Parameter", lambda p: p.label, width=44, page=PageCell(style="wide", text=_label)),
     Column("group", "Group", lambda p: p.group, width=15),
     Column("unit", "Unit", lambda p: p.unit, width=8, page=PageCell()),
-    Column("nominal", "Nominal", lambda p: p.nominal, "0.0000", 12, page=PageCell(digits=5)),
-    Column("tuned", "Re-tuned", lambda p: p.tuned, "0.0000", 12, page=PageCell(digits=5)),
+    Column("nominal", "Nominal", lambda p: p.nominal, "0.0000", 12,
+           page=PageCell(text=lambda p: at_sd(p.nominal, p.sd))),
+    Column("tuned", "Re-tuned", lambda p: p.tuned, "0.0000", 12,
+           page=PageCell(text=lambda p: at_sd(p.tuned, p.sd))),
     Column("with_effect", "With effect", lambda p: p.with_effect, "0.0000", 12),
     Column("sd", "sd", lambda p: p.sd, "0.0000", 12),
     Column("tuned_distance", "Distance re-tuned, sd", lambda p: p.tuned_distance, "0.00", 14,
-           page=PageCell("Re-tuned, sd", layout="+.2f")),
+           page=PageCell("Re-tuned, times scatter", layout="+.2f")),
     Column("with_effect_distance", "Distance with effect, sd", lambda p: p.with_effect_distance, "0.00", 14,
-           page=PageCell("With effect, sd", layout="+.2f")),
+           page=PageCell("With effect, times scatter", layout="+.2f")),
     Column("beyond", "Bounds", lambda p: p.beyond, width=10, words=lambda p: "outside" if p.beyond else ""),
 )  # fmt: skip
 
@@ -103,7 +106,7 @@ def tuned_table(discovery: Discovery) -> Table[TunedParameter]:
             "tuned-table",
             "Parameters",
             filtered=True,
-            choices={"moved": "only those more than one sd off"},
+            choices={"moved": "only those further off than production scatters"},
             tags=lambda p: "moved" if p.moved >= 1.0 else "",
             first=("path", "label", "unit", "nominal", "tuned", "last", "bar"),
         ),

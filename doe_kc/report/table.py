@@ -21,7 +21,8 @@ class PageCell(Generic[Row]):
     head: by default the column's. text: what is read, by default the column's words, a number as `layout` (a
     format specification) says or with `digits` significant digits; a dash for none. strong: rows that have it
     bold. order: what the column is sorted by where that is not its value. style: CSS class of all its cells.
-    attributes: further ones of one cell (title, style); its `class` is added to `style`.
+    attributes: further ones of one cell (title, style); its `class` is added to `style`. fill: colour behind
+    one cell, RRGGBB; empty for none.
     """
 
     head: str | None = None
@@ -32,6 +33,7 @@ class PageCell(Generic[Row]):
     order: Callable[[Row], float] | None = None
     style: str = ""
     attributes: Callable[[Row], Mapping[str, str]] | None = None
+    fill: Callable[[Row], str] | None = None
 
 
 @dataclass(frozen=True)
@@ -194,3 +196,11 @@ def three_digits(value: float) -> str:
     """Number format that shows three significant digits of a number of this size, seven decimals at most."""
     places = min(7, max(0, 2 - math.floor(math.log10(abs(value))))) if value else 0
     return f"0.{'0' * places}" if places else "0"
+
+
+def ink_on(fill: str) -> str:
+    """Black or white as RRGGBB, whichever is read better on a colour (its luma, ITU-R BT.601)."""
+    if not fill:
+        return "000000"
+    red, green, blue = (int(fill[i : i + 2], 16) for i in (0, 2, 4))
+    return "000000" if 0.299 * red + 0.587 * green + 0.114 * blue > 140 else "FFFFFF"

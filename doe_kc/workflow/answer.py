@@ -8,16 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
+from doe_kc.correlation.answer_record import AnswerRecord, CaseGap, EffectWords, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
-from doe_kc.correlation.likelihood import record_likelihood
+from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.model import NO_CHARACTERISTICS
-from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.discovery_words import effect_label, size_words
+from doe_kc.report.effect_words import effect_words
 from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
@@ -77,19 +79,42 @@ def answer_gap(
         else:
             final = fitted.model.likelihood.residual(after, NO_CHARACTERISTICS)
         return GapRecord(
-            nominal=known.nominal, tuned=known.tuned, final=_rms(final), noise_floor=known.noise_floor
+            nominal=known.nominal,
+            tuned=known.tuned,
+            final=_rms(final),
+            noise_floor=known.noise_floor,
+            cases=_case_gaps(fitted.model.likelihood, discovery.nominal, final),
         )
     data = record_likelihood(study.axle, measurement)
 
-    def left(curves: CurveSet) -> float:
-        return _rms(data.residual(curves, NO_CHARACTERISTICS))
+    def left(curves: CurveSet) -> FloatArray:
+        return data.residual(curves, NO_CHARACTERISTICS)
 
     if not data.curves:
         return None
-    return GapRecord(nominal=left(before), tuned=None, final=left(after), noise_floor=1.0)
+    first, last = left(before), left(after)
+    return GapRecord(
+        nominal=_rms(first),
+        tuned=None,
+        final=_rms(last),
+        noise_floor=1.0,
+        cases=_case_gaps(data, first, last),
+    )
 
 
-def _rms(residual: np.ndarray) -> float:
+def _case_gaps(data: Likelihood, before: FloatArray, after: FloatArray) -> dict[str, CaseGap]:
+    """Load case -> its gap; static angles under `static`. before, after: (M,) residuals of the same data."""
+    places: dict[str, list[int]] = {}
+    end = 0
+    for curve, place in data.slices():
+        places.setdefault(curve.load_case, []).extend(range(place.start, place.stop))
+        end = place.stop
+    if end < before.size:
+        places["static"] = list(range(end, before.size))
+    return {case: CaseGap(nominal=_rms(before[at]), final=_rms(after[at])) for case, at in places.items()}
+
+
+def _rms(residual: FloatArray) -> float:
     return float(np.sqrt(np.mean(residual**2)))
 
 
@@ -130,13 +155,30 @@ def answer_record(answer: Answer, seconds: float) -> AnswerRecord:
         added=[] if adoption is None else [_effect_line(answer, e) for e in adoption.effects],
         gap=answer.gap,
         seconds=seconds,
+        sentence=discovery.sentences[0] if discovery is not None else "",
+        words=[] if discovery is None else list(_effect_words(discovery, adoption)),
+    )
+
+
+def _effect_words(discovery: Discovery, adoption: Adoption | None) -> Iterator[EffectWords]:
+    """Of every finding, and of traces that were adopted."""
+    for finding in (*discovery.findings, *discovery.traces):
+        taken = _taken(finding, adoption)
+        if taken or finding in discovery.findings:
+            yield effect_words(discovery, finding).model_copy(update={"adopted": taken})
+
+
+def _taken(finding: Finding, adoption: Adoption | None) -> bool:
+    """Whether the axle handed over has it."""
+    adopted = adoption.effects if adoption is not None else ()
+    return any(
+        (e.id, e.location) == (finding.hypothesis.effect, finding.hypothesis.location) for e in adopted
     )
 
 
 def _effect_entries(discovery: Discovery, adoption: Adoption | None) -> Iterator[dict[str, Any]]:
-    adopted = {(e.id, e.location) for e in adoption.effects} if adoption is not None else set()
     for finding in (*discovery.findings, *discovery.traces):
-        taken = (finding.hypothesis.effect, finding.hypothesis.location) in adopted
+        taken = _taken(finding, adoption)
         named = discovery.verdict in ("named", "class") and finding in discovery.findings
         if named or taken:
             yield effect_entry(finding) | {"adopted": taken}
@@ -181,5 +223,5 @@ def answer_lines(assessment: Assessment, record: AnswerRecord) -> list[str]:
         if gap.tuned is not None:
             steps.append(f"{gap.tuned:.2f} re-tuned without an effect")
         steps.append(f"{gap.final:.2f} now")
-        lines.append(f"Deviation from the records: {' -> '.join(steps)} ({gap.noise_floor:.2f} is noise)")
+        lines.append(f"Deviation from the records: {' → '.join(steps)} ({gap.noise_floor:.2f} is noise)")
     return lines

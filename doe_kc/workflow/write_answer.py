@@ -11,13 +11,17 @@ from doe_kc.correlation.assessment import Assessment
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
-from doe_kc.report.page.answer import write_answer_page
+from doe_kc.report.overview import Overview
+from doe_kc.report.overview_sheet import write_overview
+from doe_kc.report.page.answer import files_there, write_answer_page
+from doe_kc.report.page.links import link_pages
 from doe_kc.study import Study
-from doe_kc.workflow.answer import answer_lines, summary_document
+from doe_kc.workflow.answer import summary_document
 from doe_kc.workflow.write_correlation import AXLE, axle_note
 
 SUMMARY = "summary.json"
 PAGE = "index.html"
+SHEET = "summary.pdf"
 
 
 def write_answer(
@@ -27,7 +31,8 @@ def write_answer(
     record: AnswerRecord,
     measurement: Measurement,
 ) -> list[Path]:
-    """axle.toml, summary.json and index.html in the study's folder; returns the paths.
+    """axle.toml, summary.json, index.html and summary.pdf, the page as one A4 sheet, in the study's folder;
+    returns the paths. All pages of the study are linked with each other.
 
     RunError when the folder cannot be written.
     """
@@ -36,18 +41,17 @@ def write_answer(
     )
     document = summary_document(correlation, assessment, record, str(study.out / AXLE))
     summary = write_json(study.out / SUMMARY, document)
+    overview = Overview(study.name, date.today().isoformat(), correlation, assessment, record)
+    sheet = write_overview(study.out / SHEET, overview, files_there(study.out))
     page = write_answer_page(
         study.out / PAGE,
-        correlation,
-        assessment,
-        study=study.name,
-        date=date.today().isoformat(),
-        lines=answer_lines(assessment, record)[1:],
+        overview,
         notes={
             "Axle": f"{AXLE}, from {study.axle_path.name}",
             "Measurement": measurement.manifest.name,
             "Run time": f"{record.seconds:.0f} s",
         },
-        folder=study.out,
+        files=files_there(study.out),
     )
-    return [axle, summary, page]
+    link_pages(study.out)
+    return [axle, summary, page, sheet]

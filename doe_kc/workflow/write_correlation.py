@@ -20,6 +20,7 @@ from doe_kc.report.correlation_summary import summary
 from doe_kc.report.correlation_terms import curve_table, term_frame
 from doe_kc.report.correlation_workbook import write_correlation_workbook
 from doe_kc.report.page import write_correlation_page
+from doe_kc.report.page.links import link_pages
 from doe_kc.report.render.csv import table_frame
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
@@ -62,12 +63,14 @@ def write_correlation(
         "notes": notes,
         "assessment": verdict,
     }
+    page = write_correlation_page(folder / "report.html", correlation, measurement, **words)
+    link_pages(folder.parent)
     return [
         axle,
         *(write_csv(folder / name, table_frame(of(correlation))) for name, of in CORRELATION_TABLES.items()),
         write_csv(folder / "rating_terms.csv", term_frame(correlation)),
         write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
-        write_correlation_page(folder / "report.html", correlation, measurement, **words),
+        page,
         *_write_figures(study, correlation, measurement, folder, workers),
         *(_write_front(correlation, folder, study) if correlation.method == "pareto" else ()),
     ]

@@ -19,6 +19,7 @@ from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_o
 from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
+from doe_kc.report.page.links import link_pages
 from doe_kc.report.render.csv import table_frame
 from doe_kc.report.table import Table
 from doe_kc.study import Study
@@ -60,11 +61,13 @@ def write_discovery(
     }
     words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
     known = {"Measurement": measurement.manifest.name, **notes}
+    page = write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words)
+    link_pages(folder.parent)
     return [
         *written,
         *(write_csv(folder / name, table_frame(of(discovery))) for name, of in DISCOVERY_TABLES.items()),
         write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
-        write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words),
+        page,
         *write_discovery_figures(
             discovery, folder, study=study.name, workers=workers, pictures=study.pictures
         ),

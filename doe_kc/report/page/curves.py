@@ -33,9 +33,7 @@ CORRELATION_MODELS = (
     ShownModel("baseline", "baseline", "#e69f00", "7 4"),
     ShownModel("final", "final", "#0072b2"),
 )
-CURVES_LEAD = (
-    "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
-)
+CURVES_LEAD = "Angles and wheel centre are changes from static."
 
 
 def curves_section(correlation: Correlation, measurement: Measurement | None) -> list[Section]:
