@@ -39,7 +39,10 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
     return EffectWords(
         label=hypothesis_label(finding.hypothesis),
         kind=kind_of(discovery, finding),
-        sizes=[f"{size_name(s.size)} {s.words}" for s in found_sizes(discovery, finding)],
+        sizes=[
+            f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
+            for s in found_sizes(discovery, finding)
+        ],
         sure=sure_words(discovery, finding),
         physics=effect.physics,
         rivals=", ".join(
@@ -49,8 +52,10 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
     )
 
 
-def size_name(size: Size) -> str:
-    """`stiffness in camber`, `LLR, X`."""
+def size_name(size: Size, location: str | None = None) -> str:
+    """`stiffness in camber`, `LLR, X`; without the location, which is said already."""
+    if size.index is not None and size.key == location:
+        return AXES[size.index]
     suffix = "_" + size.unit.replace("/", "_")
     name = SIZE_WORDS.get(size.key, size.key.removesuffix(suffix).replace("_", " "))
     return name if size.index is None else f"{name}, {AXES[size.index]}"

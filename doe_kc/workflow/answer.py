@@ -20,6 +20,7 @@ from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.discovery_words import effect_label, size_words
 from doe_kc.report.effect_words import effect_words
+from doe_kc.report.names import case_label, response_name
 from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
@@ -135,7 +136,9 @@ def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | 
             )
     left = [f for f in discovery.findings if f.hypothesis.effect not in taken]
     if discovery.verdict == "unexplained":
-        places = sorted({f"{c.load_case} {c.response}" for c, _ in discovery.unexplained})
+        places = sorted(
+            {f"{case_label(c.load_case)} ({response_name(c.response)})" for c, _ in discovery.unexplained}
+        )
         where = f": {', '.join(places)}" if places else ""
         leads = ", ".join(effect_label(f.hypothesis.effect).lower() for f in left)
         hint = f"; the best lead, not adopted, is {leads}" if leads else ""

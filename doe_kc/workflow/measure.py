@@ -16,6 +16,8 @@ from doe_kc.measurement import (
     measurement_to_frames,
     reduce_measurement,
 )
+from doe_kc.report.page.links import link_pages
+from doe_kc.report.page.measurement import write_measurement_page
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
@@ -66,7 +68,7 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
 def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
-    """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
+    """curves.csv, characteristics.csv, gradients.csv, noise.csv, report.html and one picture a load case."""
     frames = measurement_to_frames(reduced.measurement)
     tables = {
         "curves.csv": frames.curves,
@@ -75,6 +77,8 @@ def write_reduced(
         "noise.csv": frames.noise,
     }
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
+    written.append(write_measurement_page(folder / "report.html", reduced.measurement))
+    link_pages(folder.parent)
     if pictures == "none":
         return written
     from doe_kc.report.rig_figures import write_rig_figures

@@ -6,6 +6,7 @@ from datetime import date
 from pathlib import Path
 
 from doe_kc.axle_file.write import write_axle
+from doe_kc.characteristics import reduce_all
 from doe_kc.correlation.answer_record import AnswerRecord
 from doe_kc.correlation.assessment import Assessment
 from doe_kc.correlation.result import Correlation
@@ -15,6 +16,7 @@ from doe_kc.report.overview import Overview
 from doe_kc.report.overview_sheet import write_overview
 from doe_kc.report.page.answer import files_there, write_answer_page
 from doe_kc.report.page.links import link_pages
+from doe_kc.report.page.simulation import write_simulation_page
 from doe_kc.study import Study
 from doe_kc.workflow.answer import summary_document
 from doe_kc.workflow.write_correlation import AXLE, axle_note
@@ -31,14 +33,15 @@ def write_answer(
     record: AnswerRecord,
     measurement: Measurement,
 ) -> list[Path]:
-    """axle.toml, summary.json, index.html and summary.pdf, the page as one A4 sheet, in the study's folder;
-    returns the paths. All pages of the study are linked with each other.
+    """axle.toml, summary.json, index.html and summary.pdf, the page as one A4 sheet, in the study's folder,
+    and the page of the axle handed in; returns the paths. All pages of the study are linked with each other.
 
     RunError when the folder cannot be written.
     """
     axle = write_axle(
         correlation.axle, study.axle_path, study.out / AXLE, note=axle_note(correlation, assessment)
     )
+    given = _write_given(study, correlation)
     document = summary_document(correlation, assessment, record, str(study.out / AXLE))
     summary = write_json(study.out / SUMMARY, document)
     overview = Overview(study.name, date.today().isoformat(), correlation, assessment, record)
@@ -54,4 +57,14 @@ def write_answer(
         files=files_there(study.out),
     )
     link_pages(study.out)
-    return [axle, summary, page, sheet]
+    return [axle, summary, page, sheet, *given]
+
+
+def _write_given(study: Study, correlation: Correlation) -> list[Path]:
+    """The page of the axle handed in, where its solver gives curves."""
+    curves = correlation.baseline.outcome.curves
+    if curves is None:
+        return []
+    values, today = reduce_all(curves, study.windows), date.today().isoformat()
+    path = study.out / "simulate" / "report.html"
+    return [write_simulation_page(path, curves, values, study=study.name, date=today)]

@@ -60,7 +60,7 @@ def _outside(beyond: Sequence[str], widened: float) -> str:
 
 
 def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str]) -> str:
-    names = " and ".join(_label(f) for f in findings)
+    names = _listed([_label(f) for f in findings])
     if verdict.kind == "named":
         return f"The model lacks {names}."
     if verdict.kind == "class":
@@ -72,6 +72,11 @@ def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str
     if findings:
         return f"Something is missing that the library does not name for sure; the best lead is {names}."
     return "Something is missing that no effect of the library explains."
+
+
+def _listed(names: Sequence[str]) -> str:
+    """`a, b and c`."""
+    return " and ".join(n for n in (", ".join(names[:-1]), *names[-1:]) if n)
 
 
 def _label(finding: Finding) -> str:

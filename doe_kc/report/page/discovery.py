@@ -58,7 +58,7 @@ def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:
     steps = gap_steps(discovery)
     html = render(
         "discovery_verdict.html",
-        headline=HEADLINES[discovery.verdict],
+        headline=_headline(discovery),
         fill=VERDICT_FILLS[discovery.verdict],
         ink=ink_on(VERDICT_FILLS[discovery.verdict]),
         sentence=discovery.sentences[0],
@@ -74,6 +74,11 @@ def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:
         notes=notes,
     )
     return Section("Verdict", html)
+
+
+def _headline(discovery: Discovery) -> str:
+    several = discovery.verdict == "named" and len(discovery.findings) > 1
+    return "Effects named" if several else HEADLINES[discovery.verdict]
 
 
 VERDICT_FILLS: Mapping[VerdictKind, str] = {

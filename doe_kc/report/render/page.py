@@ -23,7 +23,7 @@ CHART_DIGITS = 7
 """Significant digits of the numbers that the page's charts hold."""
 NUMBER_STYLE = "n"
 """CSS class of cells that hold numbers."""
-HEAD_STYLES = ("first", NUMBER_STYLE)
+HEAD_STYLES = ("first", NUMBER_STYLE, "turned")
 """Classes that a head shares with the cells below it."""
 Paper = Literal["landscape", "portrait"]
 """A4 across, of as many sheets as it takes; or upright, for what is meant for one sheet."""

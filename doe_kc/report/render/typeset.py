@@ -38,7 +38,8 @@ def typeset(text: str) -> Markup:
 
 def signs(text: str) -> str:
     """Typewriter signs as those of print."""
-    return _NEGATIVE.sub(MINUS, text).replace("->", "→").replace("+-", "±")
+    text = _NEGATIVE.sub(MINUS, text).replace("->", "→").replace("+-", "±")
+    return text.replace("^2", "²").replace("^3", "³")
 
 
 def unsigned_zero(text: str) -> str:

@@ -5,7 +5,10 @@ for (const controls of document.querySelectorAll("[data-curves]")) (function () 
   const data = JSON.parse(part("data").textContent);
   const INK = "#000000", SIDES = ["left", "right"];
   const caseList = part("case"), responseList = part("response"), readout = part("readout");
-  const shows = (name) => controls.querySelector('[data-show="' + name + '"]').checked;
+  const shows = (name) => {
+    const box = controls.querySelector('[data-show="' + name + '"]');
+    return box !== null && box.checked;
+  };
   const now = () => ({ item: data.cases[caseList.value], response: responseList.value });
   const inputs = (set, response, item) => {
     const x = set.x || (item || now().item).x;
@@ -64,14 +67,14 @@ for (const controls of document.querySelectorAll("[data-curves]")) (function () 
       const sets = [item.measured, ...data.models.map((m) => item[m.id])];
       const line = x === null ? [] : sets.map((set) => between(set, response, side, x));
       const last = line[line.length - 1], off = line.length && line[0] !== null && last !== null ? last - line[0] : null;
-      const values = x === null ? [] : [...line, off];
+      const values = x === null ? [] : data.models.length ? [...line, off] : line;
       return [name + " wheel", ...[...values, ...data.models.map((m, i) => rms[i])].map(format)];
     });
   }
   function tell(x) {
     const { item, response } = now(), unit = data.responses[response].unit;
     const names = data.models.map((m) => m.label), last = names[names.length - 1];
-    const at = x === null ? [] : ["measured", ...names, last + " − measured"];
+    const at = x === null ? [] : ["measured", ...names, ...(last ? [last + " − measured"] : [])];
     const heads = [...at, ...names.map((n) => "RMS " + n)].map((h) => h + " [" + unit + "]");
     heads.unshift(x === null ? "" : format(x) + " " + item.unit);
     const table = document.createElement("table"), top = table.createTHead().insertRow(), body = table.createTBody();
