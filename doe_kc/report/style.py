@@ -95,7 +95,9 @@ def _write_svg_file(fig: Picture | Figure, path: Path, note: str) -> None:
 
 
 def _figure(fig: Picture | Figure) -> Figure:
-    return fig.figure() if callable(getattr(fig, "figure", None)) else fig
+    from matplotlib.figure import Figure
+
+    return fig if isinstance(fig, Figure) else fig.figure()
 
 
 def _pixels(fig: Picture | Figure) -> NDArray[np.uint8]:
@@ -104,7 +106,7 @@ def _pixels(fig: Picture | Figure) -> NDArray[np.uint8]:
         return fig.pixels()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    canvas = FigureCanvasAgg(fig)
+    canvas = FigureCanvasAgg(_figure(fig))
     canvas.draw()  # type: ignore[no-untyped-call]
     return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
 

@@ -97,7 +97,7 @@ def line_image(line: str, size: float, weight: str, family: str, formula: bool) 
 
 
 def _plain(line: str, size: float, weight: str, family: str) -> LineImage:
-    font = get_font(_font_files(weight, family))  # type: ignore[no-untyped-call]
+    font = get_font(_font_files(weight, family))
     font.clear()
     font.set_size(size, DPI)
     font.set_text(line, 0.0, flags=get_hinting_flag())  # type: ignore[no-untyped-call]
@@ -125,7 +125,7 @@ def _formula(line: str, size: float, weight: str, family: str) -> LineImage:
 
 @lru_cache(maxsize=64)
 def _font_files(weight: str, family: str) -> str:
-    return str(findfont(FontProperties(family=family, weight=weight)))  # type: ignore[no-untyped-call]
+    return str(findfont(FontProperties(family=family, weight=weight)))
 
 
 def line_size(line: str, size: float, weight: str, family: str, formula: bool) -> tuple[float, float, float]:
