@@ -28,8 +28,8 @@ DIRECTIONS = (
     "56fd06ad3df61c7e326636a42514324a2d8233383a227fa33cff0b37328b01601a4c11b56481727a13472ff91d766cdd28e5"
     "1acf642a766343c618880650"
 )
-"""Four hexadecimal digits a dimension: the odd direction numbers m_2 ... m_6, each halved, in 1 ... 5 bits from
-the lowest one."""
+"""Four hexadecimal digits a dimension: the odd direction numbers m_2 ... m_6, each halved, in 1 to 5 bits
+from the lowest one."""
 DIMENSIONS = len(DIRECTIONS) // 4
 
 
