@@ -14,6 +14,7 @@ from __future__ import annotations
 import casadi as ca
 
 from doe_kc.axle.model import FORCE_AXES, NM_PER_DEG
+from doe_kc.axle.structure import of_side
 from doe_kc.solver import curve, rotation
 from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._cuts import ROTATION_AXES, SHIFTS, push_pair, stretch, turn_pair, turn_sign
@@ -61,20 +62,20 @@ def _item(values: list[ca.SX], i: int) -> Response:
 
 
 def _force(b: Builder, name: str, side: str, axis: str, d: ca.SX) -> ca.SX:
-    factor = b.parameter(f"{name}.{axis}@{side}")
-    preload = b.constant(b.parameter(f"{name}.preload.{axis}@{side}"))
+    factor = b.parameter(of_side(f"{name}.{axis}", side))
+    preload = b.constant(b.parameter(of_side(f"{name}.preload.{axis}", side)))
     if table := _table(b, name, side, axis):
         return b.constant(factor) * table(d) + preload
-    k = b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}"))
-    cubic = b.constant(b.parameter(f"{name}.cubic.{axis}@{side}"))
+    k = b.constant(factor * b.parameter(of_side(f"{name}.stiffness.{axis}", side)))
+    cubic = b.constant(b.parameter(of_side(f"{name}.cubic.{axis}", side)))
     return k * (d + cubic * d**3) + preload
 
 
 def _torque(b: Builder, name: str, side: str, axis: str, phi: ca.SX) -> ca.SX:
-    factor = b.parameter(f"{name}.{axis}@{side}")
+    factor = b.parameter(of_side(f"{name}.{axis}", side))
     if table := _table(b, name, side, axis):
         return b.constant(factor) * turn_sign(side) * table(turn_sign(side) * phi)
-    return b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}") * NM_PER_DEG) * phi
+    return b.constant(factor * b.parameter(of_side(f"{name}.stiffness.{axis}", side)) * NM_PER_DEG) * phi
 
 
 def _table(b: Builder, name: str, side: str, axis: str) -> curve.SymbolicCurve | None:
