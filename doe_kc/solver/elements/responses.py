@@ -31,6 +31,11 @@ AXLE_OUTPUT_UNITS = {"rack_travel": "mm", "rack_force": "N", "column_force": "N"
 """Of the axle as a whole."""
 
 
+def output_unit(name: str) -> str:
+    """Unit of an output without its side; outputs beyond the tables are the forces of rods."""
+    return OUTPUT_UNITS.get(name) or AXLE_OUTPUT_UNITS.get(name) or "N"
+
+
 @element
 class Responses(Element):
     """Outputs `name@L`/`@R` per side, and those of the rack."""

@@ -80,12 +80,9 @@ def _positions(b: Builder, structure: Structure, side: str, split: str) -> dict[
 
 
 def _forces(b: Builder, structure: Structure, side: str) -> dict[str, ca.SX]:
-    out = {
-        f"{rod.name}": b.points[f"{rod.name.replace('_', ' ')}.{side}"]
-        for rod in structure.rods
-        if not rod.single
-    }
-    return out | {
+    """The rods that there are on either side, by name, and the forces that every axle has."""
+    rods = [rod.name for rod in structure.rods if not rod.single]
+    return {name: b.points[f"{name.replace('_', ' ')}.{side}"] for name in rods} | {
         "tyre_load": b.points[f"tyre.{side}"],
         "spring": b.points[f"spring.{side}"],
         "stop": b.points[f"stop.{side}"],
