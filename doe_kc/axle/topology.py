@@ -7,7 +7,9 @@ from typing import Literal
 
 from doe_kc.axle.structure import Structure
 
-FrictionLaw = Literal["none", "dahl", "iwan"]
+FrictionLaw = Literal["none", "dahl", "iwan", "lognormal", "backbone"]
+BACKBONE_YIELDS = (0.16, 0.4, 1.0, 2.5, 6.25)
+"""Yield displacements of the sliders of a free backbone, over the presliding distance."""
 
 TOPOLOGY_CACHE = 64
 """Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""
@@ -19,6 +21,7 @@ class Topology:
 
     bump_points, rebound_points: number of points of the stop curves.
     tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
+    rubber: bushings whose translational axes have friction beside their elastic law.
     probes: whether zero-valued dislocations and force pairs are in, for derivatives to them alone.
     structure: bodies and connections of the axle's type; None: the McPherson axle's.
     elastic_balls, play_balls: ball joints that are springs, or have free play, by name of either side:
@@ -39,6 +42,7 @@ class Topology:
     free_play_right: bool = False
     steering_friction: FrictionLaw = "none"
     strut_friction: FrictionLaw = "none"
+    rubber: tuple[str, ...] = ()
     bump_points: int = 7
     rebound_points: int = 5
     tables: tuple[tuple[str, str, int], ...] = ()
@@ -49,4 +53,4 @@ class Topology:
     @property
     def frictional(self) -> bool:
         """True when the path matters, so that load cases run as loops."""
-        return self.steering_friction != "none" or self.strut_friction != "none"
+        return self.steering_friction != "none" or self.strut_friction != "none" or bool(self.rubber)
