@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle_file import read_axle
+from doe_kc.effects import apply_effect
 from tests.reference import OTHER_PATHS
 
 DATA = Path(__file__).parent / "data" / "axle_types"
@@ -60,3 +63,36 @@ def curves(axle_type: str, name: str) -> pd.DataFrame:
 def files(axle_type: str) -> list[str]:
     """Names of the type's curves."""
     return sorted(path.name.removesuffix(".csv.xz") for path in (DATA / axle_type).glob("*.csv.xz"))
+
+
+EFFECT_IDS = {
+    "bushing_cubic": "bushing_progression",
+    "damper_friction": "strut_friction",
+    "link_compliance": "tie_rod_compliance",
+}
+"""Their tables whose effects have other names here."""
+
+
+def with_effect(axle_type: str, name: str) -> Axle:
+    """The nominal axle with the effect of a file."""
+    ((table, options),) = document(axle_type, name).items()
+    axle, ident = nominal(axle_type), EFFECT_IDS.get(table, table)
+    if table == "free_play" and name == "effect_ball_free_play":
+        ident = "ball_free_play"
+    return apply_effect(axle, ident, own_options(table, options), source=name)
+
+
+def own_options(table: str, options: Mapping[str, Any]) -> dict[str, Any]:
+    """Their options by our names."""
+    out = dict(options)
+    if table == "link_compliance":
+        del out["links"]
+    if table == "free_play":
+        out["contact_N_mm"] = out.pop("k_contact_N_mm")
+        assert out.pop("k_residual_N_mm") == 20.0
+    if table == "subframe":
+        wanted = {"body": "subframe", "centre": ["SFF", "SFR"]}
+        assert {key: out.pop(key) for key in wanted} == wanted
+        assert out.pop("k_N_mm") == [40000, 40000, 20000]
+        assert out.pop("kr_Nm_deg") == [1500, 3000, 6000]
+    return out
