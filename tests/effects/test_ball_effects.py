@@ -32,7 +32,7 @@ def test_an_axle_without_such_joints_has_none(ident: str) -> None:
 
 @pytest.mark.parametrize("ident", BALL_EFFECTS)
 def test_an_unknown_joint_is_named(ident: str) -> None:
-    with pytest.raises(InputError, match="TLO_X.*TLO_L"):
+    with pytest.raises(InputError, match=r"TLO_X.*TLO_L"):
         apply_effect(nominal("five_link_rear"), ident, {"joints": ["TLO_X"]}, source="test")
 
 
