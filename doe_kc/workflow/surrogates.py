@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
+from doe_kc.measurement import reduce_measurement
 from doe_kc.parameter_influence.study import influence_study
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs
@@ -68,6 +70,17 @@ def one_at_a_time_changes(study: Study, designs: Designs, *, workers: int | None
     if study.solver.command or not free.any():
         return out
     rows = [v.parameter for v, f in zip(space.variables, free, strict=True) if f]
-    found = influence_study(study.axle, rows, designs.characteristics, workers=workers, windows=study.windows)
-    out[free] = found.absolute
+    influence = influence_study(
+        study.axle, rows, designs.characteristics, workers=workers, windows=study.windows
+    )
+    out[free] = influence.absolute
     return out
+
+
+def measured_values(study: Study) -> dict[str, float]:
+    """Characteristic -> measured value, which the figures show; none without a measurement."""
+    if study.measurement is None:
+        return {}
+    measured = reduce_measurement(study.measurement, windows=study.windows, half_track=study.axle.half_track)
+    values = {name: estimate.value for name, estimate in measured.characteristics.items()}
+    return {name: value for name, value in values.items() if math.isfinite(value)}

@@ -31,21 +31,21 @@ def sample(
 ) -> None:
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
     form = require_format(export) if export is not None else None
-    found = study_options.read()
-    design = study_design(found, method=method, n=n)
+    study = study_options.read()
+    design = study_design(study, method=method, n=n)
     with progress_bar(design.method, len(design.values)) as advance:
         sampled = run_sample(
-            found,
+            study,
             design,
             workers=study_options.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
             progress=advance,
         )
-    document = sample_document(found, sampled)
+    document = sample_document(study, sampled)
     if study_options.json is not None:
         write_json(study_options.json, document)
-    written = write_sample(found, sampled, found.out / "sample", form)
+    written = write_sample(study, sampled, study.out / "sample", form)
     for line in sample_lines(document):
         typer.echo(line)
-    typer.echo(f"{len(written)} files in {found.out / 'sample'}; store {found.store}", err=True)
+    typer.echo(f"{len(written)} files in {study.out / 'sample'}; store {study.store}", err=True)
