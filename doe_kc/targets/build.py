@@ -234,8 +234,8 @@ def reached(axle: Axle, case: CaseCurves) -> NDArray[np.bool_]:
 
 def last(options: Sequence[CharacteristicOptions] | Sequence[CurveOptions], key: str) -> Any:
     """The last given value of a key, None when no entry gives it."""
-    found = [getattr(o, key) for o in options if getattr(o, key) is not None]
-    return found[-1] if found else None
+    values = [getattr(o, key) for o in options if getattr(o, key) is not None]
+    return values[-1] if values else None
 
 
 def first(value: Any, default: Any) -> Any:

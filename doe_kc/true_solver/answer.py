@@ -54,8 +54,8 @@ def read_characteristics(folder: Path) -> FloatArray | None:
         entries = _from_document(document)
     else:
         return None
-    found = {name: _value(name, value, unit) for name, value, unit in entries}
-    return np.array([found.get(name, math.nan) for name in CHARACTERISTICS])
+    values = {name: _value(name, value, unit) for name, value, unit in entries}
+    return np.array([values.get(name, math.nan) for name in CHARACTERISTICS])
 
 
 def _from_table(file: Path) -> list[tuple[str, object, object]]:

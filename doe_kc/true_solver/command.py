@@ -120,13 +120,13 @@ class CommandSolver:
         curves = read_curves(place / "curves.csv", model, self.load_cases, self.windows)
         if curves is None and given is None:
             raise Unreadable("wrote neither curves.csv nor characteristics.csv nor characteristics.json")
-        found = np.full_like(given, np.nan) if curves is None and given is not None else None
+        characteristics = np.full_like(given, np.nan) if curves is None and given is not None else None
         if curves is not None:
-            found = reduced(curves, self.windows)
-        assert found is not None
+            characteristics = reduced(curves, self.windows)
+        assert characteristics is not None
         if given is not None:
-            found = np.where(np.isnan(found), given, found)
-        return checked(Outcome(curves, found, "", 0.0))
+            characteristics = np.where(np.isnan(characteristics), given, characteristics)
+        return checked(Outcome(curves, characteristics, "", 0.0))
 
 
 def parameters_document(values: Values) -> str:

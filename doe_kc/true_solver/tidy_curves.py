@@ -85,11 +85,11 @@ def _unit(case: str, rows: pd.DataFrame, axle: Axle) -> str:
     known = {axle.load_cases[case].unit} if case in axle.load_cases else set()
     if case == "roll":
         known |= {technique.unit for technique in ROLL_TECHNIQUES.values()}
-    found = set(rows["input_unit"])
-    if len(found) != 1 or not found <= known:
-        given = ", ".join(sorted(map(str, found)))
+    units = set(rows["input_unit"])
+    if len(units) != 1 or not units <= known:
+        given = ", ".join(sorted(map(str, units)))
         raise Unreadable(f"curves.csv: load case {case} has input_unit {given}, expected {min(known)}")
-    return str(found.pop())
+    return str(units.pop())
 
 
 def _branches(

@@ -162,13 +162,13 @@ def summary_document(
 
 def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     """Name, place and sizes with their standard deviations."""
-    found = answer.discovery
-    if found is None:
+    discovery = answer.discovery
+    if discovery is None:
         return effect.label
     place = (effect.id, effect.location)
-    for finding in (*found.findings, *found.traces):
+    for finding in (*discovery.findings, *discovery.traces):
         if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
-            return f"{effect.label}: {size_words(found, finding)}"
+            return f"{effect.label}: {size_words(discovery, finding)}"
     return effect.label
 
 

@@ -79,8 +79,8 @@ def run_sample(
     with Campaign(
         solver, study.store, workers=workers, scheduler=scheduler, retry_failed=retry_failed
     ) as campaign:
-        found = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
-    return SampleResult(design, tuple(found), campaign.runs, time.perf_counter() - started)
+        outcomes = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
+    return SampleResult(design, tuple(outcomes), campaign.runs, time.perf_counter() - started)
 
 
 def write_sample(study: Study, sampled: SampleResult, folder: Path, form: Format | None = None) -> list[Path]:
