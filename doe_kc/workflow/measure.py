@@ -9,13 +9,15 @@ from typing import Any
 
 from doe_kc.ground.output import write_csv
 from doe_kc.ground.picture_format import PNG, PictureFormat
-from doe_kc.measurement import (
-    Measurement,
-    RideHeight,
-    infer_ride_height,
-    measurement_to_frames,
-    reduce_measurement,
+from doe_kc.measurement import Measurement, RideHeight, infer_ride_height, reduce_measurement
+from doe_kc.report.measurement_tables import (
+    gradient_table,
+    measured_characteristic_table,
+    measured_curve_frame,
+    noise_table,
 )
+from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.json import table_records
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
@@ -67,31 +69,30 @@ def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
-    frames = measurement_to_frames(reduced.measurement)
+    measurement = reduced.measurement
     tables = {
-        "curves.csv": frames.curves,
-        "characteristics.csv": frames.characteristics,
-        "gradients.csv": frames.gradients,
-        "noise.csv": frames.noise,
+        "curves.csv": measured_curve_frame(measurement),
+        "characteristics.csv": table_frame(measured_characteristic_table(measurement)),
+        "gradients.csv": table_frame(gradient_table(measurement)),
+        "noise.csv": table_frame(noise_table(measurement)),
     }
     written = [write_csv(folder / name, frame) for name, frame in tables.items()]
     if pictures == "none":
         return written
     from doe_kc.report.rig_figures import write_rig_figures
 
-    return written + write_rig_figures(reduced.measurement, folder, workers=workers, pictures=pictures)
+    return written + write_rig_figures(measurement, folder, workers=workers, pictures=pictures)
 
 
 def reduced_document(reduced: Reduced) -> dict[str, Any]:
     """What `reduce --json` writes: characteristics with standard errors, ride height, noise."""
-    frames = measurement_to_frames(reduced.measurement)
+    characteristics = measured_characteristic_table(reduced.measurement)
     height = reduced.ride_height
     return {
         "name": reduced.measurement.manifest.name,
-        "characteristics": {
-            row["name"]: {k: row[k] for k in ("value", "sd", "unit", "load_case")}
-            for row in frames.characteristics.to_dict("records")
-        },
+        "characteristics": dict(
+            zip((r.entry.id for r in characteristics.rows), table_records(characteristics), strict=True)
+        ),
         "ride_height_mm": None
         if height is None
         else {
@@ -102,5 +103,5 @@ def reduced_document(reduced: Reduced) -> dict[str, Any]:
                 c.response: {"estimate": c.estimate, "sd": c.sd, "used": c.used} for c in height.contributions
             },
         },
-        "noise": frames.noise.to_dict("records"),
+        "noise": table_records(noise_table(reduced.measurement)),
     }

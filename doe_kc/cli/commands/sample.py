@@ -42,10 +42,9 @@ def sample(
             retry_failed=retry_failed,
             progress=advance,
         )
-    document = sample_document(study, sampled)
     if study_options.json is not None:
-        write_json(study_options.json, document)
+        write_json(study_options.json, sample_document(study, sampled))
     written = write_sample(study, sampled, study.out / "sample", form)
-    for line in sample_lines(document):
+    for line in sample_lines(sampled):
         typer.echo(line)
     typer.echo(f"{len(written)} files in {study.out / 'sample'}; store {study.store}", err=True)
