@@ -16,9 +16,13 @@ from doe_kc.report import surrogate_tables as tables
 from doe_kc.report.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.surrogates.report import SurrogateReport
-from doe_kc.workflow.surrogate_plan import plan_surrogates
-from doe_kc.workflow.surrogates import measured_values, run_surrogates
-from doe_kc.workflow.write_surrogates import surrogate_lines, write_surrogates
+from doe_kc.workflow.surrogates import (
+    measured_values,
+    plan_surrogates,
+    run_surrogates,
+    surrogate_lines,
+    write_surrogates,
+)
 
 if TYPE_CHECKING:
     import pandas as pd

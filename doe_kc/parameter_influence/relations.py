@@ -15,7 +15,7 @@ import pandas as pd
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 
 STRONG_PERCENT = 20.0
 """Entries below this share of a column's peak are left out."""

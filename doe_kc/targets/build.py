@@ -18,8 +18,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement import Measurement
 from doe_kc.targets.comparison.interval import constraint_interval
-from doe_kc.targets.names import check_names
-from doe_kc.targets.options import CharacteristicOptions, CurveOptions
+from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
 from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
 
 STATIC = "static"

@@ -8,11 +8,10 @@ from pathlib import Path
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison
-from doe_kc.workflow.answer import answer_lines
+from doe_kc.workflow.answer import answer_lines, write_answer
 from doe_kc.workflow.compare import compare_model, write_comparison
 from doe_kc.workflow.measure import study_records
 from doe_kc.workflow.reload_correlation import Recalled, recall
-from doe_kc.workflow.write_answer import write_answer
 from doe_kc.workflow.write_correlation import correlation_lines, write_correlation
 
 

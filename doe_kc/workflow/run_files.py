@@ -12,12 +12,11 @@ from doe_kc.report.simulation_tables import write_simulation
 from doe_kc.solver.result import Solution
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison
-from doe_kc.workflow.answer import Answer
+from doe_kc.workflow.answer import Answer, write_answer
 from doe_kc.workflow.compare import write_comparison
 from doe_kc.workflow.influence import StudyInfluence, write_influence
 from doe_kc.workflow.measure import Reduced, write_reduced
 from doe_kc.workflow.reload_correlation import write_chain
-from doe_kc.workflow.write_answer import write_answer
 from doe_kc.workflow.write_correlation import write_correlation
 from doe_kc.workflow.write_discovery import write_discovery
 

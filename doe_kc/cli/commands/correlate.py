@@ -7,9 +7,8 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.options import SchedulerOption
+from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.cli.progress import correlation_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import RunError

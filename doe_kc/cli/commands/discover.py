@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.cli.progress import described_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement

@@ -5,12 +5,12 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.study import Study
 from doe_kc.workflow.influence import (
     StudyInfluence,

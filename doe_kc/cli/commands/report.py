@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.study_options import StudyOptions, takes_study
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.workflow.rebuild import rebuild, write_rebuilt
 from doe_kc.workflow.write_correlation import AXLE, correlation_document

@@ -8,9 +8,8 @@ import typer
 
 from doe_kc.campaign.export import require_format
 from doe_kc.cli._app import app
-from doe_kc.cli.options import SchedulerOption
+from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, study_design, write_sample
 

@@ -7,12 +7,17 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
-from doe_kc.workflow.surrogate_plan import plan_surrogates
-from doe_kc.workflow.surrogates import measured_values, run_surrogates
-from doe_kc.workflow.write_surrogates import surrogate_lines, surrogates_document, write_surrogates
+from doe_kc.workflow.surrogates import (
+    measured_values,
+    plan_surrogates,
+    run_surrogates,
+    surrogate_lines,
+    surrogates_document,
+    write_surrogates,
+)
 
 
 @app.command("surrogates")
