@@ -117,5 +117,5 @@ def discover_folder(
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
     with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as cache:
-        found = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
-    return dict(discovery_document(found, None))
+        discovery = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
+    return dict(discovery_document(discovery, None))
