@@ -29,7 +29,7 @@ SIZE_WORDS: Mapping[str, str] = {
     "scale": "stiffness factor",
 }
 """Option of an effect -> what it is called; others by their own names without the unit."""
-AXES = "XYZ"
+AXIS_LETTERS = "XYZ"
 """Of a list option's components."""
 
 
@@ -55,10 +55,10 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
 def size_name(size: Size, location: str | None = None) -> str:
     """`stiffness in camber`, `LLR, X`; without the location, which is said already."""
     if size.index is not None and size.key == location:
-        return AXES[size.index]
+        return AXIS_LETTERS[size.index]
     suffix = "_" + size.unit.replace("/", "_")
     name = SIZE_WORDS.get(size.key, size.key.removesuffix(suffix).replace("_", " "))
-    return name if size.index is None else f"{name}, {AXES[size.index]}"
+    return name if size.index is None else f"{name}, {AXIS_LETTERS[size.index]}"
 
 
 def sure_words(discovery: Discovery, finding: Finding) -> str:

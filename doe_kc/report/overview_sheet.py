@@ -5,9 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from matplotlib import rc_context
-from matplotlib.backends.backend_pdf import FigureCanvasPdf
-
 from doe_kc.correlation.answer_record import EffectWords
 from doe_kc.ground.output import write_whole
 from doe_kc.report import style
@@ -52,7 +49,10 @@ def overview_sheet(overview: Overview, files: Mapping[str, str]) -> Sheet:
 def write_overview(path: Path, overview: Overview, files: Mapping[str, str]) -> Path:
     """One A4 page; no date inside but the study's, so that equal results are equal files. RunError when it
     cannot be written."""
-    canvas_of_page = FigureCanvasPdf(overview_sheet(overview, files))
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+
+    canvas_of_page = FigureCanvasPdf(overview_sheet(overview, files).figure())
     words = {"Title": f"{overview.study}: {overview.status}", "Creator": "doe_kc", "CreationDate": None}
     with rc_context({"pdf.fonttype": 3}):
         return write_whole(path, lambda p: canvas_of_page.print_pdf(p, metadata=words))  # type: ignore[no-untyped-call]

@@ -1,31 +1,36 @@
-"""The answer of a study: one axle, whether it can be used, and what stands behind it."""
+"""The answer of a study: one axle, whether it can be used, and what stands behind it; and its files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from doe_kc.correlation.answer_record import AnswerRecord, CaseGap, EffectWords, GapRecord
+from doe_kc.axle_file.write import write_axle
+from doe_kc.characteristics import reduce_all
+from doe_kc.correlation.answer_record import AnswerRecord, EffectWords, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
-from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import CurveSet
-from doe_kc.discovery.model import NO_CHARACTERISTICS
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.ground.typing import FloatArray
+from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.discovery_words import effect_label, size_words
 from doe_kc.report.effect_words import effect_words
 from doe_kc.report.names import case_label, response_name
+from doe_kc.report.overview import Overview
+from doe_kc.report.overview_sheet import write_overview
+from doe_kc.report.page.answer import files_there, write_answer_page
+from doe_kc.report.page.links import link_pages
+from doe_kc.report.page.simulation import write_simulation_page
 from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
-from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
+from doe_kc.workflow.gap import answer_gap
+from doe_kc.workflow.write_correlation import AXLE, axle_note
 
 
 @dataclass(frozen=True)
@@ -63,60 +68,6 @@ def answered(
         )
     assessment = assess(correlation, misfit=None if gap is None else gap.final, further=further)
     return Answer(correlation, assessment, discovery, adoption, gap, tuple(further))
-
-
-def answer_gap(
-    study: Study, measurement: Measurement, correlation: Correlation, discovery: Discovery | None
-) -> GapRecord | None:
-    """The gap of the records before and after. A discovery's calibrations of the rig and differences between
-    the wheels are taken as it found them."""
-    before, after = correlation.baseline.outcome.curves, correlation.best.outcome.curves
-    if before is None or after is None:
-        return None
-    if discovery is not None:
-        fitted, known = discovery.fitted, discovery.gap
-        if correlation.problem.exact:
-            final = fitted.model.residual_of(recorded(correlation.axle, measurement), fitted.z)
-        else:
-            final = fitted.model.likelihood.residual(after, NO_CHARACTERISTICS)
-        return GapRecord(
-            nominal=known.nominal,
-            tuned=known.tuned,
-            final=_rms(final),
-            noise_floor=known.noise_floor,
-            cases=_case_gaps(fitted.model.likelihood, discovery.nominal, final),
-        )
-    data = record_likelihood(study.axle, measurement)
-
-    def left(curves: CurveSet) -> FloatArray:
-        return data.residual(curves, NO_CHARACTERISTICS)
-
-    if not data.curves:
-        return None
-    first, last = left(before), left(after)
-    return GapRecord(
-        nominal=_rms(first),
-        tuned=None,
-        final=_rms(last),
-        noise_floor=1.0,
-        cases=_case_gaps(data, first, last),
-    )
-
-
-def _case_gaps(data: Likelihood, before: FloatArray, after: FloatArray) -> dict[str, CaseGap]:
-    """Load case -> its gap; static angles under `static`. before, after: (M,) residuals of the same data."""
-    places: dict[str, list[int]] = {}
-    end = 0
-    for curve, place in data.slices():
-        places.setdefault(curve.load_case, []).extend(range(place.start, place.stop))
-        end = place.stop
-    if end < before.size:
-        places["static"] = list(range(end, before.size))
-    return {case: CaseGap(nominal=_rms(before[at]), final=_rms(after[at])) for case, at in places.items()}
-
-
-def _rms(residual: FloatArray) -> float:
-    return float(np.sqrt(np.mean(residual**2)))
 
 
 def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | None) -> Iterator[Objection]:
@@ -207,13 +158,13 @@ def summary_document(
 
 def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     """Name, place and sizes with their standard deviations."""
-    found = answer.discovery
-    if found is None:
+    discovery = answer.discovery
+    if discovery is None:
         return effect.label
     place = (effect.id, effect.location)
-    for finding in (*found.findings, *found.traces):
+    for finding in (*discovery.findings, *discovery.traces):
         if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
-            return f"{effect.label}: {size_words(found, finding)}"
+            return f"{effect.label}: {size_words(discovery, finding)}"
     return effect.label
 
 
@@ -228,3 +179,52 @@ def answer_lines(assessment: Assessment, record: AnswerRecord) -> list[str]:
         steps.append(f"{gap.final:.2f} now")
         lines.append(f"Deviation from the records: {' → '.join(steps)} ({gap.noise_floor:.2f} is noise)")
     return lines
+
+
+SUMMARY = "summary.json"
+PAGE = "index.html"
+SHEET = "summary.pdf"
+
+
+def write_answer(
+    study: Study,
+    correlation: Correlation,
+    assessment: Assessment,
+    record: AnswerRecord,
+    measurement: Measurement,
+) -> list[Path]:
+    """axle.toml, summary.json, index.html and summary.pdf, the page as one A4 sheet, in the study's folder,
+    and the page of the axle handed in; returns the paths. All pages of the study are linked with each other.
+
+    RunError when the folder cannot be written.
+    """
+    axle = write_axle(
+        correlation.axle, study.axle_path, study.out / AXLE, note=axle_note(correlation, assessment)
+    )
+    given = _write_given(study, correlation)
+    document = summary_document(correlation, assessment, record, str(study.out / AXLE))
+    summary = write_json(study.out / SUMMARY, document)
+    overview = Overview(study.name, date.today().isoformat(), correlation, assessment, record)
+    sheet = write_overview(study.out / SHEET, overview, files_there(study.out))
+    page = write_answer_page(
+        study.out / PAGE,
+        overview,
+        notes={
+            "Axle": f"{AXLE}, from {study.axle_path.name}",
+            "Measurement": measurement.manifest.name,
+            "Run time": f"{record.seconds:.0f} s",
+        },
+        files=files_there(study.out),
+    )
+    link_pages(study.out)
+    return [axle, summary, page, sheet, *given]
+
+
+def _write_given(study: Study, correlation: Correlation) -> list[Path]:
+    """The page of the axle handed in, where its solver gives curves."""
+    curves = correlation.baseline.outcome.curves
+    if curves is None:
+        return []
+    values, today = reduce_all(curves, study.windows), date.today().isoformat()
+    path = study.out / "simulate" / "report.html"
+    return [write_simulation_page(path, curves, values, study=study.name, date=today)]

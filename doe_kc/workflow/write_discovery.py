@@ -9,7 +9,7 @@ from typing import Any
 
 from doe_kc.axle_file.write import write_axle
 from doe_kc.discovery.result import Discovery
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_figures import write_discovery_figures
@@ -20,7 +20,7 @@ from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
 from doe_kc.report.page.links import link_pages
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.table import Table
 from doe_kc.study import Study
 from doe_kc.workflow.write_correlation import AXLE
@@ -65,7 +65,10 @@ def write_discovery(
     link_pages(folder.parent)
     return [
         *written,
-        *(write_csv(folder / name, table_frame(of(discovery))) for name, of in DISCOVERY_TABLES.items()),
+        *(
+            write_columns(folder / name, table_columns(of(discovery)))
+            for name, of in DISCOVERY_TABLES.items()
+        ),
         write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
         page,
         *write_discovery_figures(

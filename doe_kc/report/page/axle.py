@@ -6,8 +6,6 @@ import base64
 import io
 
 from markupsafe import Markup
-from matplotlib import rc_context
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 
 from doe_kc.axle.model import HARDPOINTS
 from doe_kc.correlation.result import Correlation
@@ -15,7 +13,7 @@ from doe_kc.report.axle_strip import strip_figure
 from doe_kc.report.axle_views import AxleView, axle_figure, correlation_view
 from doe_kc.report.render.page import Section, render
 from doe_kc.report.sheet import Sheet
-from doe_kc.report.style import RC
+from doe_kc.report.style import write_svg
 
 AXLE_LEAD = (
     "Arrows show how far each hardpoint of the left side moved, drawn longer by the factor in the key; the "
@@ -41,8 +39,7 @@ def _drawing(page: Sheet, view: AxleView) -> Markup:
 def svg_data(page: Sheet) -> str:
     """A drawing as a data URL, the same for the same axles."""
     stream = io.BytesIO()
-    with rc_context(dict(RC)):  # type: ignore[arg-type]  # matplotlib types the keys as literals
-        FigureCanvasSVG(page).print_svg(stream, metadata={"Date": None})  # type: ignore[no-untyped-call]
+    write_svg(page, stream)
     return "data:image/svg+xml;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
 

@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from matplotlib.colors import LinearSegmentedColormap, to_hex
-
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.report.names import case_label
 from doe_kc.report.render.page import Section, table_html, write_page
 from doe_kc.report.table import (
@@ -31,9 +29,6 @@ INFLUENCE_LEAD = (
     "Change of each characteristic by one step of one parameter, as a percentage of the column's largest; "
     "blue: falls, orange: rises as the parameter grows; blank: below 5 %. Steps: 1 mm for hardpoints, 10 % "
     "for stiffnesses; point at a cell for the change in its unit."
-)
-_COLOURS = LinearSegmentedColormap.from_list(
-    "influence", [f"#{c}" for c in (NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL)]
 )
 
 
@@ -80,11 +75,18 @@ def _column(place: int, characteristic: Characteristic) -> Column[InfluenceRow]:
         page=PageCell(
             f"{case_label(characteristic.load_case)}: {characteristic.label.lower()}",
             text=lambda r: f"{percent(r):+.0f}" if shown(r) else "",
-            fill=lambda r: to_hex(_COLOURS(0.5 + percent(r) / 200.0))[1:] if shown(r) else "",
+            fill=lambda r: _fill(percent(r)) if shown(r) else "",
             style="turned",
             attributes=lambda r: {"title": f"{r.absolute[place]:+.3g} {characteristic.unit}"},
         ),
     )
+
+
+def _fill(percent: float) -> str:
+    """Blue at -100, white at 0, orange at 100; RRGGBB between them in proportion."""
+    full, share = (NEGATIVE_FILL if percent < 0.0 else POSITIVE_FILL), min(abs(percent) / 100.0, 1.0)
+    pairs = [(int(NEUTRAL_FILL[i : i + 2], 16), int(full[i : i + 2], 16)) for i in (0, 2, 4)]
+    return "".join(f"{round(low + share * (high - low)):02X}" for low, high in pairs)
 
 
 def influence_sections(influence: Influence) -> Sequence[Section]:

@@ -9,7 +9,7 @@ from functools import lru_cache
 from markupsafe import Markup, escape
 
 from doe_kc.axle.model import EXTRA_HARDPOINTS, HARDPOINTS
-from doe_kc.axle.parameter_kinds import KINDS, SIDE_PREFIXES, ParameterKind
+from doe_kc.axle.parameter_kinds import KINDS, SIDE_PREFIXES, ParameterKind, kind_of
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.effects import EFFECTS
 from doe_kc.report.names import case_label
@@ -53,7 +53,10 @@ def meaning(code: str) -> str:
     known = _meanings()
     if side in SIDE_PREFIXES and rest in known:
         return f"{known[rest]}, {side} side alone"
-    return known.get(code, "")
+    if code in known or not rest:
+        return known.get(code, "")
+    kind = kind_of(code)  # a point or bushing of an axle whose type is data
+    return _parameter(kind) if kind is not None else ""
 
 
 @lru_cache(maxsize=1)
@@ -61,9 +64,9 @@ def _meanings() -> Mapping[str, str]:
     points = {**HARDPOINTS, **EXTRA_HARDPOINTS}
     return {
         **{name: f"Hardpoint: {label.lower()}" for name, label in points.items()},
-        **{path: _parameter(kind) for path, kind in KINDS.items()},
         **{c.id: f"{case_label(c.load_case)}: {c.label.lower()}, {c.unit}" for c in CHARACTERISTICS.values()},
         **{name: f"Effect: {effect.label.lower()}" for name, effect in EFFECTS.items()},
+        **{path: _parameter(kind) for path, kind in KINDS.items()},
     }
 
 
