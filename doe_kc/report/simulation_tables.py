@@ -17,7 +17,7 @@ from doe_kc.report.render.csv import table_columns, table_frame
 from doe_kc.report.render.json import table_records
 from doe_kc.report.table import Column, Table
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
+from doe_kc.solver.elements.responses import output_unit
 from doe_kc.solver.result import BranchSolution, CaseSolution, Solution
 
 if TYPE_CHECKING:
@@ -55,14 +55,14 @@ def _branch_columns(
         "input_unit": np.full(n, case.load_case.unit, dtype=object),
         "side": np.full(n, side, dtype=object),
     }
-    for name, unit in OUTPUT_UNITS.items():
-        column = solution.column(f"{name}@{side}")
+    for column, output in enumerate(solution.output_names):
+        name, _, own = output.partition("@")
+        if own not in ("", side):
+            continue
         values = branch.y[:, column]
         if name.startswith("wc_"):
             values = values - solution.static.y[column]
-        columns[f"{name}_{unit}"] = values
-    for name, unit in AXLE_OUTPUT_UNITS.items():
-        columns[f"{name}_{unit}"] = branch.y[:, solution.column(name)]
+        columns[f"{name}_{output_unit(name)}"] = values
     return columns
 
 

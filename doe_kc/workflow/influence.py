@@ -15,10 +15,9 @@ from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.parameter_influence.study import influence_study
+from doe_kc.parameter_influence.study import Influence, influence_study
 from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
