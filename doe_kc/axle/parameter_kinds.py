@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Literal
 
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS
-from doe_kc.axle.topology import BACKBONE_YIELDS
+from doe_kc.axle.sliders import BACKBONE_YIELDS
 
 Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
 Quantity = Literal[

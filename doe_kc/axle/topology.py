@@ -6,8 +6,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 FrictionLaw = Literal["none", "dahl", "iwan", "lognormal", "backbone"]
-BACKBONE_YIELDS = (0.16, 0.4, 1.0, 2.5, 6.25)
-"""Yield displacements of the sliders of a free backbone, over the presliding distance."""
 
 TOPOLOGY_CACHE = 64
 """Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""

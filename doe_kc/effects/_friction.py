@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.topology import BACKBONE_YIELDS, FrictionLaw
+from doe_kc.axle.sliders import BACKBONE_YIELDS
+from doe_kc.axle.topology import FrictionLaw
 from doe_kc.effects._base import Effect, Option
 from doe_kc.effects._tables import checked_number
 from doe_kc.effects.hypothesis import Size

@@ -10,11 +10,11 @@ import pytest
 
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.model import BUSHINGS, FORCE_AXES
+from doe_kc.axle.sliders import RUBBER_SLIDERS
 from doe_kc.curves import SIDES
 from doe_kc.effects import apply_effect
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.elements.bushing import RUBBER_SLIDERS
 from doe_kc.solver.kernel import kernel
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Solution

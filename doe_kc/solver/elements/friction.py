@@ -16,7 +16,8 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from doe_kc.axle.topology import BACKBONE_YIELDS, FrictionLaw
+from doe_kc.axle.sliders import BACKBONE_YIELDS
+from doe_kc.axle.topology import FrictionLaw
 from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements._base import Element, Stage, element

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from doe_kc.axle.topology import BACKBONE_YIELDS
+from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.solver.elements.friction import IWAN_ELEMENTS, add_friction, dahl_force, iwan_yields
 from tests.solver.elements.mini import builder

@@ -7,8 +7,10 @@ from collections.abc import Iterable
 import casadi as ca
 import numpy as np
 import pytest
+from scipy.special import ndtri
 
-from doe_kc.solver.elements._sliders import lognormal_yields, normal_quantiles, slider_deflections
+from doe_kc.axle.sliders import normal_quantiles, yield_ratios
+from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
 
 def yields_over_length(spread: float, count: int) -> np.ndarray:
@@ -103,9 +105,12 @@ def test_no_closed_path_gives_work_back() -> None:
         assert np.trapezoid(force, path) > -1e-9
 
 
-def test_quantiles_are_symmetric() -> None:
-    q = normal_quantiles(8)
-    np.testing.assert_allclose(q, -q[::-1], atol=1e-15)
+def test_quantiles_are_those_of_the_normal_distribution() -> None:
+    np.testing.assert_allclose(normal_quantiles(8), ndtri((np.arange(8) + 0.5) / 8), rtol=1e-9)
+
+
+def test_symbolic_and_numeric_yields_agree() -> None:
+    np.testing.assert_allclose(yields_over_length(0.7, 4), yield_ratios(0.7, 4), rtol=1e-12)
 
 
 MEASURED = {"half_width": (1520.0, 1640.0), "at 3 mm": 1076.0, "area": 19.8e3}
