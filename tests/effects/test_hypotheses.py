@@ -11,10 +11,11 @@ import pytest
 from doe_kc.axle import Axle
 from doe_kc.axle.parameters import design_parameters, settable_paths
 from doe_kc.curves import CurveSet
-from doe_kc.effects import EFFECTS, apply_effect, observed
+from doe_kc.effects import apply_effect, observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 from tests.reference import nominal
 
 HYPOTHESES = [h for e in EFFECTS.values() for h in e.hypotheses()]
@@ -167,7 +168,7 @@ def test_values_of_sizes() -> None:
 def test_variants_of_a_friction_are_its_laws() -> None:
     (own,) = EFFECTS["strut_friction"].hypotheses()
     variants = EFFECTS["strut_friction"].variants(own)
-    assert [v.law for v in variants] == ["", "iwan", "lognormal", "backbone"]
+    assert [v.law for v in variants] == ["", "iwan", "duhem", "lognormal", "backbone"]
     assert {v.name for v in variants} == {own.name}
     for variant in variants:
         assert variant.sizes[: len(own.sizes)] == own.sizes

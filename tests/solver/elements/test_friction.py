@@ -15,8 +15,13 @@ from doe_kc.solver.elements.friction import IWAN_ELEMENTS, add_friction, dahl_fo
 from tests.solver.elements.mini import builder
 
 LEVEL, PRE = 250.0, 0.05
-LAWS = ("dahl", "iwan", "lognormal", "backbone")
-SHAPES = {"f.spread": 0.8, **{f"f.share{i}": share for i, share in enumerate(BACKBONE_SHARES)}}
+LAWS = ("dahl", "duhem", "iwan", "lognormal", "backbone")
+SLIDERS = LAWS[2:]
+SHAPES = {
+    "f.exponent": 1.0,
+    "f.spread": 0.8,
+    **{f"f.share{i}": share for i, share in enumerate(BACKBONE_SHARES)},
+}
 """Numbers of the laws' shapes by parameter."""
 
 
@@ -116,7 +121,7 @@ def test_iwan_closes_minor_loops_where_dahl_ratchets() -> None:
     assert drift["dahl"] > 0.1 * LEVEL
 
 
-@pytest.mark.parametrize("law", LAWS[1:])
+@pytest.mark.parametrize("law", SLIDERS)
 def test_sliders_obey_masing(law: str) -> None:
     """A branch after a reversal is the virgin curve scaled by two."""
     f, x = Law(law), np.linspace(0.0, 0.2, 41)
@@ -158,3 +163,24 @@ def test_the_force_is_what_resists_the_slide() -> None:
     force = add_friction(b, "strut slide L", "dahl", x, "strut_friction", "L")
     assert ca.is_equal(ca.simplify(b.resistances["strut slide L"] - force), ca.SX(0), 3)
     assert set(b.parameters) == {"strut_friction.force@L", "strut_friction.presliding@L"}
+
+
+@pytest.mark.parametrize("exponent", [0.5, 1.0, 1.3, 2.0])
+def test_duhem_is_its_differential_equation(exponent: float) -> None:
+    """Integrated by small steps, up, and down from there."""
+    law, f, x = Law("duhem", shape={"f.exponent": exponent}), 0.0, 0.0
+    for end in (0.07, -0.02):
+        steps = np.linspace(x, end, 20001)
+        sign = np.sign(end - x)
+        for dx in np.diff(steps):
+            f += LEVEL / PRE * max(1 - sign * f / LEVEL, 0.0) ** exponent * dx
+        assert law.to(end) == pytest.approx(f, rel=2e-4)
+        x = end
+
+
+def test_duhem_with_exponent_one_is_dahl_and_two_loads_as_berg() -> None:
+    x = np.linspace(0.0, 0.5, 51)
+    path = np.concatenate([x, 0.5 - 2 * x])
+    np.testing.assert_allclose(Law("duhem").along(path), Law("dahl").along(path), atol=2e-3)
+    berg = LEVEL * x / (PRE + x)
+    np.testing.assert_allclose(Law("duhem", shape={"f.exponent": 2.0}).along(x), berg, rtol=1e-9, atol=1e-9)
