@@ -129,5 +129,5 @@ def _table(page: Sheet, box: PageBox, comparison: Comparison, load_case: str) ->
     for response in RIG_RESPONSES:
         name = f"{response_name(response)} [{RESPONSE_UNITS[response]}]"
         lines.append(f"{name:<{wide}}" + "".join(f"{rms[response, side]:>10.3g}" for side in SIDES))
-    words = "\n".join(lines).replace("-", "\N{MINUS SIGN}")
+    words = "\n".join(lines)
     page.write(box.left / page.width, box.top / page.height, words, 6.0, along="top", family="monospace")

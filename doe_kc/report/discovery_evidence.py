@@ -137,6 +137,6 @@ def _bar(panel: Panel, y: float, candidate: EvidenceBar) -> None:
     panel.bars(y, 0.0, shown, 0.68, [colour], edgecolors=edge, linewidths=0.5, zorder=2)
     text = f"{candidate.gain:,.{1 if abs(candidate.gain) < 1000 else 0}f}".replace("-0.0", "0.0")
     panel.text(
-        max(shown, 0.0), y, text.replace("-", "−").replace(",", " "), shift=(4.0, 0.0), size=6.5,
+        max(shown, 0.0), y, text.replace(",", " "), shift=(4.0, 0.0), size=6.5,
         along="center", color="#333333",
     )  # fmt: skip

@@ -20,7 +20,7 @@ from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import PanelAxis
 from doe_kc.report.panel_frame import Frame
 from doe_kc.report.style import A4, DPI
-from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent
+from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent, with_minus_sign
 
 FRAME, FRAME_WIDTH, MINOR_WIDTH = "#000000", 0.8, 0.6
 GRID, GRID_WIDTH = "#DDDDDD", 0.5
@@ -106,7 +106,7 @@ class Sheet(Figure):
             for artist in artists:
                 self._place(artist, artist.get_zorder())
             frame.words += words
-        self._words.entries += frame.words
+        self._words.entries = [with_minus_sign(w) for w in (*self._words.entries, *frame.words)]
         self.add_artist(self._words)
 
     def _segments(self, segments: Sequence[Any], color: str, width: float, order: float) -> None:

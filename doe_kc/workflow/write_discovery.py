@@ -13,6 +13,7 @@ from doe_kc.ground.output import write_csv
 from doe_kc.measurement import Measurement
 from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_figures import write_discovery_figures
+from doe_kc.report.discovery_isolability import isolability_table
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_table
 from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
@@ -28,6 +29,7 @@ DISCOVERY_TABLES: Mapping[str, Callable[[Discovery], Table[Any]]] = {
     "disagreement.csv": disagreement_table,
     "effects.csv": effect_table,
     "library.csv": library_table,
+    "groups.csv": isolability_table,
     "gap.csv": gap_table,
     "held_out.csv": held_out_table,
     "parameters.csv": tuned_table,
@@ -43,7 +45,7 @@ def write_discovery(
     *,
     workers: int | None = None,
 ) -> list[Path]:
-    """axle.toml (refitted, with the effects), six tables, discovery.xlsx, report.html and the figures.
+    """axle.toml (refitted, with the effects), seven tables, discovery.xlsx, report.html and the figures.
 
     Where there are effects, axle_effects_only.toml is the study's axle with them, and with friction the
     loops driven before the record; nothing else changed.

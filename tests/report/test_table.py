@@ -113,20 +113,20 @@ def test_colors_frozen_column_and_print_follow_the_keys() -> None:
             Scale("rate", "preload", ((-1, "000000"), (0, "FFFFFF"), (1, "FF0000"))),
         ),
         flagged=lambda r: r.preload < 0,
-        sheet=SheetLayout(frozen="rate", printed_to="used", paper="A3"),
+        sheet=SheetLayout(frozen="rate", printed_to="used"),
     )
     ws = sheet(table)
     ranges = {str(r.sqref): [(k.type, k.formula) for k in r.rules] for r in ws.conditional_formatting}
     inside = "AND($B5>=$C5,$B5<=$D5)"
     assert ranges["B5:B6"] == [("expression", [inside]), ("expression", [f"NOT({inside})"])]
     assert ranges["D5:D6"][0][0] == "dataBar" and ranges["B5:D6"][0][0] == "colorScale"
-    assert (ws.freeze_panes, ws.print_title_rows) == ("B5", "$4:$4")
+    assert (ws.freeze_panes, ws.print_title_rows) == ("B5", "$1:$4")
     assert str(ws.print_area).endswith("$A$1:$C$6")
     assert [bool(ws[f"A{r}"].fill.fill_type) for r in (5, 6)] == [False, True]
 
 
 def test_heads_are_on_every_printed_page() -> None:
-    assert sheet(TABLE).print_title_rows == "$4:$4"
+    assert sheet(TABLE).print_title_rows == "$1:$4"
 
 
 def test_a_sheet_without_rows_says_why() -> None:
