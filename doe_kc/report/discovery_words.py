@@ -72,6 +72,12 @@ def hypothesis_label(hypothesis: Hypothesis) -> str:
     return f"{effect_label(hypothesis.effect)}, {place}" if place else effect_label(hypothesis.effect)
 
 
+def hypothesis_words(hypothesis: Hypothesis) -> str:
+    """Name and place within a sentence, e.g. `bushing preload, LLR`."""
+    label = hypothesis_label(hypothesis)
+    return label[0].lower() + label[1:]
+
+
 def mistaken_words(ident: str) -> str:
     """What looks alike, effects by their names and parameters by their paths."""
     return ", ".join(effect_label(m) if m in EFFECTS else m for m in EFFECTS[ident].mistaken_for)

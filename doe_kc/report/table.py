@@ -201,13 +201,13 @@ def row_digits(sd: float, value: float) -> str:
     return sd_format(sd) if math.isfinite(sd) and sd > 0.0 else three_digits(value)
 
 
-def no_minus_zero(value: Value, number: str) -> str:
-    """Number format that shows a negative value which rounds to zero as zero, not as -0.0."""
+def zero_format(value: Value, number: str) -> str:
+    """Number format that shows exactly zero as 0, and a negative value that rounds to zero without a sign."""
     decimals = number.partition(".")[2]
     plain = number in ("0", f"0.{'0' * len(decimals)}")
-    if plain and isinstance(value, float) and value < 0.0 and not round(value, len(decimals)):
-        return f'"{number}"'
-    return number
+    if not plain or not isinstance(value, float) or round(value, len(decimals)) or value > 0.0:
+        return number
+    return "0" if value == 0.0 else f'"{number}"'
 
 
 def four_digits(value: float) -> str:

@@ -17,7 +17,7 @@ from doe_kc.report.discovery_isolability import isolability_table
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_table
 from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
+from doe_kc.report.discovery_words import HEADLINES, hypothesis_words
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
 from doe_kc.report.render.csv import table_frame
@@ -75,6 +75,6 @@ def write_discovery(
 
 def axle_note(discovery: Discovery) -> str:
     """First line of the axle file: the verdict, and what the file holds beyond the nominal axle."""
-    members = ", ".join(hypothesis_label(h).lower() for h in discovery.fitted.model.members)
+    members = ", ".join(hypothesis_words(h) for h in discovery.fitted.model.members)
     lead = "leads, not confirmed: " if discovery.verdict == "unexplained" else ""
     return f"{HEADLINES[discovery.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")

@@ -25,7 +25,7 @@ from doe_kc.report.render.cells import (
     title,
     widths,
 )
-from doe_kc.report.table import Bar, Column, Inside, Row, Scale, Table, no_minus_zero
+from doe_kc.report.table import Bar, Column, Inside, Row, Scale, Table, zero_format
 
 TABLE_FIRST_ROW = 5
 """Row of the first entry below title, remark, gap and heads."""
@@ -116,7 +116,7 @@ def _put_row(ws: Worksheet, r: int, row: Row, table: Table[Row], columns: Sequen
             put(ws, r, c, value, horizontal="left", indent=1, color=color, fill=fill)
         else:
             number = column.number if isinstance(column.number, str) else column.number(row)
-            put(ws, r, c, value, number=no_minus_zero(value, number) or None, color=color, fill=fill)
+            put(ws, r, c, value, number=zero_format(value, number) or None, color=color, fill=fill)
 
 
 def _color(ws: Worksheet, color: Bar | Scale | Inside, at: Mapping[str, str], last: int) -> None:
