@@ -160,7 +160,7 @@ def hysteresis_figure(views: Sequence[CaseView], study: str) -> Sheet:
 
 def _row_title(view: CaseView) -> str:
     case = view.any
-    return f"{case_label(view.load_case)}, ±{np.abs(case.input).max():.3g} {case.input_unit}"
+    return f"{case_label(view.load_case)}, ±{round(np.abs(case.input).max(), 1):g} {case.input_unit}"
 
 
 def _loop(panel: Panel, view: CaseView, response: str) -> None:
