@@ -259,15 +259,15 @@ def _static(measurement: Measurement) -> Iterator[Figure]:
 
 def _model(data: CurveData, curves: CurveSet) -> FloatArray:
     case = curves.cases[data.load_case]
-    found = case.mean if data.branches == "mean" else case.half_width
-    return np.asarray(np.interp(data.input, case.input, found[data.response][data.side]))
+    branch_curves = case.mean if data.branches == "mean" else case.half_width
+    return np.asarray(np.interp(data.input, case.input, branch_curves[data.response][data.side]))
 
 
 def _rows(data: CurveData, gradients: CurveGradients) -> FloatArray:
     if data.branches == "half_width" and data.load_case not in gradients.half_width:
         return np.zeros((data.size, len(gradients.paths)))
-    found = gradients.cases if data.branches == "mean" else gradients.half_width
-    values = found[data.load_case][data.response][data.side]
+    slopes = gradients.cases if data.branches == "mean" else gradients.half_width
+    values = slopes[data.load_case][data.response][data.side]
     return interpolated(data.input, gradients.inputs[data.load_case], values)
 
 

@@ -9,8 +9,6 @@ from itertools import combinations
 from string import ascii_uppercase
 
 import numpy as np
-from scipy.cluster.hierarchy import fcluster, linkage
-from scipy.spatial.distance import squareform
 
 from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.result import Discovery
@@ -45,12 +43,14 @@ class Isolability:
 
         Those with a finding come first, then the larger ones.
         """
+        from scipy.cluster.hierarchy import fcluster, linkage  # its import takes 0.1 s, of every command
+
         visible = np.flatnonzero(np.isfinite(np.diag(self.correlation)))
         if visible.size < 2:
             return ()
         distance = 1.0 - self.correlation[np.ix_(visible, visible)]
-        np.fill_diagonal(distance, 0.0)
-        tree = linkage(squareform(distance, checks=False), method="complete")
+        upper = np.triu_indices(visible.size, 1)
+        tree = linkage(distance[upper], method="complete")
         numbers = fcluster(tree, 1.0 - ALIKE_CORRELATION, criterion="distance")
         members = [tuple(int(i) for i in visible[numbers == n]) for n in np.unique(numbers)]
         several = [g for g in members if len(g) > 1]

@@ -14,7 +14,7 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.report.color_scale import STRIPS, draw_color_scale
 from doe_kc.report.influence_layout import Layout, group_steps, layout, step_text
 from doe_kc.report.names import case_label

@@ -10,7 +10,7 @@ from openpyxl.utils import get_column_letter
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.load_cases import LOAD_CASES
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 
 KINEMATICS = ("static", "vertical", "roll", "steer")
 COMPLIANCES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")

@@ -11,7 +11,7 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.report.influence_layout import (
     BASELINE_ROW,
     CASE_ROW,

@@ -75,11 +75,11 @@ def train_ard(z: FloatArray, y: FloatArray, *, nugget: float, iterations: int) -
         return -float(value), -np.asarray(gradient)
 
     kernel = model.kernel_
-    found = minimize(
+    optimum = minimize(
         objective, kernel.theta, jac=True, bounds=kernel.bounds, method="L-BFGS-B",
         options={"maxiter": iterations},
     )  # fmt: skip
-    best = kernel.clone_with_theta(found.x)
+    best = kernel.clone_with_theta(optimum.x)
     straight = best.k2.k1.constant_value
     return ArdParameters(
         float(best.k1.k1.constant_value),

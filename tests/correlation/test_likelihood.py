@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import build_likelihood, corner_error, rewhitened
-from doe_kc.measurement.smoothing import local_weights
+from doe_kc.measurement.branches import local_weights
 from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
 

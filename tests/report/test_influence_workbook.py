@@ -20,9 +20,9 @@ from openpyxl.worksheet.worksheet import Worksheet
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.ground.errors import RunError
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.report.influence_layout import FIRST_MATRIX_ROW, LABELS, layout, step_text
 from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.report.render.cells import clean

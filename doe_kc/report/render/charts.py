@@ -18,7 +18,7 @@ from doe_kc.report.render.cells import MUTED, page, put, title
 
 CHART_CELL, CHART_AREA = "A4", "A1:R40"
 """Where a chart or picture begins, and what is printed of its sheet."""
-CHART_SIZE = (30.0, 16.5)
+CHART_SIZE = (30.0, 18.5)
 """Centimetres of a chart on a landscape A4 page."""
 DATA_COLUMN = 24
 """First column of the numbers of a chart that has them on its own sheet, right of what is printed."""

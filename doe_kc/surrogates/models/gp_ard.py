@@ -44,8 +44,8 @@ class RelevanceProcess(SurrogateModel):
         del seed
         centre, scaling = x.mean(axis=0), Scaling.of(y)
         z, values = x - centre, scaling.standardise(y)
-        found = [train_ard(z, c, nugget=self.nugget, iterations=self.iterations) for c in values.T]
-        kernel = _kernel(found, x.shape[1], self.nugget)
+        parameters = [train_ard(z, c, nugget=self.nugget, iterations=self.iterations) for c in values.T]
+        kernel = _kernel(parameters, x.shape[1], self.nugget)
         return FittedGaussianProcess(centre, scaling, gp.condition(kernel, z, values), None)
 
 
