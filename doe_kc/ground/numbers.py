@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 
 MOST_DECIMALS = 6
-SD_DIGITS = 3
-"""Significant digits of a standard deviation, and the last place of the number that it belongs to."""
 
 
 def short(value: float) -> str:
@@ -29,28 +27,25 @@ def number(value: float, digits: int = 3) -> str:
     return f"{round(value, places):.{max(0, places)}f}"
 
 
-def with_sd(value: float, sd: float) -> str:
-    """`value ± sd`, both to the third significant digit of sd; four digits of a value without one."""
+def decimals(sd: float) -> int | None:
+    """Decimals that show the second significant digit of a sd, 6 at most; None without one."""
     if not math.isfinite(sd) or sd <= 0.0:
+        return None
+    return max(0, min(1 - math.floor(math.log10(sd)), MOST_DECIMALS))
+
+
+def with_sd(value: float, sd: float) -> str:
+    """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
+    digits = decimals(sd)
+    if digits is None:
         return short(value)
-    place = _last_place(sd)
-    return f"{_rounded(value, place)} ± {_rounded(sd, place)}"
+    place = min(1 - math.floor(math.log10(sd)), MOST_DECIMALS)
+    return f"{round(value, place) + 0.0:.{digits}f} ± {round(sd, place):.{digits}f}"
 
 
 def at_sd(value: float, sd: float) -> str:
     """The value alone as `with_sd` writes it; a dash for none."""
-    if not math.isfinite(value):
-        return "–"
-    return _rounded(value, _last_place(sd)) if math.isfinite(sd) and sd > 0.0 else short(value)
-
-
-def _last_place(sd: float) -> int:
-    """Decimal place of the last digit that is worth writing; negative before the point."""
-    return min(SD_DIGITS - 1 - math.floor(math.log10(sd)), MOST_DECIMALS)
-
-
-def _rounded(value: float, place: int) -> str:
-    return f"{round(value, place) + 0.0:.{max(place, 0)}f}"
+    return with_sd(value, sd).partition(" ")[0] if math.isfinite(value) else "–"
 
 
 def signed(value: float, sd: float) -> str:
@@ -63,9 +58,9 @@ def signed(value: float, sd: float) -> str:
 
 def sd_format(sd: float) -> str:
     """Number format of a sheet for a value with this standard deviation, or of the deviation itself."""
-    if not math.isfinite(sd) or sd <= 0.0:
+    digits = decimals(sd)
+    if digits is None:
         return "0.0000"
-    digits = max(0, _last_place(sd))
     return "0." + "0" * digits if digits else "0"
 
 

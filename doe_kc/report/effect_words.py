@@ -9,7 +9,7 @@ from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
 from doe_kc.report.discovery_effects import kind_of
-from doe_kc.report.discovery_words import effect_label, found_sizes, hypothesis_label
+from doe_kc.report.discovery_words import effect_label, found_sizes, hypothesis_label, physics_words
 from doe_kc.report.table import Column, PageCell, PageLayout, Table
 
 SIZE_WORDS: Mapping[str, str] = {
@@ -44,7 +44,7 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
             for s in found_sizes(discovery, finding)
         ],
         sure=sure_words(discovery, finding),
-        physics=effect.physics,
+        physics=physics_words(finding),
         rivals=", ".join(
             f"{effect_label(r.effect).lower()} ({_percent(r.probability)})" for r in finding.rivals
         ),

@@ -37,7 +37,7 @@ def test_every_parameter_says_what_it_is() -> None:
     assert all(kind.label in meaning(path) for path, kind in KINDS.items())
     assert meaning("right.llr.Fx") == f"{meaning('llr.Fx')}, right side alone"
     assert meaning("lateral.toe_change") and meaning("LWB") and meaning("hub_compliance")
-    assert meaning("spring") == meaning("of") == meaning("UPBX.x") == ""
+    assert meaning("spring") == meaning("of") == meaning("report.html") == ""
 
 
 def test_codes_within_prose_are_explained_and_all_else_is_escaped() -> None:
