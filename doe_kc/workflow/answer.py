@@ -205,7 +205,8 @@ def write_answer(
     document = summary_document(correlation, assessment, record, str(study.out / AXLE))
     summary = write_json(study.out / SUMMARY, document)
     overview = Overview(study.name, date.today().isoformat(), correlation, assessment, record)
-    sheet = write_overview(study.out / SHEET, overview, files_there(study.out))
+    others = {name: words for name, words in files_there(study.out).items() if name != SHEET}
+    sheet = write_overview(study.out / SHEET, overview, others)
     page = write_answer_page(
         study.out / PAGE,
         overview,

@@ -39,7 +39,12 @@ def test_the_answer(result: kc.RunResult) -> None:
 
 def test_out_is_the_folder_of_the_command(result: kc.RunResult, folder: Path, out: Path) -> None:
     folders = {"compare", "correlate", "discover", "influence", "reduce", "simulate", "store"}
-    assert {p.name for p in out.iterdir()} == folders | {"axle.toml", "summary.json", "index.html"}
+    assert {p.name for p in out.iterdir()} == folders | {
+        "axle.toml",
+        "summary.json",
+        "index.html",
+        "summary.pdf",
+    }
     summary = json.loads((out / "summary.json").read_text())
     assert (summary["status"], summary["verdict"]) == (result.status, "named")
     assert kc.read_axle(out / "axle.toml").effects == result.axle.effects

@@ -84,6 +84,8 @@ def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
         "axle.toml",
         "summary.json",
         "index.html",
+        "summary.pdf",
+        "report.html",
     ]
     first = paths[0].read_text().splitlines()[0]
     assert first.startswith("# Written by doe_kc") and "Sound: " in first
@@ -93,7 +95,12 @@ def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
     summary = json.loads(paths[1].read_text())
     assert summary["status"] == "sound" and summary["effects"][0]["adopted"] is True
     assert all(set(c) == ENTRY for c in summary["characteristics"])
-    assert set(summary["gap"]) == {"nominal", "tuned", "final", "noise_floor"}
+    assert set(summary["gap"]) == {"nominal", "tuned", "final", "noise_floor", "cases"}
+    cases = summary["gap"]["cases"]
+    assert {"vertical", "lateral", "static"} <= set(cases)
+    assert all(case["final"] < 1.5 for case in cases.values())
+    assert paths[3].read_bytes().startswith(b"%PDF") and record.words[0].adopted
+    assert 'href="simulate/report.html"' in paths[2].read_text()
     assert (
         "Sound" in paths[2].read_text() and answer_lines(found.assessment, record)[0] == found.assessment.line
     )
