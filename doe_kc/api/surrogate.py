@@ -48,7 +48,7 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
         models: Sequence[str] = (),
         *,
         space: Space | None = None,
-        folds: int = 10,
+        folds: int | None = None,
         seed: int = 0,
         workers: int | None = 1,
     ) -> None:

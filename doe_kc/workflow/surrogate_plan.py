@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from doe_kc.campaign.store import read_store
-from doe_kc.ground.errors import InputError
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.correlation.linearization import linearize
+from doe_kc.ground.errors import InputError, RunError
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs, designs_in_space
 from doe_kc.surrogates.models import SURROGATES, make
+from doe_kc.surrogates.models.gp import FirstOrderTrend
+from doe_kc.surrogates.models.gp_slopes import SlopeProcess
 from doe_kc.surrogates.study import VALIDATION_DESIGNS, default_models, number_of_tasks
+from doe_kc.true_solver.own import AxleSolver
 
 
 @dataclass(frozen=True)
 class Plan:
-    """designs: of the store. models: ids to fit. steps: of the progress."""
+    """designs: of the store. models: ids to fit. steps: of the progress. trend: exact expansion at the start.
+    slope_seconds: of a processor, that it took.
+    """
 
     designs: Designs
     models: tuple[str, ...]
     steps: int
+    trend: FirstOrderTrend | None = None
+    slope_seconds: float = 0.0
 
 
 def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
@@ -33,8 +43,38 @@ def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
     needed = _needed(names, study.space.dimension)
     if len(designs.x) < needed:
         raise InputError(_too_few(study, designs, needed))
-    chosen = names or tuple(default_models(*designs.x.shape))
-    return Plan(designs, chosen, number_of_tasks(chosen, len(designs.x), study.surrogates.folds))
+    started = time.process_time()
+    trend = exact_start(study, designs) if not names or SlopeProcess.id in names else None
+    seconds = time.process_time() - started
+    if trend is None and names == (SlopeProcess.id,):
+        raise InputError(
+            f"{study.source}: surrogates: gp_slopes needs exact sensitivities at the start, which only the "
+            "package's own solver gives, with slopes = true; take gp."
+        )
+    chosen = names or tuple(default_models(*designs.x.shape, slopes=trend is not None))
+    steps = number_of_tasks(chosen, len(designs.x), study.surrogates.folds)
+    return Plan(designs, chosen, steps, trend, seconds)
+
+
+def exact_start(study: Study, designs: Designs) -> FirstOrderTrend | None:
+    """Values and exact slopes of the characteristics at the space's start; None where they are not to be had.
+
+    That is for an outside solver, by the study's word, or when the start has no equilibrium.
+    """
+    if study.solver.command or not study.surrogates.slopes:
+        return None
+    space, point = study.space, study.space.start
+    try:
+        values = AxleSolver(study.axle, study.windows, curves=False).evaluate(space.values(point))
+        if values.failed:
+            return None
+        slope = linearize(study.axle, space, point, study.windows).characteristics
+    except RunError:
+        return None
+    rows = [list(CHARACTERISTICS).index(c.id) for c in designs.characteristics]
+    trend = FirstOrderTrend(point, np.array(values.characteristics)[rows], slope[rows])
+    known = np.isfinite(trend.value).all() and np.isfinite(trend.slope).all()
+    return trend if known else None
 
 
 def _designs(study: Study) -> Designs:

@@ -41,6 +41,7 @@ def run_surrogates(
         seed=study.seed,
         workers=workers,
         progress=progress,
+        trend=plan.trend,
     )
     model, space = fitted.model, study.space
     changes = surrogate_changes(model, space)
