@@ -17,12 +17,15 @@ from doe_kc.report.surrogate_figures import write_surrogate_figures
 from doe_kc.report.surrogate_workbook import write_surrogate_workbook
 from doe_kc.study import Study
 from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.surrogates.saved import save_surrogate
+from doe_kc.workflow.predict import saved_surrogate
 
 
 def write_surrogates(
     study: Study, report: SurrogateReport, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
-    """surrogates.xlsx, CSV tables (quality, predictions, influence, shares) and figures; their paths."""
+    """surrogates.xlsx, surrogate.npz for `predict`, CSV tables (quality, predictions, influence, shares) and
+    figures; their paths."""
     book = write_surrogate_workbook(
         folder / "surrogates.xlsx", report, study=study.name, date=date.today().isoformat()
     )
@@ -36,7 +39,8 @@ def write_surrogates(
     pictures = write_surrogate_figures(
         report, folder, study=study.name, workers=workers, pictures=study.pictures
     )
-    return [book, *csv, *pictures]
+    saved = save_surrogate(folder / "surrogate.npz", saved_surrogate(report, study=study.name))
+    return [book, saved, *csv, *pictures]
 
 
 def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
