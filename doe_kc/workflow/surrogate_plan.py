@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -23,15 +22,12 @@ from doe_kc.true_solver.own import AxleSolver
 
 @dataclass(frozen=True)
 class Plan:
-    """designs: of the store. models: ids to fit. steps: of the progress. trend: exact expansion at the start.
-    slope_seconds: of a processor, that it took.
-    """
+    """designs: of the store. models: ids to fit. steps: of the progress. trend: exact, at the start."""
 
     designs: Designs
     models: tuple[str, ...]
     steps: int
     trend: FirstOrderTrend | None = None
-    slope_seconds: float = 0.0
 
 
 def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
@@ -43,9 +39,7 @@ def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
     needed = _needed(names, study.space.dimension)
     if len(designs.x) < needed:
         raise InputError(_too_few(study, designs, needed))
-    started = time.process_time()
     trend = exact_start(study, designs) if not names or SlopeProcess.id in names else None
-    seconds = time.process_time() - started
     if trend is None and names == (SlopeProcess.id,):
         raise InputError(
             f"{study.source}: surrogates: gp_slopes needs exact sensitivities at the start, which only the "
@@ -53,7 +47,7 @@ def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
         )
     chosen = names or tuple(default_models(*designs.x.shape, slopes=trend is not None))
     steps = number_of_tasks(chosen, len(designs.x), study.surrogates.folds)
-    return Plan(designs, chosen, steps, trend, seconds)
+    return Plan(designs, chosen, steps, trend)
 
 
 def exact_start(study: Study, designs: Designs) -> FirstOrderTrend | None:

@@ -13,6 +13,7 @@ from doe_kc.ground.output import write_csv
 from doe_kc.report import surrogate_tables as tables
 from doe_kc.report.render.csv import table_frame
 from doe_kc.report.render.terminal import table_lines
+from doe_kc.report.surrogate_evaluator import write_evaluator
 from doe_kc.report.surrogate_figures import write_surrogate_figures
 from doe_kc.report.surrogate_workbook import write_surrogate_workbook
 from doe_kc.study import Study
@@ -39,8 +40,11 @@ def write_surrogates(
     pictures = write_surrogate_figures(
         report, folder, study=study.name, workers=workers, pictures=study.pictures
     )
-    saved = save_surrogate(folder / "surrogate.npz", saved_surrogate(report, study=study.name))
-    return [book, saved, *csv, *pictures]
+    surrogate = saved_surrogate(report, study=study.name)
+    kept = [save_surrogate(folder / "surrogate.npz", surrogate)]
+    if "quadratic" not in report.fitted.chosen:  # which has no formula of few lines
+        kept += write_evaluator(folder / "evaluator", surrogate)
+    return [book, *kept, *csv, *pictures]
 
 
 def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
