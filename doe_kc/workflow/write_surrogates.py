@@ -50,8 +50,8 @@ def write_surrogates(
 def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
     """`{"designs", "failed", "elsewhere", "chosen": {characteristic: model}, "models": {model: {"seconds",
     "characteristics": {characteristic: {"q2", "rmse", "unit", "coverage", "calibrated_coverage",
-    "sharpness"}}}}, "skipped": {model: reason}, "influence": {characteristic: {parameter: change}}, "shares",
-    "agreement"}`.
+    "calibrated_low", "calibrated_high", "sharpness"}}}}, "skipped": {model: reason}, "influence":
+    {characteristic: {parameter: change}}, "shares", "agreement"}`.
     """
     ids = [c.id for c in report.designs.characteristics]
     return {
