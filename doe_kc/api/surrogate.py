@@ -14,7 +14,7 @@ from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report.style import PALETTE
 from doe_kc.surrogates.models import make
-from doe_kc.surrogates.study import fit_study
+from doe_kc.surrogates.study import SurrogateStudy, fit_study
 from doe_kc.variables import Space
 
 if TYPE_CHECKING:
@@ -78,9 +78,7 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
             )
         _check_finite(points, names, "X")
         self._set_bounds(points, names)
-        self.feature_names_in_, self.n_features_in_ = np.array(names, dtype=object), len(names)
-        self.output_names_, self._form = outputs, form
-        self.study_ = fit_study(
+        study = fit_study(
             self._unit(points),
             values,
             models=self.models,
@@ -88,7 +86,12 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
             seed=self.seed,
             workers=self.workers,
         )
-        self._model = self.study_.model
+        return self._fitted(names, outputs, form, study)
+
+    def _fitted(self, names: list[str], outputs: list[Any], form: str, study: SurrogateStudy) -> Surrogate:
+        self.feature_names_in_, self.n_features_in_ = np.array(names, dtype=object), len(names)
+        self.output_names_, self._form = outputs, form
+        self.study_, self._model = study, study.model
         return self
 
     def predict(self, X: Any, return_std: bool = False) -> Any:
@@ -222,6 +225,17 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
         if self._form == "series":
             return pd.Series(values[:, 0], index=index, name=self.output_names_[0])
         return pd.DataFrame(values, index=index, columns=self.output_names_)
+
+
+def fitted_surrogate(surrogate: Surrogate, outputs: list[str], study: SurrogateStudy) -> Surrogate:
+    """The estimator, which has a space, with fits of that space's unit cube that were made before.
+
+    outputs: names of the (n, m) outputs; predictions come as DataFrames.
+    """
+    assert surrogate.space is not None
+    names = list(surrogate.space.paths)
+    surrogate._set_bounds(study.x, names)
+    return surrogate._fitted(names, outputs, "frame", study)
 
 
 def _matrix(a: Any, what: str) -> FloatArray:

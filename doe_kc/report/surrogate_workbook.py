@@ -9,7 +9,7 @@ from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
-from doe_kc.parameter_influence.result import percent_of_column
+from doe_kc.parameter_influence.study import percent_of_column
 from doe_kc.report.render.cells import cell_alignment, colour_scale, put
 from doe_kc.report.render.workbook import TABLE_FIRST_ROW, new_book, table_sheet, write_book
 from doe_kc.report.surrogate_tables import MatrixRow, chosen_table, matrix_table

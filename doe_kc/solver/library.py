@@ -146,8 +146,8 @@ def build(sources: dict[str, str], flags: Mapping[str, str] = MappingProxyType({
     name = _digest(compiler, flags, *sources.values())
     folder = cache_folder()
     try:
-        if found := cached(folder, name):
-            return found
+        if library_path := cached(folder, name):
+            return library_path
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
             library = _compile(compiler, Path(scratch), sources, flags)

@@ -1,13 +1,16 @@
-"""The answer of a study: one axle, whether it can be used, and what stands behind it."""
+"""The answer of a study: one axle, whether it can be used, and what stands behind it; and its files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from doe_kc.axle_file.write import write_axle
 from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
 from doe_kc.correlation.likelihood import record_likelihood
@@ -15,14 +18,17 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.model import NO_CHARACTERISTICS
 from doe_kc.discovery.result import Discovery
+from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.discovery_words import effect_label, size_words
+from doe_kc.report.page.answer import write_answer_page
 from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
+from doe_kc.workflow.write_correlation import AXLE, axle_note
 
 
 @dataclass(frozen=True)
@@ -162,13 +168,13 @@ def summary_document(
 
 def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     """Name, place and sizes with their standard deviations."""
-    found = answer.discovery
-    if found is None:
+    discovery = answer.discovery
+    if discovery is None:
         return effect.label
     place = (effect.id, effect.location)
-    for finding in (*found.findings, *found.traces):
+    for finding in (*discovery.findings, *discovery.traces):
         if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
-            return f"{effect.label}: {size_words(found, finding)}"
+            return f"{effect.label}: {size_words(discovery, finding)}"
     return effect.label
 
 
@@ -183,3 +189,40 @@ def answer_lines(assessment: Assessment, record: AnswerRecord) -> list[str]:
         steps.append(f"{gap.final:.2f} now")
         lines.append(f"Deviation from the records: {' -> '.join(steps)} ({gap.noise_floor:.2f} is noise)")
     return lines
+
+
+SUMMARY = "summary.json"
+PAGE = "index.html"
+
+
+def write_answer(
+    study: Study,
+    correlation: Correlation,
+    assessment: Assessment,
+    record: AnswerRecord,
+    measurement: Measurement,
+) -> list[Path]:
+    """axle.toml, summary.json and index.html in the study's folder; returns the paths.
+
+    RunError when the folder cannot be written.
+    """
+    axle = write_axle(
+        correlation.axle, study.axle_path, study.out / AXLE, note=axle_note(correlation, assessment)
+    )
+    document = summary_document(correlation, assessment, record, str(study.out / AXLE))
+    summary = write_json(study.out / SUMMARY, document)
+    page = write_answer_page(
+        study.out / PAGE,
+        correlation,
+        assessment,
+        study=study.name,
+        date=date.today().isoformat(),
+        lines=answer_lines(assessment, record)[1:],
+        notes={
+            "Axle": f"{AXLE}, from {study.axle_path.name}",
+            "Measurement": measurement.manifest.name,
+            "Run time": f"{record.seconds:.0f} s",
+        },
+        folder=study.out,
+    )
+    return [axle, summary, page]

@@ -19,6 +19,10 @@ from doe_kc.campaign.store import read_store
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
+from doe_kc.report.render.json import table_records
+from doe_kc.report.render.terminal import table_lines
+from doe_kc.report.sample_tables import CharacteristicSpan, span_table
+from doe_kc.report.table import Table
 from doe_kc.sampling import Design, find_sampler, sample
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import place
@@ -43,6 +47,17 @@ class SampleResult:
     @property
     def kept(self) -> int:
         return len(self.outcomes) - self.runs
+
+    @property
+    def counts(self) -> str:
+        """Runs, what was there, failures, and the time, in words."""
+        return f"{self.runs} run, {self.kept} already there, {len(self.failed)} failed; {self.seconds:.1f} s"
+
+    @property
+    def spans(self) -> Table[CharacteristicSpan]:
+        """Of every characteristic over the designs that were solved."""
+        values = [o.characteristics for o in self.outcomes if not o.failed]
+        return span_table(np.array(values).reshape(len(values), len(CHARACTERISTICS)))
 
     @property
     def failed(self) -> list[Outcome]:
@@ -110,8 +125,8 @@ def run_sample(
     with Campaign(
         solver, study.store, workers=workers, scheduler=scheduler, retry_failed=retry_failed
     ) as campaign:
-        found = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
-    return SampleResult(design, tuple(found), campaign.runs, time.perf_counter() - started)
+        outcomes = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
+    return SampleResult(design, tuple(outcomes), campaign.runs, time.perf_counter() - started)
 
 
 def write_sample(study: Study, sampled: SampleResult, folder: Path, form: Format | None = None) -> list[Path]:
@@ -142,8 +157,7 @@ def sample_document(study: Study, sampled: SampleResult) -> dict[str, Any]:
 
     `{"method", "n", "seed", "runs", "kept", "failed", "reasons", "characteristics", "store", "seconds"}`.
     """
-    values = np.array([o.characteristics for o in sampled.outcomes if not o.failed])
-    known = [(i, c) for i, c in enumerate(CHARACTERISTICS.values()) if values.size and _known(values[:, i])]
+    spans = sampled.spans
     return {
         "method": sampled.design.method,
         "n": len(sampled.outcomes),
@@ -152,33 +166,16 @@ def sample_document(study: Study, sampled: SampleResult) -> dict[str, Any]:
         "kept": sampled.kept,
         "failed": len(sampled.failed),
         "reasons": [{"count": count, "reason": reason} for count, reason in reasons(sampled.failed)],
-        "characteristics": {
-            c.id: {
-                "low": np.nanmin(values[:, i]),
-                "mean": np.nanmean(values[:, i]),
-                "high": np.nanmax(values[:, i]),
-                "unit": c.unit,
-            }
-            for i, c in known
-        },
+        "characteristics": dict(zip((s.entry.id for s in spans.rows), table_records(spans), strict=True)),
         "store": str(study.store),
         "seconds": sampled.seconds,
     }
 
 
-def _known(column: Any) -> bool:
-    return bool(np.isfinite(column).any())
-
-
-def sample_lines(document: dict[str, Any]) -> list[str]:
-    """For a terminal: the span of every characteristic, the counts, the reasons of failures."""
-    lines = [f"{'characteristic':32}{'lowest':>12}{'mean':>12}{'highest':>12}"]
-    for name, span in document["characteristics"].items():
-        numbers = "".join(f"{span[key]:12.5g}" for key in ("low", "mean", "high"))
-        lines.append(f"{name:32}{numbers}  {span['unit']}")
-    lines += [f"{entry['count']} x {entry['reason']}" for entry in document["reasons"]]
-    lines.append(
-        f"{document['n']} designs ({document['method']}): {document['runs']} run, {document['kept']} already "
-        f"there, {document['failed']} failed; {document['seconds']:.1f} s"
-    )
-    return lines
+def sample_lines(sampled: SampleResult) -> list[str]:
+    """For a terminal: the span of every characteristic, the reasons of failures, the counts."""
+    return [
+        *table_lines(sampled.spans),
+        *(f"{count} x {reason}" for count, reason in reasons(sampled.failed)),
+        f"{len(sampled.outcomes)} designs ({sampled.design.method}): {sampled.counts}",
+    ]

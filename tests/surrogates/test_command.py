@@ -14,7 +14,7 @@ from doe_kc.campaign.store import read_store
 from doe_kc.study import read_study
 from doe_kc.surrogates.designs import designs_in_space, place
 from doe_kc.surrogates.influence import agreement
-from doe_kc.workflow import write_surrogates as workflow
+from doe_kc.workflow import surrogates as workflow
 from tests.cli.runner import fails, leftovers, succeeds, write_study
 
 VARIABLES = """

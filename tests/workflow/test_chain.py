@@ -12,11 +12,10 @@ import pytest
 from doe_kc.axle_file import read_axle
 from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.true_solver.options import SolverOptions
-from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document
-from doe_kc.workflow.chain import ADVICE, DIFFERENT, Steps, describes_the_same, follow_chain
+from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document, write_answer
+from doe_kc.workflow.chain import ADVICE, DIFFERENT, describes_the_same, follow_chain
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.correlation_problem import study_problem
-from doe_kc.workflow.write_answer import write_answer
 from tests.discovery.cases import discovery, nominal
 from tests.workflow.chain_cases import answer, reduced, study
 
@@ -128,7 +127,7 @@ def with_outside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, alike: bool
         made.append(f"correlate with {adoption}")
         return answer("named", "never").correlation
 
-    found = follow_chain(outside, reduced("named"), Steps(discover, correlated))
+    found = follow_chain(outside, reduced("named"), discover, correlated)
     return made, found.assessment.reasons
 
 

@@ -8,9 +8,8 @@ import typer
 
 from doe_kc.campaign.export import require_format
 from doe_kc.cli._app import app
-from doe_kc.cli.options import SchedulerOption
+from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, study_design, write_sample
 
@@ -34,21 +33,20 @@ def sample(
 ) -> None:
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
     form = require_format(export) if export is not None else None
-    found = study_options.read()
-    design = study_design(found, method=method, n=n, extend=extend)
+    study = study_options.read()
+    design = study_design(study, method=method, n=n, extend=extend)
     with progress_bar(design.method, len(design.values)) as advance:
         sampled = run_sample(
-            found,
+            study,
             design,
             workers=study_options.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
             progress=advance,
         )
-    document = sample_document(found, sampled)
     if study_options.json is not None:
-        write_json(study_options.json, document)
-    written = write_sample(found, sampled, found.out / "sample", form)
-    for line in sample_lines(document):
+        write_json(study_options.json, sample_document(study, sampled))
+    written = write_sample(study, sampled, study.out / "sample", form)
+    for line in sample_lines(sampled):
         typer.echo(line)
-    typer.echo(f"{len(written)} files in {found.out / 'sample'}; store {found.store}", err=True)
+    typer.echo(f"{len(written)} files in {study.out / 'sample'}; store {study.store}", err=True)

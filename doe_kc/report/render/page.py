@@ -64,15 +64,15 @@ def render(template: str, **values: Any) -> Markup:
 
 @lru_cache(maxsize=1)
 def _environment() -> Environment:
-    found = Environment(
+    environment = Environment(
         loader=PackageLoader("doe_kc.report.page", "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters["sig"] = significant
-    return found
+    environment.filters["sig"] = significant
+    return environment
 
 
 def significant(value: float, digits: int = 4) -> str:
