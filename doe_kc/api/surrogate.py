@@ -26,11 +26,12 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
     """Surrogates of every output, cross-validated, the best kind chosen for each; an estimator of
     scikit-learn (`clone`, `cross_val_score`, `Pipeline`).
 
-    models: ids of the kinds to choose from ("linear", "quadratic", "rbf", "gp", "kpls", "kriging",
-    "gp_ard"), by default those that suit the number of designs. space: of a study (`study.space`,
+    models: ids of the kinds to choose from ("linear", "quadratic", "rbf", "gp", "gp_ard", "kpls",
+    "kriging"), by default those that suit the number of designs. space: of a study (`study.space`,
     `sampling.space`), whose bounds and logarithmic scales map each variable to [0, 1]; by default the
     smallest and largest value of each column. folds: of the cross-validation of kinds that learn many
-    hyper-parameters. seed: of the kinds that use chance. workers: processes of the fit.
+    hyper-parameters, by default ten, five from 150 designs on. seed: of the kinds that use chance. workers:
+    processes of the fit.
 
     After `fit`: study_, every kind with its cross-validation; feature_names_in_, the columns of X;
     output_names_, those of y; lower_, upper_, (d,) in real units, beyond which a prediction extrapolates.
@@ -48,7 +49,7 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
         models: Sequence[str] = (),
         *,
         space: Space | None = None,
-        folds: int = 10,
+        folds: int | None = None,
         seed: int = 0,
         workers: int | None = 1,
     ) -> None:

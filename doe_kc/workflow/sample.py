@@ -5,23 +5,27 @@ from __future__ import annotations
 import re
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from doe_kc.axle.parameters import parameter_value
 from doe_kc.campaign.export import Format, designs_frame, export_store, write_table
 from doe_kc.campaign.runner import Campaign
 from doe_kc.campaign.store import read_store
 from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
 from doe_kc.report.sample_tables import CharacteristicSpan, span_table
 from doe_kc.report.table import Table
 from doe_kc.sampling import Design, find_sampler, sample
 from doe_kc.study import Study
+from doe_kc.surrogates.designs import place
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
 
@@ -61,22 +65,49 @@ class SampleResult:
         return [o for o in self.outcomes if o.failed]
 
 
-def study_design(study: Study, *, method: str | None, n: int | None) -> Design:
+def study_design(study: Study, *, method: str | None, n: int | None, extend: bool = False) -> Design:
     """Designs of the study's space; method and n in place of the study's own.
 
-    InputError for an unknown method, a table that does not fit, or a full factorial too large.
+    extend: stored designs of the space count among the n, and only what is missing is drawn, to complete
+    them. InputError for an unknown method, a table that does not fit, a full factorial too large, or nothing
+    to add.
     """
     options = study.sampling
     chosen = method or options.method
     find_sampler(chosen, "--method" if method else f"{study.source}: sampling.method")
-    return sample(
+    wanted = n or options.n
+    stored = _stored(study) if extend else []
+    if stored and len(stored) >= wanted:
+        raise InputError(
+            f"{study.store}: holds {len(stored)} designs of the study's variables already, --n {wanted} adds "
+            f"none; give --n above {len(stored)}."
+        )
+    new = sample(
         study.space,
-        n or options.n,
+        wanted - len(stored),
         seed=study.seed,
         method=chosen,
         levels=options.levels,
         table=study.folder / options.table if options.table is not None else None,
+        existing=np.array([point for point, _ in stored]) if stored else None,
     )
+    return _joined(study, stored, new) if stored else new
+
+
+def _stored(study: Study) -> list[tuple[FloatArray, Mapping[str, float]]]:
+    """Point and parameters of every stored design of the space, failed ones too."""
+    if not study.store.is_file():
+        return []
+    with read_store(study.store) as store:
+        records = [(place(r.parameters, study.space, study.axle), r.parameters) for r in store.records()]
+    return [(point, parameters) for point, parameters in records if point is not None]
+
+
+def _joined(study: Study, stored: Sequence[tuple[FloatArray, Mapping[str, float]]], new: Design) -> Design:
+    """Stored designs with the digits they are stored with, so that none is run again, then the new ones."""
+    rows = [[kept.get(p, parameter_value(study.axle, p)) for p in new.paths] for _, kept in stored]
+    labels = [f"stored {i + 1}" for i in range(len(rows))]
+    return replace(new, values=np.vstack([rows, new.values]), labels=(*labels, *new.labels))
 
 
 def run_sample(

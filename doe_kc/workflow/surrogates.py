@@ -12,7 +12,9 @@ from typing import Any
 import numpy as np
 
 from doe_kc.campaign.store import read_store
-from doe_kc.ground.errors import InputError
+from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.correlation.linearization import linearize
+from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.output import write_csv
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
@@ -21,24 +23,31 @@ from doe_kc.parameter_influence.study import influence_study
 from doe_kc.report import surrogate_tables as tables
 from doe_kc.report.render.csv import table_frame
 from doe_kc.report.render.terminal import table_lines
+from doe_kc.report.surrogate_evaluator import write_evaluator
 from doe_kc.report.surrogate_figures import write_surrogate_figures
 from doe_kc.report.surrogate_workbook import write_surrogate_workbook
 from doe_kc.study import Study
 from doe_kc.surrogates.designs import Designs, designs_in_space
 from doe_kc.surrogates.influence import agreement, free_variables, surrogate_changes
 from doe_kc.surrogates.models import SURROGATES, make
+from doe_kc.surrogates.models.gp import FirstOrderTrend
+from doe_kc.surrogates.models.gp_slopes import SlopeProcess
 from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.surrogates.saved import save_surrogate
 from doe_kc.surrogates.shares import total_shares
 from doe_kc.surrogates.study import VALIDATION_DESIGNS, default_models, fit_study, number_of_tasks
+from doe_kc.true_solver.own import AxleSolver
+from doe_kc.workflow.predict import saved_surrogate
 
 
 @dataclass(frozen=True)
 class Plan:
-    """designs: of the store. models: ids to fit. steps: of the progress."""
+    """designs: of the store. models: ids to fit. steps: of the progress. trend: exact, at the start."""
 
     designs: Designs
     models: tuple[str, ...]
     steps: int
+    trend: FirstOrderTrend | None = None
 
 
 def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
@@ -50,8 +59,36 @@ def plan_surrogates(study: Study, models: Sequence[str] = ()) -> Plan:
     needed = _needed(names, study.space.dimension)
     if len(designs.x) < needed:
         raise InputError(_too_few(study, designs, needed))
-    chosen = names or tuple(default_models(*designs.x.shape))
-    return Plan(designs, chosen, number_of_tasks(chosen, len(designs.x), study.surrogates.folds))
+    trend = exact_start(study, designs) if not names or SlopeProcess.id in names else None
+    if trend is None and names == (SlopeProcess.id,):
+        raise InputError(
+            f"{study.source}: surrogates: gp_slopes needs exact sensitivities at the start, which only the "
+            "package's own solver gives, with slopes = true; take gp."
+        )
+    chosen = names or tuple(default_models(*designs.x.shape, slopes=trend is not None))
+    steps = number_of_tasks(chosen, len(designs.x), study.surrogates.folds)
+    return Plan(designs, chosen, steps, trend)
+
+
+def exact_start(study: Study, designs: Designs) -> FirstOrderTrend | None:
+    """Values and exact slopes of the characteristics at the space's start; None where they are not to be had.
+
+    That is for an outside solver, by the study's word, or when the start has no equilibrium.
+    """
+    if study.solver.command or not study.surrogates.slopes:
+        return None
+    space, point = study.space, study.space.start
+    try:
+        values = AxleSolver(study.axle, study.windows, curves=False).evaluate(space.values(point))
+        if values.failed:
+            return None
+        slope = linearize(study.axle, space, point, study.windows).characteristics
+    except RunError:
+        return None
+    rows = [list(CHARACTERISTICS).index(c.id) for c in designs.characteristics]
+    trend = FirstOrderTrend(point, np.array(values.characteristics)[rows], slope[rows])
+    known = np.isfinite(trend.value).all() and np.isfinite(trend.slope).all()
+    return trend if known else None
 
 
 def _designs(study: Study) -> Designs:
@@ -108,6 +145,7 @@ def run_surrogates(
         seed=study.seed,
         workers=workers,
         progress=progress,
+        trend=plan.trend,
     )
     model, space = fitted.model, study.space
     changes = surrogate_changes(model, space)
@@ -154,7 +192,8 @@ def measured_values(study: Study) -> dict[str, float]:
 def write_surrogates(
     study: Study, report: SurrogateReport, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
-    """surrogates.xlsx, CSV tables (quality, predictions, influence, shares) and figures; their paths."""
+    """surrogates.xlsx, surrogate.npz for `predict`, evaluators, CSV tables (quality, predictions, influence,
+    shares) and figures; their paths."""
     book = write_surrogate_workbook(
         folder / "surrogates.xlsx", report, study=study.name, date=date.today().isoformat()
     )
@@ -168,14 +207,18 @@ def write_surrogates(
     pictures = write_surrogate_figures(
         report, folder, study=study.name, workers=workers, pictures=study.pictures
     )
-    return [book, *csv, *pictures]
+    surrogate = saved_surrogate(report, study=study.name)
+    kept = [save_surrogate(folder / "surrogate.npz", surrogate)]
+    if "quadratic" not in report.fitted.chosen:  # which has no formula of few lines
+        kept += write_evaluator(folder / "evaluator", surrogate)
+    return [book, *kept, *csv, *pictures]
 
 
 def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
     """`{"designs", "failed", "elsewhere", "chosen": {characteristic: model}, "models": {model: {"seconds",
     "characteristics": {characteristic: {"q2", "rmse", "unit", "coverage", "calibrated_coverage",
-    "sharpness"}}}}, "skipped": {model: reason}, "influence": {characteristic: {parameter: change}}, "shares",
-    "agreement"}`.
+    "calibrated_low", "calibrated_high", "sharpness"}}}}, "skipped": {model: reason}, "influence":
+    {characteristic: {parameter: change}}, "shares", "agreement"}`.
     """
     ids = [c.id for c in report.designs.characteristics]
     return {

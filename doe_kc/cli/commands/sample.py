@@ -22,6 +22,9 @@ def sample(
         str | None, typer.Option(help="lhs, sobol, one_at_a_time, full_factorial or table.")
     ] = None,
     n: Annotated[int | None, typer.Option("--n", min=1, help="Number of designs.")] = None,
+    extend: Annotated[
+        bool, typer.Option("--extend", help="Count stored designs among the n: run only what completes them.")
+    ] = False,
     scheduler: SchedulerOption = None,
     export: Annotated[
         str | None, typer.Option(help="Also export the whole store, curves included: csv or parquet.")
@@ -31,7 +34,7 @@ def sample(
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
     form = require_format(export) if export is not None else None
     study = study_options.read()
-    design = study_design(study, method=method, n=n)
+    design = study_design(study, method=method, n=n, extend=extend)
     with progress_bar(design.method, len(design.values)) as advance:
         sampled = run_sample(
             study,

@@ -26,7 +26,7 @@ def surrogates(
     study_options: StudyOptions,
     models: Annotated[
         str | None,
-        typer.Option(help="Models to choose from, with commas: linear,quadratic,rbf,gp,kpls,kriging,gp_ard."),
+        typer.Option(help="Models to choose from, with commas: linear,rbf,gp,gp_ard,gp_slopes,quadratic,..."),
     ] = None,
 ) -> None:
     """Fit fast models of every characteristic to the stored designs, cross-validate and choose."""
