@@ -56,7 +56,9 @@ class DryFriction(Effect):
         self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
-        return checked | {"shares": _shares(checked["shares"], f"{source}: effect {self.id}")}
+        shares = checked["shares"]
+        own = BACKBONE_SHARES if shares is None else shares
+        return checked | {"shares": _shares(own, f"{source}: effect {self.id}")}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         numbers = {"force": options["force_N"], "presliding": options["presliding_mm"]}
@@ -67,14 +69,14 @@ class DryFriction(Effect):
 
 
 def friction_options(force: float, presliding: float) -> dict[str, Option]:
-    """Options of a dry friction, with its default limit in N and distance in mm."""
+    """Options of a dry friction, with its default limit in N and distance in mm; shares: BACKBONE_SHARES."""
     return {
         "force_N": Option(force, "N"),
         "presliding_mm": Option(presliding, "mm"),
         "law": Option("dahl", choices=tuple(DryFriction.laws)),
         "exponent": Option(EXPONENT, "-"),
         "spread": Option(SPREAD, "-"),
-        "shares": Option(list(BACKBONE_SHARES), "-"),
+        "shares": Option(None, "-"),
     }
 
 
