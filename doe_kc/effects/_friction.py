@@ -20,7 +20,7 @@ EXPONENT = 1.0
 SPREAD = 0.8
 """Standard deviation of the logarithm of yield displacements whose virgin curve is nearly exponential, as
 Dahl's is: sqrt(trigamma(2)) = 0.803. A measured loop of a bushing, fitted by four sliders, has 0.81."""
-BACKBONE_SHARES = (0.03, 0.10, 0.34, 0.43, 0.10)
+BACKBONE_SHARES = (0.04, 0.07, 0.10, 0.13, 0.19, 0.32, 0.15)
 """Shares of the sliders of a free backbone whose virgin curve is nearly exponential: 1 - (1 + y) exp(-y)
 between the geometric means of neighbouring yield displacements."""
 
@@ -56,7 +56,9 @@ class DryFriction(Effect):
         self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
-        return checked | {"shares": _shares(checked["shares"], f"{source}: effect {self.id}")}
+        shares = checked["shares"]
+        own = BACKBONE_SHARES if shares is None else shares
+        return checked | {"shares": _shares(own, f"{source}: effect {self.id}")}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         numbers = {"force": options["force_N"], "presliding": options["presliding_mm"]}
@@ -67,14 +69,14 @@ class DryFriction(Effect):
 
 
 def friction_options(force: float, presliding: float) -> dict[str, Option]:
-    """Options of a dry friction, with its default limit in N and distance in mm."""
+    """Options of a dry friction, with its default limit in N and distance in mm; shares: BACKBONE_SHARES."""
     return {
         "force_N": Option(force, "N"),
         "presliding_mm": Option(presliding, "mm"),
         "law": Option("dahl", choices=tuple(DryFriction.laws)),
         "exponent": Option(EXPONENT, "-"),
         "spread": Option(SPREAD, "-"),
-        "shares": Option(list(BACKBONE_SHARES), "-"),
+        "shares": Option(None, "-"),
     }
 
 

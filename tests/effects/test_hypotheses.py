@@ -176,5 +176,5 @@ def test_variants_of_a_friction_are_its_laws() -> None:
         axle = apply_effect(nominal(), own.effect, options(variant, 1.0), source="test")
         assert axle.topology.strut_friction == (variant.law or "dahl")
         assert axle.effects[own.effect].get("law", "dahl") == axle.topology.strut_friction
-        assert axle.values["strut_friction.share2@L"] == pytest.approx(0.34)
+        assert axle.values["strut_friction.share2@L"] == pytest.approx(0.10)
     assert EFFECTS["hub_compliance"].variants(EFFECTS["hub_compliance"].hypotheses()[0])[1:] == ()

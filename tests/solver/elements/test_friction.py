@@ -133,7 +133,7 @@ def test_sliders_obey_masing(law: str) -> None:
 def test_all_laws_are_alike_as_they_come() -> None:
     """So that a change of the law alone begins near the one before."""
     x = np.linspace(0.0, 0.5, 101)
-    for law, most in (("lognormal", 0.11), ("backbone", 0.11)):
+    for law, most in (("lognormal", 0.11), ("backbone", 0.07)):
         assert np.abs(Law(law).along(x) - virgin(x)).max() < most * LEVEL
 
 
@@ -149,13 +149,13 @@ def test_a_small_spread_is_one_slider() -> None:
     ids=["Berg", "tanh", "Jenkins", "arctan"],
 )
 def test_free_shares_come_near_any_backbone(backbone: Callable[[np.ndarray], np.ndarray]) -> None:
-    """Shares by least squares of first loadings up to twelve lengths, none of them negative."""
-    u = np.linspace(0.0, 12.0, 241)
+    """Shares by least squares of first loadings up to five lengths, none of them negative."""
+    u = np.linspace(0.0, 5.0, 201)
     columns = np.column_stack([np.minimum(u / y, 1.0) for y in BACKBONE_YIELDS])
     shares = nnls(columns, backbone(u))[0] + 1e-9
     law = Law("backbone", shape={f"f.share{i}": share for i, share in enumerate(shares)})
     law.numbers = (LEVEL * shares.sum(), *law.numbers[1:])
-    np.testing.assert_allclose(law.along(PRE * u), LEVEL * backbone(u), atol=0.06 * LEVEL)
+    np.testing.assert_allclose(law.along(PRE * u), LEVEL * backbone(u), atol=0.02 * LEVEL)
 
 
 def test_the_force_is_what_resists_the_slide() -> None:
