@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
 from textwrap import wrap
@@ -124,10 +125,15 @@ def write_axle(axle: Axle, original: Path, path: Path, *, note: str = "") -> Pat
     read_toml(original)  # its messages name line and remedy
     text = read_bytes(original, "TOML file").decode("utf-8")
     document = tomlkit.parse(text)
+    own_type = str(document.get("type", "")).endswith(".toml")
+    if own_type:
+        document["type"] = str((original.parent / str(document["type"])).resolve())
     set_effects(document, axle)
     set_conditioning(document, axle)
     if not _fit(document, axle):
         _fit_without_an_effect(document, axle, str(path))
+    if own_type:
+        document["type"] = os.path.relpath(str(document["type"]), path.parent.resolve())
     content = _with_header(tomlkit.dumps(document), original, note)
     return write_whole(path, lambda p: p.write_bytes(content.encode("utf-8")))
 

@@ -12,12 +12,13 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from doe_kc.axle.geometry import point
+from doe_kc.axle.members import Member, members_of
 from doe_kc.axle.model import Axle
 from doe_kc.curves import SIDES
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report import style
-from doe_kc.report.axle_views import ARROW_FACTORS, LONGEST_ARROW, MEMBERS
+from doe_kc.report.axle_views import ARROW_FACTORS, LONGEST_ARROW
 from doe_kc.report.names import case_label
 from doe_kc.report.panel import Dash, PageBox, Panel
 from doe_kc.report.panel_axis import ticks
@@ -39,7 +40,9 @@ LOOKS: tuple[tuple[str, float, Dash], ...] = (
 )
 """Colour, width and dash of static, lowest and highest input."""
 LISTED = ("WLC", "LWB", "ROB", "RIB", "LLF", "LLR", "UPB")
-"""Hardpoints whose moves are listed, left side."""
+"""Hardpoints of a McPherson axle whose moves are listed, left side."""
+LISTED_OF_TYPE = 7
+"""So many of another type, the first of its file."""
 LIST_LINE, LIST_PLACES = 10.5, (0.0, 62.0, 92.0, 122.0, 164.0, 194.0, 224.0)
 """Points."""
 
@@ -47,13 +50,14 @@ LIST_LINE, LIST_PLACES = 10.5, (0.0, 62.0, 92.0, 122.0, 164.0, 194.0, 224.0)
 @dataclass(frozen=True)
 class CaseShapes:
     """states: at static, lowest and highest input; inputs: of the last two, in `unit`. radius: of the rolling
-    wheel, mm."""
+    wheel, mm. members: lines between hardpoints."""
 
     load_case: str
     unit: str
     inputs: tuple[float, float]
     states: tuple[Shape, Shape, Shape]
     radius: float
+    members: Mapping[str, tuple[Member, ...]]
 
     @property
     def factor(self) -> int:
@@ -77,7 +81,7 @@ def case_shapes(axle: Axle, case: CaseSolution) -> CaseShapes:
     states = (shape_at(axle, case.branches[0], 0), lowest, highest)
     inputs = (float(ends[0].input[-1]), float(ends[1].input[-1]))
     radius = float(point(axle, "WLC")[2])
-    return CaseShapes(case.load_case.id, case.load_case.unit, inputs, states, radius)
+    return CaseShapes(case.load_case.id, case.load_case.unit, inputs, states, radius, members_of(axle))
 
 
 def shape_figure(shapes: CaseShapes, axle_name: str) -> Sheet:
@@ -130,7 +134,7 @@ def _drawn(shapes: CaseShapes, state: Shape) -> dict[str, FloatArray]:
     now = {k: static.points[k] + factor * (p - static.points[k]) for k, p in state.points.items()}
     out = {}
     for side in SIDES:
-        for member, lines in MEMBERS.items():
+        for member, lines in shapes.members.items():
             ends = [now[f"{name}@{side}"] for line in lines for name in line]
             out[f"{member}@{side}"] = np.array(ends)
         axis = static.spin[side] + factor * (state.spin[side] - static.spin[side])
@@ -166,7 +170,7 @@ def _list(page: Sheet, shapes: CaseShapes, x: float, y: float) -> None:
     ends = [f"at {v:+g} {shapes.unit}" for v in shapes.inputs]
     head = [("left, mm", ends[0], "", "", ends[1], "", ""), ("", *"XYZ", *"XYZ")]
     rows = []
-    for name in (f"{listed}@L" for listed in LISTED):
+    for name in _listed(static):
         moves = [s.points[name] - static.points[name] for s in (low, high)]
         rows.append((name[:-2], *(f"{v + 0.0:.2f}" for v in np.concatenate(moves).round(2))))
     for k, row in enumerate([*head, *rows]):
@@ -176,6 +180,13 @@ def _list(page: Sheet, shapes: CaseShapes, x: float, y: float) -> None:
             left = j == 0 or k == 0
             at = (x + place + (0.0 if left else 24.0)) / page.width
             page.write(at, height, words, 6.3, "left" if left else "right", "top", weight=weight)
+
+
+def _listed(static: Shape) -> list[str]:
+    names = [f"{listed}@L" for listed in LISTED]
+    if all(name in static.points for name in names):
+        return names
+    return [name for name in static.points if name.endswith("@L")][:LISTED_OF_TYPE]
 
 
 def _handles(shapes: CaseShapes) -> list[Line2D]:

@@ -25,7 +25,8 @@ CACHE_VARIABLE = "DOE_KC_CACHE"
 COMPILE_VARIABLE = "DOE_KC_COMPILE"
 """Set to 0 to stay interpreted."""
 DEFAULT_FLAGS = "-O1"
-COMPILE_TIMEOUT = 120.0
+COMPILE_TIMEOUT = 600.0
+"""s; of a machine that does much else."""
 PACKAGE = Path(__file__).parents[1]
 ORIGINS = ("solver/**/*.py", "solver/*.c", "axle/*.py", "curves.py")
 """Sources of the package that generated code follows from."""

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.axle import Axle
-from doe_kc.axle_file import read_axle
+from doe_kc.axle import Axle, with_values
+from doe_kc.axle_file import read_axle, write_axle
 from doe_kc.solver.suite import solve
 from tests.reference import EXAMPLE
 
@@ -62,3 +62,14 @@ def test_toe_and_camber_stay_as_the_axis_is_across_the_car(trailing_arm: Axle) -
     for branch in solution.cases["vertical"].branches:
         for name in ("toe", "camber"):
             assert branch.y[:, solution.column(f"{name}@L")] == pytest.approx(0.0, abs=2e-3)
+
+
+def test_it_is_written_back_into_another_folder(trailing_arm: Axle, tmp_path: Path) -> None:
+    folder = tmp_path / "own"
+    folder.mkdir()
+    (block,) = re.findall(r"```toml\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    (folder / "trailing_arm.toml").write_text(block, encoding="utf-8")
+    (folder / "axle.toml").write_text(AXLE, encoding="utf-8")
+    changed = with_values(trailing_arm, {"AOB.x": -398.5, "aib.Fx": 0.75, "right.LWS.z": 281.0})
+    written = write_axle(changed, folder / "axle.toml", tmp_path / "out" / "deep" / "axle.toml")
+    assert read_axle(written).values == changed.values
