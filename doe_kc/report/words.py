@@ -114,7 +114,7 @@ def _plain(line: str, size: float, weight: str, family: str) -> LineImage:
     width, height, descent = (v * SUBPIXEL for v in (*font.get_width_height(), font.get_descent()))
     font.draw_glyphs_to_bitmap(antialiased=True)
     coverage = np.array(font.get_image(), dtype=np.uint8)
-    left = -math.ceil(font.get_bitmap_offset()[0] * SUBPIXEL)  # FreeType cuts the fraction off
+    left = -round(font.get_bitmap_offset()[0] * SUBPIXEL)  # to a pixel: hinting moves the first letter
     below = coverage.shape[0] - math.trunc(height - descent) - 1  # FreeType's bitmap has a free row on top
     pixels = DPI / POINTS
     return LineImage(width / pixels, height / pixels, descent / pixels, coverage, left, below)
