@@ -108,7 +108,7 @@ def _frame(panel: Panel, count: int) -> None:
     ticks = (0.001, 0.01, 0.1, 1.0, 10.0, 100.0)
     panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
     panel.number_size["x"] = 6.5
-    panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=4)
+    panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=2.5)
     panel.set_labels("smallest size that would be found,\nas a multiple of the typical one", None, 7.0)
 
 

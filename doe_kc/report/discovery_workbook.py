@@ -146,7 +146,8 @@ def discovery_workbook(
 
 def _gap_chart(book: Workbook, table: Table[GapRow], study: str) -> None:
     """Marks of every model over load case and response."""
-    ws = chart_sheet(book, "Gap chart", "Gap", table.remark, study)
+    remark = "Whitened RMS of model minus measured: 1 is noise."
+    ws = chart_sheet(book, "Gap chart", "Gap", remark, study)
     columns = [c for c in table.columns if c.key in GAP_LOOKS and not _absent(c, table)]
     rows: list[list[str | float | None]] = []
     last = ""

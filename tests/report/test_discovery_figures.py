@@ -103,7 +103,7 @@ def test_worst_curves_come_first_and_have_units() -> None:
 def test_friction_shows_as_half_width_of_the_loop() -> None:
     worst = worst_views(discovery("two"))
     assert worst[0].view.branches == "half_width"
-    assert worst[0].label == "tyre load,\nhalf-width of the loop [N]"
+    assert worst[0].label == "tyre load, half-width [N]" and ", loop\n" in worst[0].title
     assert worst[0].half is None
 
 

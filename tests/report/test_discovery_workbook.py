@@ -68,7 +68,7 @@ def test_the_gap_chart_has_a_series_a_model_and_a_category_a_row(tmp_path: Path)
         ws, gaps = written(tmp_path, car)["Gap chart"], discovery(car).gaps
         (chart,) = ws._charts
         assert isinstance(chart, LineChart) and len(chart.series) == models
-        assert chart.y_axis.scaling.logBase == 10
+        assert chart.y_axis.scaling.logBase == 2
         heads = [ws.cell(5, c).value for c in range(DATA_COLUMN, DATA_COLUMN + 2 + models)]
         assert heads[:4] == ["Load case", "Response", "Nominal", "Re-tuned"]
         tuned = [ws.cell(r, DATA_COLUMN + 3).value for r in range(7, 7 + len(gaps))]

@@ -94,8 +94,8 @@ def add_marks(
         levels = f"'{ws.title}'!${outer}${first + 1}:${inner}${last}"
         series.cat = AxDataSource(multiLvlStrRef=MultiLevelStrRef(f=levels))
         chart.series.append(series)
-    chart.y_axis.scaling.logBase, chart.y_axis.scaling.min = 10, lowest
-    chart.y_axis.title, chart.y_axis.number_format = axis, "0.0"
+    chart.y_axis.scaling.logBase, chart.y_axis.scaling.min = 2, lowest
+    chart.y_axis.title, chart.y_axis.number_format = axis, "General"
     chart.y_axis.crosses = "min"
     chart.x_axis.tickLblPos = "low"
     _finish(ws, chart)
