@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
+from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import RendererAgg
-from matplotlib.collections import Collection, LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
-from matplotlib.transforms import Affine2D, Transform
+from matplotlib.transforms import Affine2D, Bbox, Transform
 from numpy.typing import NDArray
 
 from doe_kc.report.legend import Corner, Legend
@@ -115,6 +116,9 @@ class Sheet:
                 self._place(artist, artist.get_zorder())
             frame.words += words
         self._words.entries = [with_minus_sign(w) for w in (*self._words.entries, *frame.words)]
+        parent = _Parent(*self.inches)
+        for artist in self._artists:
+            artist.set_figure(parent)  # type: ignore[arg-type]  # asked for its size alone
         self._artists.append(self._words)
 
     def _segments(self, segments: Sequence[Any], color: str, width: float, order: float) -> None:
@@ -131,11 +135,7 @@ class Sheet:
         renderer = RendererAgg(self.inches[0] * DPI, self.inches[1] * DPI, DPI)  # type: ignore[no-untyped-call]
         self._dots.clear().scale(DPI)
         for artist in self._ordered():
-            if isinstance(artist, PolyCollection):  # its own method asks a figure for the dots of its sizes
-                artist.set_urls([None, None])  # else one polygon alone asks a figure too, for its size
-                Collection.draw(artist, renderer)
-            else:
-                artist.draw(renderer)
+            artist.draw(renderer)
         out: NDArray[np.uint8] = np.asarray(renderer.buffer_rgba(), dtype=np.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
         return out
 
@@ -146,8 +146,8 @@ class Sheet:
         self._dots.clear().scale(POINTS)
         if self._figure is None:
             self._figure = Figure(figsize=self.inches, dpi=POINTS)
-            for artist in self._ordered()[1:]:  # it has its own ground
-                self._figure.add_artist(artist)
+            self._words.set_figure(self._figure)
+            self._figure.add_artist(_Page(self._ordered()[1:]))  # a figure has a ground of its own
         return self._figure
 
     def _ordered(self) -> list[Artist]:
@@ -156,6 +156,29 @@ class Sheet:
         ground = Rectangle((0.0, 0.0), self.width, self.height, fc="white", lw=0.0)
         ground.set_transform(self.page)
         return [ground, *sorted(self._artists, key=methodcaller("get_zorder"))]
+
+
+class _Page(Artist):
+    """All that is on a sheet, as one artist of a figure."""
+
+    def __init__(self, content: Sequence[Artist]) -> None:
+        super().__init__()
+        self._content = content
+
+    def draw(self, renderer: RendererBase) -> None:
+        for artist in self._content:
+            artist.draw(renderer)
+
+
+class _Parent:
+    """What collections ask of the figure that they are on: its size and its dots an inch."""
+
+    def __init__(self, width: float, height: float) -> None:
+        self.dpi, self.bbox = DPI, Bbox.from_bounds(0.0, 0.0, width * DPI, height * DPI)
+
+    def get_figure(self, root: bool = True) -> _Parent:
+        """Itself."""
+        return self
 
 
 def sheet(
