@@ -23,7 +23,7 @@ from doe_kc.surrogates.smt_library import RadialFit
 from doe_kc.surrogates.training import Scaling
 from doe_kc.surrogates.varying import Varying
 
-NODE_KINDS: dict[str, type[Any]] = {
+FITTED_KINDS: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (
         *(Calibrated, Chosen, CovarianceKernel, FirstOrderTrend, FittedGaussianProcess, FittedLinear),
@@ -77,5 +77,5 @@ def _decoded(document: Any, arrays: dict[str, FloatArray]) -> Any:
         return arrays[document["array"]]
     if "items" in document:
         return tuple(_decoded(item, arrays) for item in document["items"])
-    kind = NODE_KINDS[document["kind"]]
+    kind = FITTED_KINDS[document["kind"]]
     return kind(**{name: _decoded(value, arrays) for name, value in document["fields"].items()})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import binomtest
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.ground.errors import InputError
@@ -64,8 +65,9 @@ def test_calibration_repairs_variances_that_are_too_small() -> None:
         0.95, abs=0.02
     )
     assert coverage_after(held) == pytest.approx(0.95, abs=0.03)
-    low, high = coverage_interval(np.array([0.95]), 50)
-    assert (low[0], high[0]) == pytest.approx((0.8484, 0.9848), abs=2e-3)
+    low, high = coverage_interval(np.array([0.95]), 20)
+    limits = binomtest(19, 20).proportion_ci(method="wilson")
+    assert (low[0], high[0]) == pytest.approx((limits.low, limits.high), abs=1e-6)
 
 
 def test_an_exactly_known_output_keeps_its_variance() -> None:
