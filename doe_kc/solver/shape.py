@@ -50,7 +50,7 @@ class Shape:
 
 
 def shape_at(axle: Axle, branch: BranchSolution, row: int) -> Shape:
-    """The axle at one equilibrium of a branch that was solved for it."""
+    """A McPherson axle at one equilibrium of a branch that was solved for it."""
     c = kernel(axle.topology).constant_values(dict(axle.values))
     design = np.concatenate([_design(axle, name, side) for side in SIDES for name in SHAPE_POINTS])
     state = (branch.x[row], c, branch.u[row], branch.z[row])

@@ -129,6 +129,8 @@ def simulate(
     model = with_roll(model, roll, source="--roll")
     if pictures is not PictureChoice.NONE and out is None:
         raise InputError("--pictures: needs a folder to draw into; add --out DIR.")
+    if pictures is not PictureChoice.NONE and model.topology.structure is not None:
+        raise InputError("--pictures: only a McPherson axle is drawn; leave it out for this axle.")
     for sentence in axle_warnings(model):
         log.warning(sentence)
     started = time.perf_counter()
