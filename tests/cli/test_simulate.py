@@ -17,7 +17,7 @@ from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.cli.commands.simulate import apply_effects, apply_settings
 from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import CASE_ORDER
-from tests.cli.runner import AXLE, succeeds
+from tests.cli.runner import AXLE, fails, succeeds
 from tests.reference import CASE_NAMES, DATA, OTHER_PATHS, POINT_NAMES, nominal, reference_curves
 
 COLUMNS = [
@@ -283,3 +283,9 @@ def test_settings_are_those_of_the_library() -> None:
         "arb.radius": parameter_value(nominal(), "arb.radius") * 1.1,
     }
     assert ours.values == with_values(nominal(), wanted).values
+
+
+def test_the_deformed_shape_is_drawn_where_asked_for(tmp_path: Path) -> None:
+    succeeds("simulate", str(AXLE), "--case", "drive", "--out", str(tmp_path), "--pictures", "svg")
+    assert (tmp_path / "shape_drive.svg").stat().st_size > 5000
+    fails(2, "--pictures: needs a folder", "simulate", str(AXLE), "--case", "drive", "--pictures", "png")
