@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
@@ -76,8 +77,13 @@ class Fit:
 
     @cached_property
     def projection(self) -> Projection:
-        """Complement of what tuning and the sizes of the effects can explain."""
-        return self._projection(self.z.size)
+        """Complement of what tuning, traces and the sizes of the effects can explain."""
+        return self._projection(np.arange(self.z.size))
+
+    @cached_property
+    def without_traces(self) -> Projection:
+        """Complement of what tuning and the sizes of the effects can explain, traces held."""
+        return self._projection(np.delete(np.arange(self.z.size), self.model.traces))
 
     @cached_property
     def remainder(self) -> FloatArray:
@@ -90,14 +96,23 @@ class Fit:
         return residual_map(self.model.contrasts, self.residual, self.projection)
 
     @cached_property
-    def tuning_projection(self) -> Projection:
-        """Complement of what tuning can explain, the sizes of the effects held."""
-        return self._projection(self.model.dimension)
+    def sizes_held(self) -> Projection:
+        """Complement of what tuning and traces can explain, the sizes of the effects held."""
+        return self._projection(np.arange(self.model.dimension))
 
-    def _projection(self, count: int) -> Projection:
-        prior = self.model.prior_sd[:count]
-        offset = (self.z[:count] - self.model.centre[:count]) / prior
-        return Projection(self.jacobian[:, :count], prior, offset)
+    @cached_property
+    def tuning_projection(self) -> Projection:
+        """Complement of what tuning can explain, traces and the sizes of the effects held."""
+        return self._projection(np.arange(self.model.traces.start))
+
+    def _projection(self, free: NDArray[np.int_]) -> Projection:
+        """free: places in z that may move."""
+        prior = self.model.prior_sd[free]
+        offset = (self.z[free] - self.model.centre[free]) / prior
+        every = free.size == self.z.size
+        jacobian = self.jacobian if every else self.jacobian[:, free]
+        gram = self.hessian[np.ix_(free, free)] if self.model.left_out is None else None
+        return Projection(jacobian, prior, offset, gram)
 
     @property
     def misfit(self) -> float:
@@ -236,7 +251,8 @@ def _expanded(
     tuning: FloatArray | None = None,
 ) -> Fit:
     columns = model.amplitude_columns(z, residual)
-    jacobian = np.hstack([model.tuning_columns(z, residual) if tuning is None else tuning, columns])
+    known = model.tuning_columns(z, residual) if tuning is None else model.with_own_nuisances(tuning)
+    jacobian = np.hstack([known, columns])
     cost = cost_of(model, z, residual)
     return Fit(model, z, residual, jacobian, cost, evaluations + columns.shape[1], False)
 
