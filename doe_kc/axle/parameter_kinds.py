@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Literal
 
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS
+from doe_kc.axle.topology import BACKBONE_YIELDS
 
 Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
 Quantity = Literal[
@@ -128,7 +129,8 @@ POSITIVE_PARAMETERS = {
     *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
     *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
-    *("gap", "contact", "reference"),
+    *("gap", "contact", "reference", "spread"),
+    *(f"share{i}" for i in range(len(BACKBONE_YIELDS))),
 }
 NOT_BELOW_ZERO = {
     *(path for path, kind in KINDS.items() if kind.quantity == "flexibility"),
@@ -147,7 +149,7 @@ def must_be_positive(name: str) -> bool:
     """Whether a value of that name is one of size: a stiffness, load or radius."""
     head, _, rest = name.partition(".")
     if head in BUSHINGS:
-        return rest in BUSHING_AXES or rest.startswith("stiffness.")
+        return rest in BUSHING_AXES or rest.startswith(("stiffness.", "rubber."))
     if head in HARDPOINTS or head in EXTRA_HARDPOINTS or not_below_zero(name):
         return False
     return (

@@ -40,6 +40,9 @@ class Effect(ABC):
     """The component test or extra load case that would show it by itself."""
     sizes: ClassVar[tuple[Size, ...]] = ()
     """Numbers by which the effect grows, where it has one place only."""
+    laws: ClassVar[Mapping[str, tuple[Size, ...]]] = {}
+    """Values of the option `law`, the default first, each with the sizes that it has beside `sizes`: numbers
+    of its shape. Empty for an effect of one law."""
     replaces: ClassVar[tuple[str, ...]] = ()
     """Parameter paths that are this effect in other words: held while it is looked for."""
     odds: ClassVar[float] = 1.0
@@ -55,6 +58,14 @@ class Effect(ABC):
     def hypotheses(self) -> tuple[Hypothesis, ...]:
         """The places and sizes in which the effect is looked for."""
         return (Hypothesis(self.id, None, self.sizes),)
+
+    def variants(self, hypothesis: Hypothesis) -> tuple[Hypothesis, ...]:
+        """The hypothesis by each law that the effect can follow, the default one, itself, first."""
+        others = list(self.laws.items())[1:]
+        return (
+            hypothesis,
+            *(replace(hypothesis, law=law, sizes=(*hypothesis.sizes, *more)) for law, more in others),
+        )
 
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
         """What the rig reads of an axle's curves; the curves themselves unless `on_rig`."""

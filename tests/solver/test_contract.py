@@ -29,7 +29,7 @@ PACKAGE = Path(elements.__file__).parent
 UNITS = {"mm", "N", "deg", "Nm/deg", "N/mm", "-", ""}
 WITHOUT_REFERENCE_DATA = {
     *("steer_arm_compliance", "tie_rod_compliance", "ball_joint_compliance", "anti_roll_bar_link_compliance"),
-    *("power_assist", "steering_ratio", "roll_technique"),
+    *("power_assist", "rubber_hysteresis", "steering_ratio", "roll_technique"),
     *("rig_channel_gain", "rig_channel_offset", "rig_input_gain"),
 }
 """The reference has no such effect: its own tests are hand formulas and the limit without it."""
