@@ -21,7 +21,7 @@ from doe_kc.discovery.search.search import EffectSearch, accepted_at, threshold
 from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
-from doe_kc.discovery.verdict.certainty import certain
+from doe_kc.discovery.verdict.certainty import certain, name_doubt
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothesis_statuses
 from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.verdict.findings import findings
@@ -53,7 +53,7 @@ def discover(
     predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
     explained = adequacy(residual_map, predictions)
-    relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy)
+    relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy, explained)
     interface_scan = None if pending_scan is None else pending_scan()
     decoy = best_decoy(compared, relevant)
     gap, curve_gaps = gaps(model.likelihood, nominal, tuned, with_effects, decoy.fit if decoy else None)
@@ -94,17 +94,28 @@ def discover(
 
 
 def with_verdicts(
-    relevant: Sequence[Finding], compared: Sequence[Alternatives], outcome: Verdict, final: Fit
+    relevant: Sequence[Finding],
+    compared: Sequence[Alternatives],
+    outcome: Verdict,
+    final: Fit,
+    explained: Adequacy,
 ) -> tuple[Finding, ...]:
-    """The findings, each with its own verdict: some are certain although the rest is not explained."""
+    """The findings, each with its own verdict: some are certain although the rest is not explained.
+
+    Their probabilities are those among the sets, times that of nothing outside the library in their place.
+    """
     own = {c.hypothesis.name: c for c in compared}
 
-    def kind(finding: Finding) -> FindingVerdict:
-        if outcome.kind != "unexplained":
-            return "class" if ambiguous(finding) else "named"
-        return "named" if certain(finding, own[finding.hypothesis.name], final) else "lead"
+    def judged(finding: Finding) -> Finding:
+        place = own[finding.hypothesis.name]
+        kind: FindingVerdict = "class" if ambiguous(finding) else "named"
+        doubt = name_doubt(place, final, explained)
+        if outcome.kind == "unexplained":
+            sure = certain(finding, place, final)
+            kind, doubt = ("named", name_doubt(place, final, None)) if sure else ("lead", doubt)
+        return replace(finding, verdict=kind, probability=finding.probability / (1.0 + doubt))
 
-    return tuple(replace(f, verdict=kind(f)) for f in relevant)
+    return tuple(map(judged, relevant))
 
 
 def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) -> HypothesisFit | None:

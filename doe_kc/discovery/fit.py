@@ -2,7 +2,8 @@
 
 Minimizes |r(z)|^2 + |(z - z0) / P|^2 between bounds by Gauss-Newton steps in a trust region. Evidence by
 Laplace's approximation, ln Z = -1/2 min - 1/2 ln det(1 + P J'J P) + ln(share of each posterior inside its
-half-line over that of its prior), relative to constants that all models of the same data share.
+half-line over that of its prior), relative to constants that all models of the same data share. What a bound
+holds back is integrated along its half-line, from the bound on.
 """
 
 from __future__ import annotations
@@ -133,12 +134,33 @@ class Fit:
     def evidence(self) -> float:
         """ln Z, see the module."""
         total = -0.5 * self.cost - 0.5 * float(np.linalg.slogdet(self.hessian)[1])
-        total -= float(np.sum(np.log(self.model.prior_sd)))
-        sd = np.sqrt(np.diag(self.covariance))
+        total -= float(np.sum(np.log(self.model.prior_sd))) - self._beyond_bounds()
+        sd, held = np.sqrt(np.diag(self.covariance)), self.held
         for i, size in enumerate(self.model.sizes, start=self.model.dimension):
             if not (size.signed or size.shape):
-                total += float(log_ndtr(self.z[i] / sd[i])) + float(np.log(2.0))
+                total += float(np.log(2.0)) + (0.0 if held[i] else float(log_ndtr(self.z[i] / sd[i])))
         return total
+
+    @cached_property
+    def held(self) -> NDArray[np.bool_]:
+        """(d + m,) whether a bound holds it back: it is there, and the cost falls beyond."""
+        low, high = self.z <= self.model.lower, self.z >= self.model.upper
+        return np.asarray((low & (self.gradient > 0.0)) | (high & (self.gradient < 0.0)))
+
+    def _beyond_bounds(self) -> float:
+        """ln of the share of the Gaussian that unknowns at a bound keep: each has a half-line, with a slope.
+
+        The integral of exp(-g x - S x^2 / 2) over x >= 0, g the slope and S the curvature with all that is
+        free following; between those held only the curvatures count, not what they do to each other.
+        """
+        held = np.flatnonzero(self.held)
+        if not held.size:
+            return 0.0
+        curvature = np.linalg.inv(self.covariance[np.ix_(held, held)])
+        own = np.diag(curvature)
+        slope = np.abs(self.gradient[held])
+        tails = 0.5 * slope**2 / own + log_ndtr(-slope / np.sqrt(own)) - 0.5 * np.log(own)
+        return float(np.sum(tails) + 0.5 * np.linalg.slogdet(curvature)[1])
 
 
 def fit(

@@ -28,9 +28,10 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
     """What `discover --json` writes; numbers that are not finite are None.
 
     effects: those that are named, or the most probable of a class, each with its own verdict: where the
-    verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces: seen, too small to matter. parameters: value, sd, unit of each option,
-    lists for a list option. log10_odds: of each effect against the best alternative, its removal or a rival
-    in its place, all others in the model; 6 says 6 or more; against: id of that rival, null for the removal.
+    verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces:
+    seen, too small to matter. parameters: value, sd, unit of each option, lists for a list option.
+    log10_odds: of each effect against the best alternative, its removal or a rival in its place, all others
+    in the model; 6 says 6 or more; against: id of that rival, null for the removal.
     adequacy: how often noise alone leaves as large a disagreement as remains (map_chance), and as large an
     RMS of the worst load case held out (held_out_chance, worst_held_out; null where none was); unlisted: the
     largest probability of something outside the library, null where the set does not explain the records.
@@ -192,8 +193,9 @@ def _finite(value: Any) -> Any:
 def discovery_lines(discovery: Discovery) -> list[str]:
     """The outcome for a terminal."""
     lines = [f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}"]
-    for f in discovery.findings:
-        lines.append(f"{'lead' if f.verdict == 'lead' else 'effect'}: {_line(discovery, f)}")
+    lines += [
+        f"{'lead' if f.verdict == 'lead' else 'effect'}: {_line(discovery, f)}" for f in discovery.findings
+    ]
     lines += [f"trace: {_line(discovery, f)}; too small to matter" for f in discovery.traces]
     for group in discovery.classes:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")

@@ -26,7 +26,7 @@ def backward_elimination(
     without_own: of a member whose law has a discrepancy, errors that do not hold it: with it, what the member
     makes would pass for an error of the records.
     """
-    while len(fit.model.members) > 1:
+    while fit.model.members:
         places = list(fit.model.places())
         needed = {h.name: least - _odds(fit.model.members, h, prior) for h, _ in places}
         losses = {h.name: _loss(fit, place) for h, place in places}

@@ -23,6 +23,7 @@ from doe_kc.discovery.thresholds import (
 )
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
+from doe_kc.discovery.verdict.mixture import spread_between_sets
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
@@ -33,7 +34,7 @@ NO_EFFECT = ""
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
     every = [
-        _finding(search, one, place)
+        _finding(search, one, place, compared)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     ]
     most = max((f.gain for f in every), default=0.0)
@@ -55,7 +56,9 @@ def _stands_out(own: Alternatives, least: float) -> bool:
     return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE_CHANCE)
 
 
-def _finding(search: EffectSearch, own: Alternatives, place: slice) -> Finding:
+def _finding(
+    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives]
+) -> Finding:
     hypothesis = own.hypothesis
     logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
@@ -67,6 +70,7 @@ def _finding(search: EffectSearch, own: Alternatives, place: slice) -> Finding:
         amplitude_estimates(search.with_law_discrepancy, hypothesis)[1],
         search.discrepancy_shares,
     )
+    sd = np.hypot(sd, spread_between_sets(hypothesis, most_probable, compared))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_name_chances(own, detectability)

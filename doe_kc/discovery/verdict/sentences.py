@@ -74,7 +74,9 @@ def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str
         named = " and ".join(_label(f) for f in sure)
         more = " and ".join(_label(f) for f in findings if f not in sure)
         lead = f"; the best lead is {more}" if more else ""
-        return f"The model lacks {named}, and something besides that the library does not name for sure{lead}."
+        return (
+            f"The model lacks {named}, and something besides that the library does not name for sure{lead}."
+        )
     if findings:
         return f"Something is missing that the library does not name for sure; the best lead is {names}."
     return "Something is missing that no effect of the library explains."
