@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from doe_kc.axle.structure import Structure
+
 FrictionLaw = Literal["none", "dahl", "iwan", "lognormal", "backbone"]
 BACKBONE_YIELDS = (0.16, 0.4, 1.0, 2.5, 6.25)
 """Yield displacements of the sliders of a free backbone, over the presliding distance."""
@@ -21,7 +23,12 @@ class Topology:
     tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
     rubber: bushings whose translational axes have friction beside their elastic law.
     probes: whether zero-valued dislocations and force pairs are in, for derivatives to them alone.
+    structure: bodies and connections of the axle's type; None: the McPherson axle's.
+    elastic_balls, play_balls: ball joints that are springs, or have free play, by name of either side:
+        `tlo@L`; a structure's only.
     """
+
+    structure: Structure | None = None
 
     hub: bool = False
     strut_bending: bool = False
@@ -40,6 +47,8 @@ class Topology:
     rebound_points: int = 5
     tables: tuple[tuple[str, str, int], ...] = ()
     probes: bool = False
+    elastic_balls: tuple[str, ...] = ()
+    play_balls: tuple[str, ...] = ()
 
     @property
     def frictional(self) -> bool:

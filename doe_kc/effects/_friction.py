@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
 from doe_kc.axle.topology import BACKBONE_YIELDS, FrictionLaw
 from doe_kc.effects._base import Effect, Option
 from doe_kc.effects._tables import checked_number
@@ -42,8 +43,10 @@ class DryFriction(Effect):
     def with_law(self, axle: Axle, law: FrictionLaw) -> Axle:
         """The axle whose equations have the law."""
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
-        checked = super().read(options, source)
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read(options, source, places)
         return checked | {"shares": _shares(checked["shares"], f"{source}: effect {self.id}")}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:

@@ -6,8 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
 
-from doe_kc.axle.model import BUSHINGS, Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.axle.model import BUSHINGS, Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
+from doe_kc.axle.structure import of_side
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects._friction import SPREAD
 from doe_kc.effects._tables import checked_number, named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -32,6 +34,7 @@ class RubberHysteresis(Effect):
 
     id: ClassVar[str] = "rubber_hysteresis"
     label: ClassVar[str] = "Rubber hysteresis"
+    part: ClassVar[Part] = "axle"
     options: ClassVar[Mapping[str, Option]] = {
         "bushings": Option([b.upper() for b in BUSHINGS]),
         "share": Option(0.2, "-"),
@@ -49,11 +52,17 @@ class RubberHysteresis(Effect):
     )
     sizes: ClassVar[tuple[Size, ...]] = (Size("share", 0.2, "-"), Size("yield_mm", 0.2, "mm", "shape"))
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         """All bushings by one share, and the two groups whose loops a rig tells apart."""
-        rest = [name for name in map(str.upper, BUSHINGS) if name not in REAR]
+        names = [name.upper() for name in places.all_bushings]
+        everywhere = Hypothesis(
+            self.id, None, self.sizes, {} if places.structure is None else {"bushings": names}
+        )
+        if not set(REAR) <= set(names):
+            return (everywhere,)
+        rest = [name for name in names if name not in REAR]
         return (
-            Hypothesis(self.id, None, self.sizes),
+            everywhere,
             Hypothesis(self.id, *REAR, self.sizes, {"bushings": list(REAR)}),
             Hypothesis(self.id, "REST", self.sizes, {"bushings": rest}),
         )
@@ -61,18 +70,23 @@ class RubberHysteresis(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         """What every bushing that either names has now."""
         del before, after
+        places = places_of(axle)
+        own = {name: places.sides(name)[0] for name in axle.topology.rubber}
         return {
-            "bushings": [name.upper() for name in axle.topology.rubber],
+            "bushings": [name.upper() for name in own],
             **{
-                key: {name.upper(): axle.values[f"{name}.rubber.{value}@L"] for name in axle.topology.rubber}
+                key: {n.upper(): axle.values[of_side(f"{n}.rubber.{value}", side)] for n, side in own.items()}
                 for key, value in NUMBERS.items()
             },
         }
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
         checked = super().read({k: v for k, v in options.items() if k not in NUMBERS}, source)
         where = f"{source}: effect {self.id}"
-        bushings = _bushings(checked["bushings"], where)
+        names = checked["bushings"] if "bushings" in options else [n.upper() for n in places.all_bushings]
+        bushings = _bushings(names, where, places)
         numbers = {
             key: _numbers(key, options.get(key, self.options[key].default), bushings, where)
             for key in NUMBERS
@@ -81,19 +95,21 @@ class RubberHysteresis(Effect):
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         values: dict[str, float] = {}
+        places = places_of(axle)
         for bushing in options["bushings"]:
             for key, value in NUMBERS.items():
                 number = options[key]
                 own = number[bushing] if isinstance(number, Mapping) else number
-                values |= both(f"{bushing.lower()}.rubber.{value}", own)
+                name = bushing.lower()
+                values |= {of_side(f"{name}.rubber.{value}", s): own for s in places.sides(name)}
         there = {*axle.topology.rubber, *(name.lower() for name in options["bushings"])}
-        rubber = tuple(name for name in BUSHINGS if name in there)
+        rubber = tuple(name for name in places.all_bushings if name in there)
         return replace(axle.changed(values), topology=replace(axle.topology, rubber=rubber))
 
 
-def _bushings(names: Any, where: str) -> list[str]:
+def _bushings(names: Any, where: str, places: Places) -> list[str]:
     """Upper-case names, each once."""
-    known = [name.upper() for name in BUSHINGS]
+    known = [name.upper() for name in places.all_bushings]
     listed = names if isinstance(names, list | tuple) else [names]
     wrong = [name for name in listed if not isinstance(name, str) or name.upper() not in known]
     if wrong or not listed:

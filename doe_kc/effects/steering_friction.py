@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.topology import FrictionLaw
-from doe_kc.effects._base import Option, effect
+from doe_kc.effects._base import Option, Part, effect
 from doe_kc.effects._friction import DryFriction, friction_options
 from doe_kc.effects.hypothesis import Size
 
@@ -19,6 +19,7 @@ class SteeringFriction(DryFriction):
 
     id: ClassVar[str] = "steering_friction"
     label: ClassVar[str] = "Steering friction"
+    part: ClassVar[Part] = "rack"
     options: ClassVar[Mapping[str, Option]] = friction_options(250.0, 0.05)
 
     physics: ClassVar[str] = (

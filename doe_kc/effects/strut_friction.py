@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from doe_kc.axle.model import Axle, both
 from doe_kc.axle.topology import FrictionLaw
-from doe_kc.effects._base import Option, effect
+from doe_kc.effects._base import Option, Part, effect
 from doe_kc.effects._friction import DryFriction, friction_options
 from doe_kc.effects.hypothesis import Size
 
@@ -19,6 +19,7 @@ class StrutFriction(DryFriction):
 
     id: ClassVar[str] = "strut_friction"
     label: ClassVar[str] = "Strut friction"
+    part: ClassVar[Part] = "damper"
     options: ClassVar[Mapping[str, Option]] = friction_options(120.0, 0.3)
 
     physics: ClassVar[str] = (

@@ -38,9 +38,19 @@ class MeasurementFrames:
     noise: pd.DataFrame
 
 
-def measurement_to_frames(measurement: Measurement) -> MeasurementFrames:
+@dataclass(frozen=True)
+class MeasurementColumns:
+    """As `MeasurementFrames`, each table as its columns."""
+
+    curves: dict[str, Any]
+    characteristics: dict[str, Any]
+    gradients: dict[str, Any]
+    noise: dict[str, Any]
+
+
+def measurement_to_columns(measurement: Measurement) -> MeasurementColumns:
     """All tables; units in columns of their own (deg, mm, N and per input unit), sd = standard error."""
-    return MeasurementFrames(
+    return MeasurementColumns(
         curves=_curves(measurement),
         characteristics=_characteristics(measurement),
         gradients=_gradients(measurement),
@@ -48,9 +58,20 @@ def measurement_to_frames(measurement: Measurement) -> MeasurementFrames:
     )
 
 
-def _curves(measurement: Measurement) -> pd.DataFrame:
+def measurement_to_frames(measurement: Measurement) -> MeasurementFrames:
+    """`measurement_to_columns` as data frames."""
     import pandas as pd
 
+    tables = measurement_to_columns(measurement)
+    return MeasurementFrames(
+        pd.DataFrame(tables.curves),
+        pd.DataFrame(tables.characteristics),
+        pd.DataFrame(tables.gradients),
+        pd.DataFrame(tables.noise),
+    )
+
+
+def _curves(measurement: Measurement) -> dict[str, Any]:
     labels: list[tuple[str, str, str, str, str]] = []
     sizes: list[int] = []
     numbers: list[tuple[FloatArray, ...]] = []
@@ -67,36 +88,34 @@ def _curves(measurement: Measurement) -> pd.DataFrame:
     columns: dict[str, Any] = {n: np.repeat(np.array(t, dtype=object), sizes) for n, t in texts}
     values = zip(("input", "mean", "half_width", "sd"), zip(*numbers, strict=True), strict=True)
     columns |= {n: np.concatenate(v) for n, v in values}
-    return pd.DataFrame(columns, columns=list(CURVE_COLUMNS))
+    return {name: columns[name] for name in CURVE_COLUMNS}
 
 
-def _characteristics(measurement: Measurement) -> pd.DataFrame:
+def _characteristics(measurement: Measurement) -> dict[str, Any]:
     rows = []
     for ident, estimate in measurement.characteristics.items():
         entry = CHARACTERISTICS[ident]
         rows.append((ident, entry.load_case, entry.response, entry.unit, estimate.value, estimate.sd))
-    return _frame(rows, CHARACTERISTIC_COLUMNS)
+    return _columns(rows, CHARACTERISTIC_COLUMNS)
 
 
-def _gradients(measurement: Measurement) -> pd.DataFrame:
+def _gradients(measurement: Measurement) -> dict[str, Any]:
     rows = [
         (g.load_case, g.response, g.side, g.unit, g.value, g.sd, g.window, g.unit.split("/")[1])
         for g in measurement.gradients
     ]
-    return _frame(rows, GRADIENT_COLUMNS)
+    return _columns(rows, GRADIENT_COLUMNS)
 
 
-def _noise(measurement: Measurement) -> pd.DataFrame:
+def _noise(measurement: Measurement) -> dict[str, Any]:
     rows = []
     for name, models in measurement.noise.items():
         for response, model in models.items():
             c = model.components
             sds = (model.white, c.offset, c.gain, c.smooth, c.length, model.loop)
             rows.append((name, response, RESPONSE_UNITS[response], *sds, c.dof, c.source))
-    return _frame(rows, NOISE_COLUMNS)
+    return _columns(rows, NOISE_COLUMNS)
 
 
-def _frame(rows: list[Any], columns: tuple[str, ...]) -> pd.DataFrame:
-    import pandas as pd
-
-    return pd.DataFrame(rows, columns=list(columns))
+def _columns(rows: list[Any], names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: [row[i] for row in rows] for i, name in enumerate(names)}

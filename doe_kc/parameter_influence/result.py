@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NONLINEAR_PERCENT = 5.0
 """A cell is flagged when one-at-a-time and exact change differ by more than this share of the larger one
@@ -72,8 +75,15 @@ class Influence:
             exact=self.exact[:, index],
         )
 
+    def columns(self, values: FloatArray) -> dict[str, Any]:
+        """`values` with a first column of parameter paths, then one a characteristic."""
+        ids = (c.id for c in self.characteristics)
+        return {"parameter": [p.path for p in self.parameters], **dict(zip(ids, values.T, strict=True))}
+
     def frame(self, values: FloatArray) -> pd.DataFrame:
         """`values` with parameter paths as index and characteristic ids as columns."""
+        import pandas as pd
+
         return pd.DataFrame(
             values,
             index=[p.path for p in self.parameters],

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import Columns, write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import (
     Measurement,
     RideHeight,
     infer_ride_height,
-    measurement_to_frames,
+    measurement_to_columns,
     reduce_measurement,
 )
 from doe_kc.solver.curve_set import curve_set
@@ -67,14 +67,14 @@ def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
     """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
-    frames = measurement_to_frames(reduced.measurement)
+    columns = measurement_to_columns(reduced.measurement)
     tables = {
-        "curves.csv": frames.curves,
-        "characteristics.csv": frames.characteristics,
-        "gradients.csv": frames.gradients,
-        "noise.csv": frames.noise,
+        "curves.csv": columns.curves,
+        "characteristics.csv": columns.characteristics,
+        "gradients.csv": columns.gradients,
+        "noise.csv": columns.noise,
     }
-    written = [write_csv(folder / name, frame) for name, frame in tables.items()]
+    written = [write_columns(folder / name, table) for name, table in tables.items()]
     if pictures == "none":
         return written
     from doe_kc.report.rig_figures import write_rig_figures
@@ -84,13 +84,13 @@ def write_reduced(
 
 def reduced_document(reduced: Reduced) -> dict[str, Any]:
     """What `reduce --json` writes: characteristics with standard errors, ride height, noise."""
-    frames = measurement_to_frames(reduced.measurement)
+    columns = measurement_to_columns(reduced.measurement)
     height = reduced.ride_height
     return {
         "name": reduced.measurement.manifest.name,
         "characteristics": {
             row["name"]: {k: row[k] for k in ("value", "sd", "unit", "load_case")}
-            for row in frames.characteristics.to_dict("records")
+            for row in _records(columns.characteristics)
         },
         "ride_height_mm": None
         if height is None
@@ -102,5 +102,9 @@ def reduced_document(reduced: Reduced) -> dict[str, Any]:
                 c.response: {"estimate": c.estimate, "sd": c.sd, "used": c.used} for c in height.contributions
             },
         },
-        "noise": frames.noise.to_dict("records"),
+        "noise": _records(columns.noise),
     }
+
+
+def _records(columns: Columns) -> list[dict[str, Any]]:
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -14,9 +14,10 @@ from doe_kc.axle.model import BUSHINGS
 from doe_kc.axle.topology import Topology
 from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
-from doe_kc.effects import EFFECTS, Option, apply_effect
+from doe_kc.effects import Option, apply_effect
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE, nominal
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 TEXT = (EXAMPLE / "axle.toml").read_text()
 

@@ -15,6 +15,7 @@ from __future__ import annotations
 import casadi as ca
 
 from doe_kc.axle.model import FORCE_AXES, NM_PER_DEG
+from doe_kc.axle.structure import of_side
 from doe_kc.solver import curve, rotation
 from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._cuts import ROTATION_AXES, SHIFTS, push_pair, stretch, turn_pair, turn_sign
@@ -66,12 +67,12 @@ def _item(values: list[ca.SX], i: int) -> Response:
 
 
 def _force(b: Builder, name: str, side: str, axis: str, d: ca.SX) -> ca.SX:
-    factor = b.parameter(f"{name}.{axis}@{side}")
-    preload = b.constant(b.parameter(f"{name}.preload.{axis}@{side}"))
+    factor = b.parameter(of_side(f"{name}.{axis}", side))
+    preload = b.constant(b.parameter(of_side(f"{name}.preload.{axis}", side)))
     if table := _table(b, name, side, axis):
         return b.constant(factor) * table(d) + preload
-    k = b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}"))
-    cubic = b.constant(b.parameter(f"{name}.cubic.{axis}@{side}"))
+    k = b.constant(factor * b.parameter(of_side(f"{name}.stiffness.{axis}", side)))
+    cubic = b.constant(b.parameter(of_side(f"{name}.cubic.{axis}", side)))
     return k * (d + cubic * d**3) + preload
 
 
@@ -83,7 +84,7 @@ def _friction(b: Builder, name: str, side: str, d: ca.SX) -> list[ca.SX]:
     """
     if name not in b.topology.rubber:
         return [ca.SX(0)] * len(FORCE_AXES)
-    share, distance, spread = (b.parameter(f"{name}.rubber.{key}@{side}") for key in RUBBER)
+    share, distance, spread = (b.parameter(of_side(f"{name}.rubber.{key}", side)) for key in RUBBER)
     yields = b.constant(distance * lognormal_yields(spread, RUBBER_SLIDERS))
     weights = b.constant(share * distance / RUBBER_SLIDERS / yields)
     forces = []
@@ -97,18 +98,18 @@ def _friction(b: Builder, name: str, side: str, d: ca.SX) -> list[ca.SX]:
 
 def _stiffness(b: Builder, name: str, side: str, axis: str) -> ca.SX:
     """N/mm at zero deflection."""
-    factor = b.parameter(f"{name}.{axis}@{side}")
+    factor = b.parameter(of_side(f"{name}.{axis}", side))
     if table := _table(b, name, side, axis):
         at = ca.SX.sym("d")
         return factor * ca.substitute(ca.jacobian(table(at), at), at, 0)
-    return factor * b.parameter(f"{name}.stiffness.{axis}@{side}")
+    return factor * b.parameter(of_side(f"{name}.stiffness.{axis}", side))
 
 
 def _torque(b: Builder, name: str, side: str, axis: str, phi: ca.SX) -> ca.SX:
-    factor = b.parameter(f"{name}.{axis}@{side}")
+    factor = b.parameter(of_side(f"{name}.{axis}", side))
     if table := _table(b, name, side, axis):
         return b.constant(factor) * turn_sign(side) * table(turn_sign(side) * phi)
-    return b.constant(factor * b.parameter(f"{name}.stiffness.{axis}@{side}") * NM_PER_DEG) * phi
+    return b.constant(factor * b.parameter(of_side(f"{name}.stiffness.{axis}", side)) * NM_PER_DEG) * phi
 
 
 def _table(b: Builder, name: str, side: str, axis: str) -> curve.SymbolicCurve | None:
