@@ -18,6 +18,7 @@ from scipy.special import log_ndtr
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.discovery.half_lines import log_kept
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
 from doe_kc.discovery.projection import Projection
@@ -134,7 +135,8 @@ class Fit:
     def evidence(self) -> float:
         """ln Z, see the module."""
         total = -0.5 * self.cost - 0.5 * float(np.linalg.slogdet(self.hessian)[1])
-        total -= float(np.sum(np.log(self.model.prior_sd))) - self._beyond_bounds()
+        total -= float(np.sum(np.log(self.model.prior_sd)))
+        total += log_kept(self.covariance, self.gradient, self.held)
         sd, held = np.sqrt(np.diag(self.covariance)), self.held
         for i, size in enumerate(self.model.sizes, start=self.model.dimension):
             if not (size.signed or size.shape):
@@ -146,21 +148,6 @@ class Fit:
         """(d + m,) whether a bound holds it back: it is there, and the cost falls beyond."""
         low, high = self.z <= self.model.lower, self.z >= self.model.upper
         return np.asarray((low & (self.gradient > 0.0)) | (high & (self.gradient < 0.0)))
-
-    def _beyond_bounds(self) -> float:
-        """ln of the share of the Gaussian that unknowns at a bound keep: each has a half-line, with a slope.
-
-        The integral of exp(-g x - S x^2 / 2) over x >= 0, g the slope and S the curvature with all that is
-        free following; between those held only the curvatures count, not what they do to each other.
-        """
-        held = np.flatnonzero(self.held)
-        if not held.size:
-            return 0.0
-        curvature = np.linalg.inv(self.covariance[np.ix_(held, held)])
-        own = np.diag(curvature)
-        slope = np.abs(self.gradient[held])
-        tails = 0.5 * slope**2 / own + log_ndtr(-slope / np.sqrt(own)) - 0.5 * np.log(own)
-        return float(np.sum(tails) + 0.5 * np.linalg.slogdet(curvature)[1])
 
 
 def fit(

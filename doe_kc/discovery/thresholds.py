@@ -56,7 +56,7 @@ REFIT_STEPS = 8
 CHORD_STEPS = 6
 """-, steps along known derivatives at most. More would not end there."""
 CHORD_DECREASE = 10.0
-"""ln likelihood times 2, decrease up to which a load case held out is followed on known derivatives. At 30 an
+"""variances, square of the move up to which a load case held out is followed on known derivatives. At 30 an
 RMS was off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
 FIT_POOR_RATIO = 0.25
 """-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint 2000)."""
@@ -149,6 +149,8 @@ PLACES_REFITTED = 2
 ABSORBED_SHARE = 0.95
 """-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes are
 missed by a screening of first order in the parameters."""
+OVERLOOKED_MOST = 6
+"""-, such effects that are refitted at most, those of the largest score. A choice: each costs a refit."""
 TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01

@@ -1,12 +1,11 @@
 """The law of an effect is part of the set: a friction by the default law, or by one of open shape.
 
 What a wrong law leaves behind looks like another effect, and hides others. So where noise does not explain
-what remains, the law of every friction in the set is opened, the ones with fewest numbers of their own first.
+what remains, the law of every friction in the set is opened: by one number at once, wholly where nothing else
+explains it.
 """
 
 from __future__ import annotations
-
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -33,20 +32,33 @@ def _default(member: Hypothesis) -> Hypothesis:
 
 
 def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
-    """The fit with the laws that what remains asks for, as it is where noise explains what remains."""
+    """The fit with laws that have one number more each, as it is where noise explains what remains.
+
+    They go on even with a little less evidence: an effect that is still missing may ask for them.
+    """
     for member in current.model.members:
-        for law in open_laws(member):
-            if current.residual_map.chance >= NOISE_CHANCE:
-                return current
-            own = next(h for h in current.model.members if h.name == member.name)
-            current = _better(current, own, law, workers)
+        for law in open_laws(member)[:1]:
+            if len(law.sizes) == len(_default(member).sizes) + 1:
+                current = _opened(current, member, law, LAW_WINDOW, workers)
     return current
 
 
-def _better(current: Fit, member: Hypothesis, law: Hypothesis, workers: DiscoveryWorkers) -> Fit:
+def with_free_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
+    """The fit with the laws of most numbers that gain evidence, where nothing else explains what remains."""
+    for member in current.model.members:
+        for law in open_laws(member)[-1:]:
+            current = _opened(current, member, law, 0.0, workers)
+    return current
+
+
+def _opened(
+    current: Fit, member: Hypothesis, law: Hypothesis, window: float, workers: DiscoveryWorkers
+) -> Fit:
+    if current.residual_map.chance >= NOISE_CHANCE:
+        return current
     model, z = with_law(current, member, law)
     (refit,) = workers.fits([(model, z)], "opening laws", current.jacobian)
-    if refit is None or refit.evidence < current.evidence - LAW_WINDOW:
+    if refit is None or refit.evidence < current.evidence - window:
         return current
     return refit
 
@@ -58,8 +70,3 @@ def with_law(current: Fit, member: Hypothesis, law: Hypothesis) -> tuple[EffectM
     own = [known.get(s.name, 0.0) for s in law.sizes]
     place = next(p for h, p in current.model.places() if h == member)
     return model, np.concatenate([current.z[: place.start], own, current.z[place.stop :]])
-
-
-def same_members(one: Sequence[Hypothesis], other: Sequence[Hypothesis]) -> bool:
-    """Whether two sets hold the same effects, by whatever laws."""
-    return {h.name for h in one} == {h.name for h in other}

@@ -17,7 +17,7 @@ from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, score_test
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
-from doe_kc.discovery.search.laws import with_open_laws
+from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.refits import (
@@ -36,6 +36,8 @@ from doe_kc.discovery.thresholds import (
     FALSE_ALARM,
     LOOP_EVIDENCE,
     MOST_STEPS,
+    NOISE_CHANCE,
+    OVERLOOKED_MOST,
     PROMISING,
     PROPOSAL_GAIN,
     RESCREENED_MOST,
@@ -112,17 +114,23 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
         step = _step(current, library, prior, workers, screened)
         steps.append(step)
         full = step.accepted and len(step.trials[0].fit.model.members) > EFFECTS_MOST
-        if not step.accepted or full or len(steps) == MOST_STEPS:
+        if full or len(steps) == MOST_STEPS:
             break
-        current = step.trials[0].fit
-        if any(is_friction(current, h) for h in current.model.members if h in step.added):
-            current = with_conditioning(current, model.axle, workers)
-        current = with_open_laws(current, workers)
+        if step.accepted:
+            current = step.trials[0].fit
+            if any(is_friction(current, h) for h in step.added):
+                current = with_conditioning(current, model.axle, workers)
+            current = with_open_laws(current, workers)
+        else:
+            following = with_free_laws(current, workers)
+            if following is current:
+                break
+            current = following
         current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
         exact = refit_to_errors(own_loops(current, model.axle), model.likelihood)
         current, shares = fit_discrepancy(exact)
         without_own = without_own_discrepancy(exact, shares)
-        if current.model.likelihood is not step.trials[0].fit.model.likelihood:
+        if current.model.likelihood is not step.before.model.likelihood:
             current = converged_fit(current, workers)
         screened = _latest(screened, step, current)
     with_effects = refit_to_errors(current, model.likelihood)
@@ -223,10 +231,10 @@ def _step(
     if not any(_passes(t, current) for t in trials):
         near = leaders(screened, current.without_traces, least / 2.0)
         trials += joint_refits(current, near, prior, workers)
-    if not before.agrees and not any(_passes(t, current) for t in trials):
+    if before.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
-        trials += joint_refits(current, more, prior, workers)
+        trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:

@@ -10,7 +10,7 @@ import pytest
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.laws import open_laws, with_law, with_open_laws
+from doe_kc.discovery.search.laws import open_laws, with_free_laws, with_law, with_open_laws
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
@@ -66,4 +66,13 @@ def test_where_noise_explains_what_remains_no_law_is_asked_for() -> None:
 @pytest.mark.parametrize(("cost", "opened"), [(-50.0, True), (10.0, True), (60.0, False)])
 def test_the_open_law_goes_on_unless_its_evidence_is_clearly_less(cost: float, opened: bool) -> None:
     found = with_open_laws(disagreeing(), Answers(cost))
+    assert bool(found.model.members[0].law) is opened
+
+
+@pytest.mark.parametrize(("cost", "opened"), [(-50.0, True), (10.0, False)])
+def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> None:
+    asked = Answers(cost)
+    found = with_free_laws(disagreeing(), asked)
+    (friction,) = agreeing().model.members
+    assert asked.laws == [open_laws(friction)[-1].law]
     assert bool(found.model.members[0].law) is opened
