@@ -56,7 +56,7 @@ REFIT_STEPS = 8
 CHORD_STEPS = 6
 """-, steps along known derivatives at most. More would not end there."""
 CHORD_DECREASE = 10.0
-"""variances, square of the move up to which a load case held out is followed on known derivatives. At 30 an
+"""ln likelihood times 2, decrease up to which a load case held out is followed on known derivatives. At 30 an
 RMS was off by 0.03, at 10 and at 3 by less than 0.001, at the same cost."""
 FIT_POOR_RATIO = 0.25
 """-, decrease over its prediction, below which the trust radius shrinks. Usual (Conn, Gould, Toint 2000)."""

@@ -188,8 +188,8 @@ def test_the_near_key_is_suggested() -> None:
         ("strut_friction", {"law": ["dahl"]}),
         ("steering_friction", {"law": "lognormal", "spread": 0.0}),
         ("strut_friction", {"law": "backbone", "shares": [1.0, 1.0]}),
-        ("strut_friction", {"law": "backbone", "shares": [1.0, 1.0, 0.0, 1.0, 1.0]}),
-        ("strut_friction", {"law": "backbone", "shares": "11111"}),
+        ("strut_friction", {"law": "backbone", "shares": [1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0]}),
+        ("strut_friction", {"law": "backbone", "shares": "1111111"}),
         ("rubber_hysteresis", {"bushings": ["LLX"]}),
         ("rubber_hysteresis", {"bushings": []}),
         ("rubber_hysteresis", {"bushings": 3}),
@@ -314,6 +314,30 @@ def test_faults_of_several_channels_add_up() -> None:
         applied("rig_channel_gain", {"toe": 1.1}), "rig_channel_gain", {"wc_x": 0.9}, source="t"
     )
     assert axle.effects["rig_channel_gain"] == {"toe": 1.1, "wc_x": 0.9}
+
+
+@pytest.mark.parametrize(
+    ("ident", "options"),
+    [
+        ("steering_friction", {}),
+        ("strut_friction", {"law": "backbone", "shares": [0.1, 0.1, 0.2, 0.2, 0.2, 0.1, 0.1]}),
+        ("steering_friction", {"law": "lognormal", "spread": 0.4}),
+        ("rubber_hysteresis", {"bushings": ["LLR", "UPB"], "share": {"LLR": 0.3, "UPB": 0.1}}),
+        ("rubber_hysteresis", {}),
+    ],
+    ids=str,
+)
+def test_a_friction_is_written_and_read_back(ident: str, options: dict[str, Any], tmp_path: Path) -> None:
+    """With a value of the axle moved that no key of the file holds: an option of the effect follows."""
+    path = {"rubber_hysteresis": "llr.rubber.share"}.get(ident, f"{ident}.presliding")
+    axle = applied(ident, options)
+    changed = with_values(axle, {path: 1.1 * parameter_value(axle, path), "LLF.z": 213.0})
+    tried = [axle, changed] if options != {} or ident != "rubber_hysteresis" else [axle]
+    for i, each in enumerate(tried):
+        written = write_axle(each, EXAMPLE / "axle.toml", tmp_path / f"{i}.toml")
+        again = read_axle(written)
+        assert again.topology == each.topology
+        assert again.values == pytest.approx(dict(each.values), rel=1e-12)
 
 
 def test_the_table_name_of_a_file_is_the_effect_too() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
 from doe_kc.discovery.thresholds import CHORD_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
@@ -66,20 +66,9 @@ def fit_without(start: Fit, case: str) -> Fit:
     model = replace(start.model, left_out=case)
     near = chord_fit(start, model)
     gained = cost_of(model, start.z, start.residual) - near.cost
-    if near.converged and _moved(start, near.z) <= CHORD_DECREASE:
+    if near.converged and gained <= CHORD_DECREASE:
         return near
     return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
-
-
-def _moved(start: Fit, z: FloatArray) -> float:
-    """Square of the distance to z in standard deviations, of all but the linear nuisances.
-
-    Those are followed exactly by derivatives that are known.
-    """
-    model = start.model
-    places = np.r_[0 : model.calibrations.stop, model.dimension : z.size]
-    move = (z - start.z)[places]
-    return float(move @ cho_solve(cho_factor(start.covariance[np.ix_(places, places)]), move))
 
 
 def held_out_score(fit: Fit) -> HeldOutScore:
