@@ -11,6 +11,7 @@ from benchmarks.discovery.catalogue import CATALOGUE, REFERENCE
 from benchmarks.discovery.chance import log_uniform, stream
 from benchmarks.discovery.further import FURTHER
 from benchmarks.discovery.hidden import Hidden
+from benchmarks.discovery.other_laws import OTHER_LAWS, rubber
 from benchmarks.discovery.outside import OUTSIDE, Outside
 from benchmarks.discovery.scatter import Spread
 from doe_kc.axle import Axle
@@ -19,6 +20,8 @@ FULL = (0.5, 2.0)
 """Sizes, in typical ones."""
 WEAK = (0.1, 0.3)
 BOTH = (0.7, 2.0)
+MANY = (3, 6)
+"""Effects in a car of several."""
 ALIKE = (
     ("hub_compliance", "strut_bending"),
     ("rack_mount_compliance", "tie_rod_compliance"),
@@ -106,6 +109,32 @@ def wrong_priors(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
     return Content((hidden,), spread=Spread(shift=1.0, width=width))
 
 
+def many(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """Three to six effects, no two of which one hides the other by construction."""
+    count = int(rng.integers(MANY[0], MANY[1] + 1))
+    chosen = [_pick(REFERENCE, seed, "many")]
+    for ident in rng.permutation([e for e in REFERENCE if e not in chosen]):
+        rivals = {e for p in ALIKE for e in p if set(p) & set(chosen)}
+        if len(chosen) < count and str(ident) not in rivals:
+            chosen.append(str(ident))
+    return Content(tuple(_hide(e, BOTH, rng, axle) for e in chosen))
+
+
+def many_rubber(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """The same in a car whose bushings all have rubber hysteresis."""
+    return Content((*many(seed, rng, axle).hidden, rubber(rng, log_uniform(rng, *BOTH), axle)))
+
+
+def rubber_alone(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    return Content((rubber(rng, log_uniform(rng, *BOTH), axle),))
+
+
+def other_law(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """A single effect by a law that the analyser's default does not have."""
+    draw = OTHER_LAWS[_pick(list(OTHER_LAWS), seed, "other_law")]
+    return Content((draw(rng, log_uniform(rng, *BOTH), axle),))
+
+
 SUITES: dict[str, Fill] = {
     "null": null,
     "single": single,
@@ -116,4 +145,8 @@ SUITES: dict[str, Fill] = {
     "library_deleted": library_deleted,
     "outside": outside,
     "wrong_priors": wrong_priors,
+    "many": many,
+    "many_rubber": many_rubber,
+    "rubber": rubber_alone,
+    "other_law": other_law,
 }

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.result import CurveGap, Discovery, Finding, Gap, Returned
+from doe_kc.discovery.result import CurveGap, Discovery, Finding, FindingVerdict, Gap, Returned
 from doe_kc.discovery.screening.disagreement import raw_map
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
@@ -20,11 +21,12 @@ from doe_kc.discovery.search.search import EffectSearch, accepted_at, threshold
 from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.verdict.certainty import certain, name_doubt
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothesis_statuses
 from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.verdict.findings import findings
 from doe_kc.discovery.verdict.sentences import next_tests, sentences
-from doe_kc.discovery.verdict.verdict import classes, verdict
+from doe_kc.discovery.verdict.verdict import Verdict, ambiguous, classes, verdict
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -51,6 +53,7 @@ def discover(
     predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
     explained = adequacy(residual_map, predictions)
+    relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy, explained)
     interface_scan = None if pending_scan is None else pending_scan()
     decoy = best_decoy(compared, relevant)
     gap, curve_gaps = gaps(model.likelihood, nominal, tuned, with_effects, decoy.fit if decoy else None)
@@ -88,6 +91,31 @@ def discover(
         beyond=outside,
         separating=separating,
     )
+
+
+def with_verdicts(
+    relevant: Sequence[Finding],
+    compared: Sequence[Alternatives],
+    outcome: Verdict,
+    final: Fit,
+    explained: Adequacy,
+) -> tuple[Finding, ...]:
+    """The findings, each with its own verdict: some are certain although the rest is not explained.
+
+    Their probabilities are those among the sets, times that of nothing outside the library in their place.
+    """
+    own = {c.hypothesis.name: c for c in compared}
+
+    def judged(finding: Finding) -> Finding:
+        place = own[finding.hypothesis.name]
+        kind: FindingVerdict = "class" if ambiguous(finding) else "named"
+        doubt = name_doubt(place, final, explained)
+        if outcome.kind == "unexplained":
+            sure = certain(finding, place, final)
+            kind, doubt = ("named", name_doubt(place, final, None)) if sure else ("lead", doubt)
+        return replace(finding, verdict=kind, probability=finding.probability / (1.0 + doubt))
+
+    return tuple(map(judged, relevant))
 
 
 def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) -> HypothesisFit | None:
@@ -140,7 +168,7 @@ def _statuses(
     statuses: dict[str, Status] = {f.hypothesis.name: "found" if f.relevant else "trace" for f in named}
     for hypothesis in search.with_law_discrepancy.model.members:
         step = accepted_at(search, hypothesis)
-        own = next(s for s in step.screened if s.hypothesis == hypothesis)
+        own = next(s for s in step.screened if s.hypothesis.name == hypothesis.name)
         own = own.rewhitened(step.before.model.likelihood, last.model.likelihood)
         members.append((own, statuses.get(hypothesis.name, "unresolved")))
     names = {s.hypothesis.name for s, _ in members}

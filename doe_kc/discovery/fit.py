@@ -2,7 +2,8 @@
 
 Minimizes |r(z)|^2 + |(z - z0) / P|^2 between bounds by Gauss-Newton steps in a trust region. Evidence by
 Laplace's approximation, ln Z = -1/2 min - 1/2 ln det(1 + P J'J P) + ln(share of each posterior inside its
-half-line over that of its prior), relative to constants that all models of the same data share.
+half-line over that of its prior), relative to constants that all models of the same data share. What a bound
+holds back is integrated along its half-line, from the bound on.
 """
 
 from __future__ import annotations
@@ -11,11 +12,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.discovery.half_lines import log_kept
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
 from doe_kc.discovery.projection import Projection
@@ -76,8 +79,13 @@ class Fit:
 
     @cached_property
     def projection(self) -> Projection:
-        """Complement of what tuning and the sizes of the effects can explain."""
-        return self._projection(self.z.size)
+        """Complement of what tuning, traces and the sizes of the effects can explain."""
+        return self._projection(np.arange(self.z.size))
+
+    @cached_property
+    def without_traces(self) -> Projection:
+        """Complement of what tuning and the sizes of the effects can explain, traces held."""
+        return self._projection(np.delete(np.arange(self.z.size), self.model.traces))
 
     @cached_property
     def remainder(self) -> FloatArray:
@@ -90,14 +98,23 @@ class Fit:
         return residual_map(self.model.contrasts, self.residual, self.projection)
 
     @cached_property
-    def tuning_projection(self) -> Projection:
-        """Complement of what tuning can explain, the sizes of the effects held."""
-        return self._projection(self.model.dimension)
+    def sizes_held(self) -> Projection:
+        """Complement of what tuning and traces can explain, the sizes of the effects held."""
+        return self._projection(np.arange(self.model.dimension))
 
-    def _projection(self, count: int) -> Projection:
-        prior = self.model.prior_sd[:count]
-        offset = (self.z[:count] - self.model.centre[:count]) / prior
-        return Projection(self.jacobian[:, :count], prior, offset)
+    @cached_property
+    def tuning_projection(self) -> Projection:
+        """Complement of what tuning can explain, traces and the sizes of the effects held."""
+        return self._projection(np.arange(self.model.traces.start))
+
+    def _projection(self, free: NDArray[np.int_]) -> Projection:
+        """free: places in z that may move."""
+        prior = self.model.prior_sd[free]
+        offset = (self.z[free] - self.model.centre[free]) / prior
+        every = free.size == self.z.size
+        jacobian = self.jacobian if every else self.jacobian[:, free]
+        gram = self.hessian[np.ix_(free, free)] if self.model.left_out is None else None
+        return Projection(jacobian, prior, offset, gram)
 
     @property
     def misfit(self) -> float:
@@ -119,11 +136,18 @@ class Fit:
         """ln Z, see the module."""
         total = -0.5 * self.cost - 0.5 * float(np.linalg.slogdet(self.hessian)[1])
         total -= float(np.sum(np.log(self.model.prior_sd)))
-        sd = np.sqrt(np.diag(self.covariance))
+        total += log_kept(self.covariance, self.gradient, self.held)
+        sd, held = np.sqrt(np.diag(self.covariance)), self.held
         for i, size in enumerate(self.model.sizes, start=self.model.dimension):
             if not (size.signed or size.shape):
-                total += float(log_ndtr(self.z[i] / sd[i])) + float(np.log(2.0))
+                total += float(np.log(2.0)) + (0.0 if held[i] else float(log_ndtr(self.z[i] / sd[i])))
         return total
+
+    @cached_property
+    def held(self) -> NDArray[np.bool_]:
+        """(d + m,) whether a bound holds it back: it is there, and the cost falls beyond."""
+        low, high = self.z <= self.model.lower, self.z >= self.model.upper
+        return np.asarray((low & (self.gradient > 0.0)) | (high & (self.gradient < 0.0)))
 
 
 def fit(
@@ -236,7 +260,8 @@ def _expanded(
     tuning: FloatArray | None = None,
 ) -> Fit:
     columns = model.amplitude_columns(z, residual)
-    jacobian = np.hstack([model.tuning_columns(z, residual) if tuning is None else tuning, columns])
+    known = model.tuning_columns(z, residual) if tuning is None else model.with_own_nuisances(tuning)
+    jacobian = np.hstack([known, columns])
     cost = cost_of(model, z, residual)
     return Fit(model, z, residual, jacobian, cost, evaluations + columns.shape[1], False)
 

@@ -14,6 +14,7 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
+from doe_kc.discovery.clutter import Clutter, joined
 from doe_kc.discovery.nuisances import calibrated
 from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
@@ -33,9 +34,9 @@ class EffectModel:
     """An axle with effects of unknown size against the records of one car.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
-    then differences between the sides, which are linear), d together, then m amplitudes of all members'
-    sizes. The priors of b and a are Gaussian with standard deviation 1, that of an amplitude cut at zero
-    where it cannot be negative.
+    then differences between the sides and traces of absent effects, which are linear), d together, then m
+    amplitudes of all members' sizes. The priors of b and a are Gaussian with standard deviation 1, that of an
+    amplitude cut at zero where it cannot be negative.
     """
 
     axle: Axle
@@ -50,6 +51,8 @@ class EffectModel:
     """Load case whose records are held back from fits, None for none."""
     sides: FloatArray | None = None
     """(M, k) change of the residual by each difference between the sides, per its standard deviation."""
+    clutter: Clutter | None = None
+    """Traces of all effects, of which those of absent ones count; None before they are known."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
     """Solver of its axles, the same for all models that come of one another."""
 
@@ -82,6 +85,12 @@ class EffectModel:
         return slice(self.space.dimension, self.space.dimension + len(self.cases))
 
     @property
+    def traces(self) -> slice:
+        """Places of the traces of absent effects in z."""
+        count = 0 if self.clutter is None else len(self.clutter.names)
+        return slice(self.dimension - count, self.dimension)
+
+    @property
     def parameters(self) -> int:
         """Number of tunable parameters of the axle."""
         return self.space.dimension
@@ -89,8 +98,13 @@ class EffectModel:
     @property
     def dimension(self) -> int:
         """d, parameters and nuisances: all that tuning may move."""
-        sides = 0 if self.sides is None else int(self.sides.shape[1])
-        return self.space.dimension + len(self.cases) + sides
+        linear = 0 if self.linear is None else int(self.linear.shape[1])
+        return self.space.dimension + len(self.cases) + linear
+
+    @cached_property
+    def linear(self) -> FloatArray | None:
+        """(M, k) change of the residual by each nuisance that is linear, None without any."""
+        return joined(self.sides, None if self.clutter is None else self.clutter.beside(self.members))
 
     @cached_property
     def prior_sd(self) -> FloatArray:
@@ -125,10 +139,15 @@ class EffectModel:
         """The model with one effect less."""
         return replace(self, members=tuple(h for h in self.members if h != hypothesis))
 
+    def with_member(self, member: Hypothesis, other: Hypothesis) -> EffectModel:
+        """The model with another hypothesis in a member's place."""
+        return replace(self, members=tuple(other if h == member else h for h in self.members))
+
     def with_likelihood(self, likelihood: Likelihood) -> EffectModel:
         """The model against the same records with other errors."""
         sides = None if self.sides is None else rewhitened(self.sides, self.likelihood, likelihood)
-        return replace(self, likelihood=likelihood, sides=sides)
+        clutter = None if self.clutter is None else self.clutter.rewhitened(self.likelihood, likelihood)
+        return replace(self, likelihood=likelihood, sides=sides, clutter=clutter)
 
     def places(self) -> Iterator[tuple[Hypothesis, slice]]:
         """Each member with the places of its amplitudes in z."""
@@ -169,11 +188,11 @@ class EffectModel:
         return self.residual_of(self.axle_at(z), z)
 
     def residual_of(self, axle: Axle, z: FloatArray) -> FloatArray:
-        """(M,) of any axle, the rig's calibrations and the differences between the sides as at z."""
+        """(M,) of any axle, the nuisances as at z."""
         residual = self.likelihood.residual(self._read(axle, z), NO_CHARACTERISTICS)
-        if self.sides is None:
+        if self.linear is None:
             return residual
-        return np.asarray(residual + self.sides @ z[self.calibrations.stop : self.dimension])
+        return np.asarray(residual + self.linear @ z[self.calibrations.stop : self.dimension])
 
     def tuning_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, d) derivative of the residual to parameters (exact) and nuisances. residual: at z."""
@@ -181,7 +200,13 @@ class EffectModel:
         expansion = linearize(axle, self.space, z[: self.parameters], solve=self.solutions)
         parameters = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
         columns = [parameters, self._calibration_columns(z, residual)]
-        return np.hstack(columns if self.sides is None else [*columns, self.sides])
+        return np.hstack(columns if self.linear is None else [*columns, self.linear])
+
+    def with_own_nuisances(self, columns: FloatArray) -> FloatArray:
+        """(M, d) derivatives of a model nearby, (M, d' <= d) or more, with this one's linear nuisances."""
+        if self.linear is None:
+            return columns[:, : self.dimension]
+        return np.hstack([columns[:, : self.calibrations.stop], self.linear])
 
     def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""

@@ -19,6 +19,7 @@ from doe_kc.discovery.verdict.held_out import HeldOut
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 
+FindingVerdict = Literal["named", "class", "lead"]
 VerdictKind = Literal["named", "class", "none", "unexplained"]
 
 
@@ -81,6 +82,9 @@ class Finding:
     """Whether it is worth naming; a trace otherwise."""
     elsewhere: tuple[str, ...] = ()
     """Other places of the same effect that explain the records about as well."""
+    verdict: FindingVerdict = "lead"
+    """named; class, one of several that cannot be told apart; or lead, where something remains unexplained
+    that could be this effect's doing or that this effect could stand for. A trace is a lead."""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,9 @@ TRACE_SD = 0.03
 """typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some of
 each: a choice, small beside the tenth that is worth a name."""
 
+TRACE_SEEN = 0.1
+"""standard deviations of the records, below which a trace is left out. It moves nothing."""
+
 SIDE_POSITION = 0.25
 """mm, standard deviation of right minus left of a hardpoint. Tolerance of drilled and welded parts."""
 SIDE_CLEARANCE = 1.0
@@ -125,6 +128,9 @@ NULL_SHARE = 1e-12
 SHAPE_STARTS = (0.0, -2.0, 2.0)
 """prior standard deviations, starts of a shape. It does not exist where the effect is absent (Davies
 1977)."""
+RESCREENED_MOST = 10
+"""-, hypotheses that are screened anew at a later step at most, those of the largest score. A choice that
+saves solutions: only the first few are refitted."""
 PROMISING = 1.0
 """ln evidence to first order, from which a hypothesis is screened anew at a later step. As `HOPELESS`."""
 CHUNKS = 4
@@ -143,11 +149,29 @@ PLACES_REFITTED = 2
 ABSORBED_SHARE = 0.95
 """-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes are
 missed by a screening of first order in the parameters."""
+OVERLOOKED_MOST = 6
+"""-, such effects that are refitted at most, those of the largest score. A choice: each costs a refit."""
 TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01
-"""-, chance that noise alone brings in any effect at a step. The usual level of one in a hundred, shared by
-the whole library (Bonferroni)."""
+"""-, chance that noise alone brings in any effect, at the limits of exclusion. The usual level of one in a
+hundred, shared by the whole library (Bonferroni)."""
+EFFECTS_ABSENT = 20.0
+"""-, second parameter of the Beta prior of an effect's probability, the first is 1. One effect in 21 before
+the records: a library of two dozen, of which a car has one or a few."""
+ACCEPTED_ODDS = 4.6
+"""ln posterior odds, from which an effect is taken into the set. A hundred to one: what comes in is pruned
+later, what stays out is not looked at again in the step."""
+PROPOSAL_MOVES = 12
+"""-, moves to the most probable set to first order at most. Twice the number of effects."""
+PROPOSAL_PAIRS = 6
+"""-, effects of which pairs are proposed. Fifteen pairs beside each set: milliseconds."""
+PROPOSAL_GAIN = 50.0
+"""ln posterior odds to first order, that each effect of several added at once must bring. Ten standard
+deviations: what is weaker waits for better derivatives."""
+LAW_WINDOW = 10.0
+"""ln evidence, that the more flexible of two laws may be behind while noise does not explain what remains.
+Occam's window (Madigan, Raftery 1994): effects are then looked for beside the open law."""
 EFFECTS_MOST = 6
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six."""
 MOST_STEPS = 12
@@ -209,9 +233,16 @@ RIVAL_LISTED = 0.01
 """-, probability from which a rival is listed. A hundred to one."""
 CERTAIN = 6.0
 """log10 odds, beyond which no more is said. What all models share is less sure than a million to one."""
-TRACE_LEVEL = 4.0
-"""standard deviations after re-tuning, from which a trace would have been brought in. The threshold of
-acceptance, for the size of the library."""
+CERTAIN_SHARE = 0.1
+"""-, most that may remain unexplained over what an effect explains, in squares, for a name beside something
+unexplained. A choice: another effect in its place leaves more than a tenth of it (a bending strut for a
+compliant hub leaves two fifths)."""
+OWN_CONTRASTS = 0.3
+"""-, share of the largest disagreement without an effect, from which a contrast must be explained for a name
+beside something unexplained. A choice: what the effect is known by."""
+WRONG_NAMES = 0.015
+"""-, odds that a name of a set that noise explains is wrong. None of the 65 names of the published benchmark
+was (Laplace's rule of succession, 1 in 67)."""
 RETURNS_FROM = 0.5
 """prior standard deviations from nominal, from which the return of a parameter is worth a line. Room on a
 page."""

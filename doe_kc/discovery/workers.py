@@ -79,7 +79,7 @@ class DiscoveryWorkers:
         if known:
             self.watch(what, len(known))
         missing = [i for i in range(len(starts)) if i not in known]
-        tasks = [(*starts[i], tuning[:, : starts[i][0].dimension]) for i in missing]
+        tasks = [(*starts[i], tuning[:, : starts[i][0].calibrations.stop]) for i in missing]
         for at, arrays in self._run(_fit_one, tasks):
             i = missing[at]
             known[i] = arrays
@@ -142,12 +142,12 @@ def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Array
 
 
 def _packed_fit(fit: Fit) -> Arrays:
-    """Without what its model says of it, the derivatives to the differences between the sides among that."""
-    sides = range(fit.model.calibrations.stop, fit.model.dimension)
+    """Without what its model says of it, the derivatives to linear nuisances among that."""
+    linear = range(fit.model.calibrations.stop, fit.model.dimension)
     return {
         "z": fit.z,
         "residual": fit.residual,
-        "jacobian": np.delete(fit.jacobian, sides, axis=1),
+        "jacobian": np.delete(fit.jacobian, linear, axis=1),
         "evaluations": np.array(float(fit.evaluations)),
         "converged": np.array(float(fit.converged)),
     }
@@ -159,7 +159,7 @@ def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
         return None
     z, residual = known["z"], known["residual"]
     own, at = known["jacobian"], model.calibrations.stop
-    parts = [own] if model.sides is None else [own[:, :at], model.sides, own[:, at:]]
+    parts = [own] if model.linear is None else [own[:, :at], model.linear, own[:, at:]]
     counts = int(known["evaluations"]), bool(known["converged"])
     return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
 
@@ -171,6 +171,7 @@ def _packed(screening: Screened) -> Arrays:
         "numbers": np.array([screening.gain, screening.score, screening.detectability, screening.absorbed]),
         "columns": screening.columns,
         "change": screening.change,
+        "bend": screening.bend,
         "visible": screening.size_detectability,
         "failed": np.frombuffer(screening.failed.encode(), dtype=np.uint8).astype(float),
     }
@@ -186,6 +187,7 @@ def _unpacked(hypothesis: Hypothesis, known: Arrays) -> Screened:
         score,
         known["columns"],
         known["change"],
+        known["bend"],
         detectability,
         absorbed,
         known["visible"],

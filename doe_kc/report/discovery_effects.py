@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.thresholds import CERTAIN, NAME_PROBABILITY
+from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.sentences import against_words
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.numbers import sd_format
@@ -64,13 +64,11 @@ def effect_rows(discovery: Discovery) -> list[EffectRow]:
 
 
 def kind_of(discovery: Discovery, finding: Finding) -> str:
-    """found; most likely, of several that cannot be told apart; lead only, where the verdict is unexplained;
+    """found; most likely, of several that cannot be told apart; lead only, where something else remains;
     trace, seen but too small to matter."""
     if finding not in discovery.findings:
         return "trace"
-    if discovery.verdict == "unexplained":
-        return "lead only"
-    return "found" if finding.probability >= NAME_PROBABILITY else "most likely"
+    return {"lead": "lead only", "named": "found", "class": "most likely"}[finding.verdict]
 
 
 def rival_words(finding: Finding) -> str:

@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.search.search import Step, threshold
+from doe_kc.discovery.search.search import Step
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.report import style
 from doe_kc.report.discovery_words import hypothesis_label, hypothesis_words
 from doe_kc.report.panel import PageBox, Panel
@@ -51,7 +52,7 @@ class EvidenceBar:
 
 @dataclass(frozen=True)
 class EvidenceStep:
-    """One step of the search. needed: ln evidence that a candidate must reach among so many."""
+    """One step of the search. needed: ln posterior odds that a candidate must reach."""
 
     title: str
     candidates: tuple[EvidenceBar, ...]
@@ -60,14 +61,13 @@ class EvidenceStep:
 
 def evidence_steps(discovery: Discovery) -> list[EvidenceStep]:
     """Every step, the last one with nothing to add; candidates best first."""
-    count = len(discovery.search.steps[0].screened)
     last = len(discovery.search.steps) - 1
     out = []
     for i, step in enumerate(discovery.search.steps):
         names = ", ".join(hypothesis_words(h) for h in step.before.model.members)
         title = f"Step {i + 1}: re-tuned with {names}" if names else "Step 1: re-tuned without an effect"
         end = "" if step.accepted or i < last else "; nothing more is asked for"
-        out.append(EvidenceStep(title + end, _candidates(step), threshold(count) * step.temper))
+        out.append(EvidenceStep(title + end, _candidates(step), ACCEPTED_ODDS * step.temper))
     return out
 
 

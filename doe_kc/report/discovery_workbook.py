@@ -181,8 +181,9 @@ def verdict_lines(discovery: Discovery) -> list[tuple[str, str]]:
     """(head, sentence): the verdict, each effect, what stays open, what to test next; heads only once."""
     out = [("Verdict", f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}")]
     out += _headed("In words", own_sentences(discovery)[1:])
-    head = "Lead" if discovery.verdict == "unexplained" else "Effect"
-    out += _headed(head, [finding_words(discovery, f) for f in discovery.findings])
+    for head, leads in (("Effect", False), ("Lead", True)):
+        listed = [f for f in discovery.findings if (f.verdict == "lead") is leads]
+        out += _headed(head, [finding_words(discovery, f) for f in listed])
     traces = [f"{hypothesis_label(f.hypothesis)}: {size_words(discovery, f)}" for f in discovery.traces]
     out += _headed("Seen, too small", traces)
     alike = [" or ".join(effect_label(e) for e in group) for group in discovery.classes]

@@ -108,7 +108,7 @@ def _chosen(study: Study, discovery: Discovery) -> tuple[Finding, ...]:
     if wanted == "never":
         return ()
     if wanted == "auto":
-        return discovery.findings if discovery.verdict in ("named", "class") else ()
+        return tuple(f for f in discovery.findings if f.verdict != "lead")
     known = (*discovery.findings, *discovery.traces)
     return tuple(f for f in known if f.hypothesis.effect in wanted)
 

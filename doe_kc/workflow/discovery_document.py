@@ -27,10 +27,11 @@ HIDDEN = ("not testable", "no solution")
 def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str, Any]:
     """What `discover --json` writes; numbers that are not finite are None.
 
-    effects: those that the verdict names, or the most probable of a class; leads: in their place where the
-    verdict is unexplained; traces: seen, too small to matter. parameters: value, sd, unit of each option,
-    lists for a list option. log10_odds: of each effect against the best alternative, its removal or a rival
-    in its place, all others in the model; 6 says 6 or more; against: id of that rival, null for the removal.
+    effects: those that are named, or the most probable of a class, each with its own verdict: where the
+    verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces:
+    seen, too small to matter. parameters: value, sd, unit of each option, lists for a list option.
+    log10_odds: of each effect against the best alternative, its removal or a rival in its place, all others
+    in the model; 6 says 6 or more; against: id of that rival, null for the removal.
     adequacy: how often noise alone leaves as large a disagreement as remains (map_chance), and as large an
     RMS of the worst load case held out (held_out_chance, worst_held_out; null where none was); unlisted: the
     largest probability of something outside the library, null where the set does not explain the records.
@@ -42,12 +43,11 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
     whitened RMS of all records.
     further_tests: those of next_test that are computed, see `further_tests`.
     """
-    findings = [effect_entry(f) for f in discovery.findings]
-    open_ = discovery.verdict == "unexplained"
+    leads = [f for f in discovery.findings if f.verdict == "lead"]
     document = {
         "verdict": discovery.verdict,
-        "effects": [] if open_ else findings,
-        "leads": findings if open_ else [],
+        "effects": [effect_entry(f) for f in discovery.findings if f not in leads],
+        "leads": [effect_entry(f) for f in leads],
         "traces": [effect_entry(f) for f in discovery.traces],
         "classes": [list(c) for c in discovery.classes],
         "adequacy": _adequacy(discovery.adequacy),
@@ -93,6 +93,7 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
         "id": hypothesis.effect,
         "location": hypothesis.location,
         "elsewhere": list(finding.elsewhere),
+        "verdict": finding.verdict,
         "probability": finding.probability,
         "log10_odds": min(finding.log10_odds, CERTAIN),
         "against": finding.against or None,
@@ -192,8 +193,9 @@ def _finite(value: Any) -> Any:
 def discovery_lines(discovery: Discovery) -> list[str]:
     """The outcome for a terminal."""
     lines = [f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}"]
-    word = "lead" if discovery.verdict == "unexplained" else "effect"
-    lines += [f"{word}: {_line(discovery, f)}" for f in discovery.findings]
+    lines += [
+        f"{'lead' if f.verdict == 'lead' else 'effect'}: {_line(discovery, f)}" for f in discovery.findings
+    ]
     lines += [f"trace: {_line(discovery, f)}; too small to matter" for f in discovery.traces]
     for group in discovery.classes:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")

@@ -82,5 +82,6 @@ def write_discovery(
 def axle_note(discovery: Discovery) -> str:
     """First line of the axle file: the verdict, and what the file holds beyond the nominal axle."""
     members = ", ".join(hypothesis_words(h) for h in discovery.fitted.model.members)
-    lead = "leads, not confirmed: " if discovery.verdict == "unexplained" else ""
+    unsure = [f for f in discovery.findings if f.verdict == "lead"]
+    lead = "leads, not confirmed: " if unsure and len(unsure) == len(discovery.findings) else ""
     return f"{HEADLINES[discovery.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")

@@ -13,9 +13,10 @@ from benchmarks.discovery.generator import HiddenCar
 from benchmarks.discovery.hidden import Hidden
 from benchmarks.discovery.laws import REFERENCE as DEFLECTION
 from benchmarks.discovery.laws import SHAPES, Shape, table
+from benchmarks.discovery.other_laws import OTHER_LAWS, rubber
 from benchmarks.discovery.outside import OUTSIDE, Outside
 from benchmarks.discovery.path import Bench, triangle
-from benchmarks.discovery.suites import SUITES
+from benchmarks.discovery.suites import ALIKE, SUITES
 from doe_kc.curves import RIG_RESPONSES
 from doe_kc.effects import EFFECTS, apply_effect
 
@@ -112,3 +113,24 @@ def test_suites_hide_what_they_are_for(plain: HiddenCar) -> None:
     assert {c.outside.kind for c in drawn["outside"] if c.outside} == set(OUTSIDE)
     assert all(c.hidden[0].id in c.pair for c in drawn["confounded"])
     assert {c.spread.width for c in drawn["wrong_priors"]} == {0.5, 2.0}
+
+
+def test_suites_of_real_cars_hide_several_effects_rubber_and_other_laws(plain: HiddenCar) -> None:
+    names = ("many", "many_rubber", "rubber", "other_law")
+    drawn = {s: [SUITES[s](i, stream(i, s), plain.nominal).hidden for i in range(26)] for s in names}
+    for hidden in drawn["many"]:
+        ids = {h.id for h in hidden}
+        assert len(ids) == len(hidden) <= 6
+        assert not any(set(pair) <= ids for pair in ALIKE)
+    assert np.mean([len(hidden) for hidden in drawn["many"]]) > 3.0
+    assert all("rubber_hysteresis" in {h.id for h in hidden} for hidden in drawn["many_rubber"])
+    assert all([h.id for h in hidden] == ["rubber_hysteresis"] for hidden in drawn["rubber"])
+    assert {h.id for (h,) in drawn["other_law"]} >= {"bushing_progression", "strut_friction"}
+
+
+@pytest.mark.parametrize("law", ["rubber", *OTHER_LAWS])
+def test_an_effect_by_another_law_changes_the_records(law: str, plain: HiddenCar) -> None:
+    draw = {"rubber": rubber, **OTHER_LAWS}[law]
+    hidden = draw(stream(1, law), 1.0, plain.nominal)
+    assert hidden.id in EFFECTS
+    assert _largest(_records(plain, (hidden,)), plain.clean) > 1.0

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal, norm
 
+from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import FIT_DECREASE
@@ -76,3 +77,36 @@ def test_followed_goes_most_of_the_way_of_a_fit(with_hub: Fit) -> None:
     start = cost_of(without, with_hub.z, with_hub.residual)
     assert full.cost <= near.cost + FIT_DECREASE < start
     assert near.cost - full.cost < 0.2 * (start - full.cost) + 0.5
+
+
+def test_evidence_integrates_what_a_bound_holds_back_along_its_half_line() -> None:
+    """The share of the unbounded posterior that lies inside, with a slope at the bound."""
+    rng = np.random.default_rng(8)
+    nominal = model("named")
+    rows, count = 40, nominal.dimension
+    jacobian = rng.standard_normal((rows, count))
+    data = rng.standard_normal(rows)
+    hessian = jacobian.T @ jacobian + np.diag(nominal.prior_sd**-2.0)
+    free = nominal.centre - np.linalg.solve(hessian, jacobian.T @ data)
+    sd = np.sqrt(np.linalg.inv(hessian)[0, 0])
+    bound = float(free[0] + 1.3 * sd)
+
+    def at(low: np.ndarray) -> Fit:
+        class Bounded(EffectModel):
+            used = np.ones(rows, dtype=bool)
+            lower = low
+            upper = np.full(count, np.inf)
+
+        bounded = Bounded(nominal.axle, nominal.space, nominal.likelihood)
+        start = np.maximum(nominal.centre, low)
+        residual = data + jacobian @ (start - nominal.centre)
+        slope = jacobian.T @ residual + nominal.prior_sd**-2.0 * (start - nominal.centre)
+        z = start + bounded_step(hessian, slope, low - start, np.full(count, np.inf))
+        z[0] = max(z[0], low[0])
+        residual = data + jacobian @ (z - nominal.centre)
+        return Fit(bounded, z, residual, jacobian, cost_of(bounded, z, residual), 1, True)
+
+    open_, held = np.full(count, -np.inf), np.full(count, -np.inf)
+    held[0] = bound
+    assert at(held).held.tolist() == [True] + [False] * (count - 1)
+    assert at(held).evidence - at(open_).evidence == pytest.approx(norm.logcdf(-1.3), abs=1e-6)

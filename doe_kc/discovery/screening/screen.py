@@ -49,8 +49,10 @@ class Screened:
     """(M, m) derivative of the residual to the amplitudes, at `amplitudes`."""
     change: FloatArray
     """(M,) whitened change of the data at typical size."""
+    bend: FloatArray
+    """(M,) what the change of the data at `amplitudes` is beyond `columns` times them."""
     detectability: float
-    """Standard deviations of that change after re-tuning."""
+    """Standard deviations of the change after re-tuning."""
     absorbed: float
     """Share of its square that re-tuning hides, 0 to 1."""
     size_detectability: FloatArray
@@ -61,7 +63,8 @@ class Screened:
     def rewhitened(self, before: Likelihood, after: Likelihood) -> Screened:
         """Its changes in units of other errors of the same records; what was concluded stays."""
         change = rewhitened(self.change, before, after)
-        return replace(self, change=change, columns=rewhitened(self.columns, before, after))
+        columns, bend = (rewhitened(rows, before, after) for rows in (self.columns, self.bend))
+        return replace(self, change=change, columns=columns, bend=bend)
 
 
 def screen(fit: Fit, hypothesis: Hypothesis) -> Screened:
@@ -81,6 +84,7 @@ def screen(fit: Fit, hypothesis: Hypothesis) -> Screened:
             -np.inf,
             0.0,
             nothing[:, 1:],
+            nothing[:, 0],
             nothing[:, 0],
             0.0,
             0.0,
@@ -203,7 +207,9 @@ def _derived(model: EffectModel, fit: Fit, best: _AmplitudeSolution, place: slic
 
 def _summary(fit: Fit, hypothesis: Hypothesis, best: _AmplitudeSolution, change: FloatArray) -> Screened:
     hessian = best.projected.T @ best.projected + np.eye(best.amplitudes.size)
-    seen, square = fit.projection(change), float(change @ change)
+    seen, square = fit.without_traces(change), float(change @ change)
+    alone = fit.without_traces(best.columns)
+    solved = best.change if best.solved else best.columns @ best.amplitudes
     without = float(fit.remainder @ fit.remainder)
     fitted = best.cost - float(best.amplitudes @ best.amplitudes)
     return Screened(
@@ -214,9 +220,10 @@ def _summary(fit: Fit, hypothesis: Hypothesis, best: _AmplitudeSolution, change:
         float(np.sqrt(max(0.0, without - fitted))),
         best.columns,
         change,
+        solved - best.columns @ best.amplitudes,
         float(np.linalg.norm(seen)),
         1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
-        size_detectability(hypothesis, best.projected, seen),
+        size_detectability(hypothesis, alone, seen),
     )
 
 
@@ -241,9 +248,9 @@ def score_test(fit: Fit, known: Screened) -> Screened:
     """
     if known.failed:
         return known
-    projection = fit.projection
-    seen = projection(known.change)
-    columns = projection(known.columns if known.amplitudes.size else known.change[:, None])
+    seen = fit.without_traces(known.change)
+    own = known.columns if known.amplitudes.size else known.change[:, None]
+    columns = fit.projection(own)
     hessian = columns.T @ columns + np.eye(columns.shape[1])
     slope = columns.T @ fit.remainder
     amplitudes = np.asarray(-np.linalg.solve(hessian, slope), dtype=np.float64)
@@ -257,5 +264,5 @@ def score_test(fit: Fit, known: Screened) -> Screened:
         score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
         detectability=float(np.linalg.norm(seen)),
         absorbed=1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
-        size_detectability=size_detectability(known.hypothesis, columns, seen),
+        size_detectability=size_detectability(known.hypothesis, fit.without_traces(own), seen),
     )

@@ -75,9 +75,10 @@ def without_own_discrepancy(exact: Fit, shares: Mapping[str, float]) -> dict[str
 def marginal(fit: Fit) -> float:
     """ln density of the records under a model of effects, those of different errors comparable.
 
-    At the minimum of the quadratic through the fit's point.
+    At the minimum of the quadratic through the fit's point, along what no bound holds back.
     """
-    gradient, hessian = fit.gradient, fit.hessian
+    free = np.flatnonzero(~fit.held)
+    gradient, hessian = fit.gradient[free], fit.hessian[np.ix_(free, free)]
     lower = 0.5 * float(gradient @ cho_solve(cho_factor(hessian), gradient))
     roots = sum(float(np.sum(np.log(np.diag(c.root)))) for c in fit.model.likelihood.curves)
     return fit.evidence + lower - roots

@@ -2,29 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, refit_to_errors
+from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Hypothesis
 
 
 def backward_elimination(
-    fit: Fit, least: float, workers: DiscoveryWorkers, without_own: Mapping[str, Likelihood]
+    fit: Fit,
+    least: float,
+    workers: DiscoveryWorkers,
+    without_own: Mapping[str, Likelihood],
+    prior: SetPrior,
 ) -> Fit:
-    """The fit without the members, but the latest, that cost more evidence than they bring.
+    """The fit without the members whose posterior odds against their removal are below `least`, ln.
 
     without_own: of a member whose law has a discrepancy, errors that do not hold it: with it, what the member
     makes would pass for an error of the records.
     """
-    while len(fit.model.members) > 1:
-        losses = {h.name: _loss(fit, place) for h, place in list(fit.model.places())[:-1]}
-        members = [
-            (h, p) for h, p in fit.model.places() if losses.get(h.name, np.inf) < REMOVAL_FACTOR * least
-        ]
+    while fit.model.members:
+        places = list(fit.model.places())
+        needed = {h.name: least - _odds(fit.model.members, h, prior) for h, _ in places}
+        losses = {h.name: _loss(fit, place) for h, place in places}
+        members = [(h, p) for h, p in places if losses[h.name] < REMOVAL_FACTOR * needed[h.name]]
         withs = [refit_to_errors(fit, without_own.get(h.name, fit.model.likelihood)) for h, _ in members]
         starts = [
             (w.model.without(h), np.delete(w.z, np.r_[place]))
@@ -36,11 +42,16 @@ def backward_elimination(
             if f is not None:
                 losses[h.name] = w.evidence - f.evidence
         kept = {h.name: f for (h, _), f in zip(members, fewer, strict=True) if f is not None}
-        least_lost = min(kept, key=lambda name: losses[name], default="")
-        if not least_lost or losses[least_lost] > least:
+        least_lost = min(kept, key=lambda name: losses[name] - needed[name], default="")
+        if not least_lost or losses[least_lost] > needed[least_lost]:
             break
         fit = refit_to_errors(kept[least_lost], fit.model.likelihood)
     return fit
+
+
+def _odds(members: Sequence[Hypothesis], member: Hypothesis, prior: SetPrior) -> float:
+    """ln of the odds of a set against that without one of its members, before the records."""
+    return prior.log_odds([h for h in members if h != member], member)
 
 
 def _loss(fit: Fit, place: slice) -> float:

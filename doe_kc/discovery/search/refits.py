@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.search.proposals import SetProposal
+from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ABSORBED_SHARE,
     CONFIDENT,
@@ -22,13 +23,8 @@ from doe_kc.discovery.thresholds import (
     TIED_EVIDENCE,
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
-
-SEVERAL_PLACES = ("bushing_preload", "bushing_progression", "left_right_asymmetry")
-"""Effects that a model may have in several places at once."""
-
 
 Sized = Iterable[tuple[Size, float, float]]
 """Amplitude of a size in typical ones, and its standard deviation."""
@@ -43,7 +39,9 @@ class HypothesisFit:
     fit: Fit
     """The model with it as the last member."""
     gain: float
-    """ln of the evidence over the model without it, times the effect's odds."""
+    """ln of the posterior odds of the set with it against that without it."""
+    prior: float = 0.0
+    """ln of those odds before the records, part of `gain`."""
 
 
 def leaders(screened: Sequence[Screened], projection: Projection, least: float) -> list[Screened]:
@@ -84,21 +82,6 @@ def _explained(screened: Screened, projection: Projection) -> FloatArray:
     return np.asarray(seen / length if length > 0.0 else seen)
 
 
-def compatible(model: EffectModel, hypothesis: Hypothesis) -> bool:
-    """Whether the model can take the effect besides those it has."""
-    for member in model.members:
-        if member.effect == hypothesis.effect:
-            if member.effect not in SEVERAL_PLACES:
-                return False
-            if _bushing(member) == _bushing(hypothesis):
-                return False
-    return True
-
-
-def _bushing(hypothesis: Hypothesis) -> str:
-    return (hypothesis.location or "").partition("_")[0]
-
-
 def believable(sizes: Sized) -> bool:
     """Whether no size is surely beyond what such a part has."""
     return not any(abs(a) - CONFIDENT * sd > size.most for size, a, sd in sizes)
@@ -111,29 +94,63 @@ def more_than_trace(sizes: Sized) -> bool:
 
 
 def joint_refits(
-    current: Fit, screened: Sequence[Screened], workers: DiscoveryWorkers
+    current: Fit, screened: Sequence[Screened], prior: SetPrior, workers: DiscoveryWorkers
 ) -> list[HypothesisFit]:
     """The joint refits from the screened sizes, best first; those without a solution are left out."""
     starts = [
         (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
     ]
     fits = workers.fits(starts, "refitting leaders", current.jacobian)
-    trials = []
-    for s, refit in zip(screened, fits, strict=True):
-        if refit is not None:
-            gain = refit.evidence - current.evidence + log_odds(s.hypothesis)
-            trials.append(HypothesisFit(s.hypothesis, refit, gain))
+    trials = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
     return sorted(trials, key=lambda t: -t.gain)
 
 
-def log_odds(hypothesis: Hypothesis) -> float:
-    """ln of how much likelier its effect is than others before any measurement."""
-    return float(np.log(EFFECTS[hypothesis.effect].odds))
+def set_refits(
+    current: Fit, proposals: Sequence[SetProposal], prior: SetPrior, workers: DiscoveryWorkers
+) -> list[HypothesisFit]:
+    """The joint refits of whole sets, each against the set of `current`."""
+    fixed = current.z[: current.model.dimension]
+    starts = [
+        (replace(current.model, members=p.members), np.concatenate([fixed, p.amplitudes])) for p in proposals
+    ]
+    fits = workers.fits(starts, "refitting sets", current.jacobian)
+    before = prior.log(current.model.members)
+    return [
+        HypothesisFit(
+            p.members[-1],
+            refit,
+            refit.evidence - current.evidence + prior.log(p.members) - before,
+            prior.log(p.members) - before,
+        )
+        for p, refit in zip(proposals, fits, strict=True)
+        if refit is not None and p.members
+    ]
+
+
+def hypothesis_fit(fit: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
+    """A fit's last member against the fit without it."""
+    *others, own = fit.model.members
+    odds = prior.log_odds(others, own)
+    return HypothesisFit(own, fit, fit.evidence - without.evidence + odds, odds)
 
 
 def plausible(trial: HypothesisFit) -> bool:
     """Whether the effect's sizes are believed."""
     return believable(amounts(trial))
+
+
+def plausible_beside(fit: Fit, others: Sequence[Hypothesis]) -> bool:
+    """Whether the sizes of all members but some others are believed."""
+    names = {h.name for h in others}
+    return all(believable(member_amounts(fit, h)) for h in fit.model.members if h.name not in names)
+
+
+def member_amounts(fit: Fit, member: Hypothesis) -> list[tuple[Size, float, float]]:
+    """Sizes of a member that say how much, in typical ones, with their standard deviations."""
+    place = next(p for h, p in fit.model.places() if h == member)
+    sd = np.sqrt(np.diag(fit.covariance)[place])
+    known = zip(member.sizes, fit.z[place], sd, strict=True)
+    return [(size, float(a), float(e)) for size, a, e in known if not size.shape]
 
 
 def amounts(trial: HypothesisFit) -> list[tuple[Size, float, float]]:

@@ -1,4 +1,4 @@
-"""The search: one effect after the other, each by the evidence of its joint refit against its rivals'."""
+"""The search for the most probable set of effects: linear proposals, decided by joint refits."""
 
 from __future__ import annotations
 
@@ -9,30 +9,50 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, fit, refit_to_errors
+from doe_kc.discovery.clutter import Clutter
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, score_test
-from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, without_own_discrepancy
+from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
+from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
+from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
-    compatible,
     joint_refits,
     leaders,
     overlooked,
-    plausible,
+    plausible_beside,
+    set_refits,
     stiffer_first,
 )
-from doe_kc.discovery.thresholds import EFFECTS_MOST, FALSE_ALARM, LOOP_EVIDENCE, MOST_STEPS, PROMISING
+from doe_kc.discovery.search.set_prior import SetPrior
+from doe_kc.discovery.thresholds import (
+    ACCEPTED_ODDS,
+    EFFECTS_MOST,
+    FALSE_ALARM,
+    LOOP_EVIDENCE,
+    MOST_STEPS,
+    NOISE_CHANCE,
+    OVERLOOKED_MOST,
+    PROMISING,
+    PROPOSAL_GAIN,
+    RESCREENED_MOST,
+    TRACE_SD,
+    TRACE_SEEN,
+)
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
 class Step:
-    """One step of the search: a screening, refits of its leaders, the decision on the first."""
+    """One step of the search: a screening, refits of what it proposes, the decision on the first."""
 
     before: Fit
     """The fit that the step began with."""
@@ -41,19 +61,28 @@ class Step:
     screened: tuple[Screened, ...]
     """Every hypothesis that the fit can take, added to it; the largest gain first."""
     trials: tuple[HypothesisFit, ...]
-    """Joint refits, best first, those of a plausible size that pass the threshold before all others."""
+    """Joint refits, best first, those of a plausible size that pass the threshold before all others. One of
+    several effects at once stands by the last of them."""
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
     accepted: bool
-    """Whether the first refit passes the threshold, so that its effect is in the model from here on."""
+    """Whether the first refit passes the threshold, so that its effects are the model from here on."""
+
+    @property
+    def added(self) -> tuple[Hypothesis, ...]:
+        """Effects that the step brought in."""
+        if not self.accepted:
+            return ()
+        before = {h.name for h in self.before.model.members}
+        return tuple(h for h in self.trials[0].fit.model.members if h.name not in before)
 
 
 @dataclass(frozen=True)
 class EffectSearch:
-    """Forward selection of effects with backward elimination, and the fits that it ends with."""
+    """The search for the most probable set of effects, and the fits that it ends with."""
 
     tuned: Fit
-    """The re-tuned axle without any effect, the baseline of every comparison."""
+    """The re-tuned axle without any effect, nor traces of them: the baseline of every comparison."""
     steps: tuple[Step, ...]
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
     with_law_discrepancy: Fit
@@ -64,32 +93,68 @@ class EffectSearch:
     """Member's name -> standard deviation of its law's discrepancy, relative to what it makes of a curve."""
     without_own_discrepancy: Mapping[str, Likelihood]
     """Name of a member with such a discrepancy -> the last errors of the records without its own."""
+    prior: SetPrior
+    """Probabilities of sets before the records."""
 
 
 def search(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
-    """Tune, then add effects as long as the evidence asks for them.
+    """Tune, then add, exchange and take out effects as long as the evidence asks for it.
 
     NotConverged when the nominal axle has no equilibrium.
     """
-    tuned = current = tune(model)
+    prior = SetPrior.of(library)
+    tuned = tune(model)
     workers.watch("re-tuning", 1)
+    screened = workers.screenings(tuned, library)
+    current = with_clutter(tuned, screened)
     steps: list[Step] = []
     shares: dict[str, float] = {}
     without_own: dict[str, Likelihood] = {}
     while True:
-        step = _step(current, library, workers, steps[-1] if steps else None)
+        step = _step(current, library, prior, workers, screened)
         steps.append(step)
         full = step.accepted and len(step.trials[0].fit.model.members) > EFFECTS_MOST
-        if not step.accepted or full or len(steps) == MOST_STEPS:
+        if full or len(steps) == MOST_STEPS:
             break
-        current = backward_elimination(step.trials[0].fit, threshold(len(library)), workers, without_own)
-        exact = refit_to_errors(with_conditioning(current, model.axle, workers), model.likelihood)
+        if step.accepted:
+            current = step.trials[0].fit
+            if any(is_friction(current, h) for h in step.added):
+                current = with_conditioning(current, model.axle, workers)
+            current = with_open_laws(current, workers)
+        else:
+            following = with_free_laws(current, workers)
+            if following is current:
+                break
+            current = following
+        current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
+        exact = refit_to_errors(own_loops(current, model.axle), model.likelihood)
         current, shares = fit_discrepancy(exact)
         without_own = without_own_discrepancy(exact, shares)
-        if current.model.likelihood is not step.trials[0].fit.model.likelihood:
+        if current.model.likelihood is not step.before.model.likelihood:
             current = converged_fit(current, workers)
+        screened = _latest(screened, step, current)
     with_effects = refit_to_errors(current, model.likelihood)
-    return EffectSearch(tuned, tuple(steps), current, with_effects, shares, without_own)
+    return EffectSearch(tuned, tuple(steps), current, with_effects, shares, without_own, prior)
+
+
+def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
+    """The re-tuned axle with traces of all effects, those that cannot move anything left out."""
+    names: list[str] = []
+    columns: list[FloatArray] = []
+    for s in screened:
+        if s.failed or EFFECTS[s.hypothesis.effect].on_rig:
+            continue
+        for size, column in zip(s.hypothesis.sizes, s.columns.T, strict=True):
+            if not size.shape and np.linalg.norm(column) * TRACE_SD > TRACE_SEEN:
+                names.append(s.hypothesis.name)
+                columns.append(TRACE_SD * column)
+    if not names:
+        return tuned
+    model = replace(tuned.model, clutter=Clutter(tuple(names), np.array(columns).T))
+    z = np.concatenate([tuned.z, np.zeros(len(names))])
+    jacobian = model.with_own_nuisances(tuned.jacobian)
+    begun = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
+    return chord_fit(begun, model)
 
 
 def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> Fit:
@@ -101,13 +166,21 @@ def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> Fit
     """
     model = current.model
     if not model.with_effects(current.z).topology.frictional:
-        axle = replace(model.axle, load_cases=own.load_cases)
-        return replace(current, model=replace(model, axle=axle))
+        return own_loops(current, own)
     other = replace(model, axle=model.axle.conditioned(0 if model.axle.conditioning else 1))
     (refit,) = workers.fits([(other, current.z)], "loops before the record", current.jacobian)
     if refit is None or refit.evidence < current.evidence + LOOP_EVIDENCE:
         return current
     return refit
+
+
+def own_loops(current: Fit, own: Axle) -> Fit:
+    """The fit, its load cases those of the axle as given where no friction is left."""
+    model = current.model
+    if model.with_effects(current.z).topology.frictional:
+        return current
+    axle = replace(model.axle, load_cases=own.load_cases)
+    return replace(current, model=replace(model, axle=axle))
 
 
 def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
@@ -126,11 +199,11 @@ def tune(model: EffectModel) -> Fit:
     sides = side_differences(model.axle_at(first.z), model.space, model.likelihood)
     sided = replace(model, sides=sides)
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
-    return fit(sided, start, tuning=np.hstack([first.jacobian, sides]), aged=0.0)
+    return fit(sided, start, tuning=first.jacobian, aged=0.0)
 
 
 def threshold(count: int) -> float:
-    """ln evidence that one of so many hypotheses must reach (Bonferroni on the family)."""
+    """ln evidence that one of so many hypotheses must reach to be noticed by itself (Bonferroni)."""
     return float(np.log(count / FALSE_ALARM))
 
 
@@ -141,39 +214,72 @@ def accepted_steps(search: EffectSearch) -> list[Step]:
 
 def accepted_at(search: EffectSearch, hypothesis: Hypothesis) -> Step:
     """The step that brought a member in, the latest one."""
-    return next(s for s in accepted_steps(search) if s.trials[0].hypothesis == hypothesis)
+    return next(s for s in accepted_steps(search) if hypothesis.name in {h.name for h in s.added})
 
 
 def _step(
     current: Fit,
     library: Sequence[Hypothesis],
+    prior: SetPrior,
     workers: DiscoveryWorkers,
-    last: Step | None,
+    known: Sequence[Screened],
 ) -> Step:
-    """last: the step before; its columns tell which hypotheses are worth a screening anew."""
-    before = current.residual_map
-    candidates = [h for h in library if compatible(current.model, h)]
-    known = _rewhitened(last, current.model.likelihood) if last else ()
-    quick = {s.hypothesis.name: score_test(current, s) for s in known}
-    again = [h for h in candidates if h.name not in quick or quick[h.name].gain > PROMISING]
-    full = {s.hypothesis.name: s for s in workers.screenings(current, again)}
-    screened = [full.get(h.name) or quick[h.name] for h in candidates]
-    screened.sort(key=lambda s: -s.gain)
-    least = threshold(len(library))
-    trials = joint_refits(current, leaders(screened, current.projection, least / 2.0), workers)
-    if not before.agrees and all(t.gain <= least for t in trials):
+    """known: every hypothesis as it was screened last, in the errors of `current`."""
+    before, least = current.residual_map, threshold(len(library))
+    screened = _screened(current, known, workers)
+    trials = set_refits(current, _proposed(current, screened, prior), prior, workers)
+    if not any(_passes(t, current) for t in trials):
+        near = leaders(screened, current.without_traces, least / 2.0)
+        trials += joint_refits(current, near, prior, workers)
+    if before.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
-        trials = sorted([*trials, *joint_refits(current, more, workers)], key=lambda t: -t.gain)
-    trials.sort(key=lambda t: t.gain > least and plausible(t), reverse=True)
+        trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers)
+    trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:
         return Step(current, before, tuple(screened), (), 1.0, False)
     temper = max(1.0, trials[0].fit.residual_map.mean_square)
-    passes = trials[0].gain / temper > least
+    passes = trials[0].gain / temper > ACCEPTED_ODDS
     return Step(current, before, tuple(screened), tuple(trials), temper, passes)
 
 
-def _rewhitened(step: Step, likelihood: Likelihood) -> list[Screened]:
-    """What a step screened, in other errors of the records."""
-    return [s.rewhitened(step.before.model.likelihood, likelihood) for s in step.screened]
+def _passes(trial: HypothesisFit, current: Fit) -> bool:
+    """Whether a refit is worth a step, all new sizes believed."""
+    return trial.gain > ACCEPTED_ODDS and plausible_beside(trial.fit, current.model.members)
+
+
+def _screened(current: Fit, known: Sequence[Screened], workers: DiscoveryWorkers) -> list[Screened]:
+    """Every hypothesis that the fit can take; those that promise most on true solutions."""
+    there = [s for s in known if compatible(current.model, s.hypothesis)]
+    if current.model.members:  # without any, they are screened at the very same axle
+        there = [score_test(current, s) for s in there]
+        there.sort(key=lambda s: -s.gain)
+        again = [s.hypothesis for s in there[:RESCREENED_MOST] if s.gain > PROMISING]
+        full = {s.hypothesis.name: s for s in workers.screenings(current, again)}
+        there = [full.get(s.hypothesis.name, s) for s in there]
+    return sorted(there, key=lambda s: -s.gain)
+
+
+def _latest(known: Sequence[Screened], step: Step, current: Fit) -> list[Screened]:
+    """Every hypothesis as it was screened last, in the errors of `current`; known: in those of the step."""
+    newer = {s.hypothesis.name: s for s in step.screened}
+    errors = step.before.model.likelihood, current.model.likelihood
+    return [newer.get(s.hypothesis.name, s).rewhitened(*errors) for s in known]
+
+
+def _proposed(current: Fit, screened: Sequence[Screened], prior: SetPrior) -> list[SetProposal]:
+    """The most probable set to first order, if that is not just one effect more, of which the rivals count.
+
+    A friction comes in alone: what its law leaves behind must not bring in another effect.
+    """
+    sets = LinearSets.of(current, screened, prior)
+    best = next(iter(sets.proposals()), None)
+    if best is None or best.gain <= ACCEPTED_ODDS:
+        return []
+    before = {h.name for h in current.model.members}
+    added = [h for h in best.members if h.name not in before]
+    removed = len(before) - (len(best.members) - len(added))
+    sure = all(sets.loss(best, h) >= PROPOSAL_GAIN for h in added)
+    friction = any(EFFECTS[h.effect].laws for h in added)
+    return [best] if removed or (len(added) > 1 and sure and not friction) else []

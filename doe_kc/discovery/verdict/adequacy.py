@@ -41,10 +41,14 @@ class Adequacy:
         """
         if not self.holds:
             return None
+        return float(UNLISTED / (UNLISTED + self.support))
+
+    @property
+    def support(self) -> float:
+        """Least Bayes factor of the set against something unlisted, -e p ln p, 1 where p is above 1/e."""
         chances = [c for c in (self.map_chance, self.held_out_chance) if c is not None]
-        p = min(1.0, len(chances) * min(chances))
-        support = -np.e * p * np.log(p) if p < np.exp(-1.0) else 1.0
-        return float(UNLISTED / (UNLISTED + support))
+        p = max(min(1.0, len(chances) * min(chances)), 1.0 / NOISE_DRAWS)
+        return float(-np.e * p * np.log(p)) if p < np.exp(-1.0) else 1.0
 
 
 def adequacy(remaining: Map, held_out: Sequence[HeldOut]) -> Adequacy:

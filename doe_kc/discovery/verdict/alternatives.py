@@ -13,15 +13,16 @@ from dataclasses import dataclass, replace
 from doe_kc.discovery.fit import Fit, last_member, refit_to_errors
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, score_test
+from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
-    compatible,
+    hypothesis_fit,
     joint_refits,
     leaders,
-    log_odds,
     plausible,
 )
 from doe_kc.discovery.search.search import EffectSearch, Step, accepted_at, threshold
+from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
@@ -49,7 +50,7 @@ class Alternatives:
     def loss(self) -> float:
         """ln evidence lost by its removal."""
         own = self.trials[0]
-        return own.gain - log_odds(own.hypothesis)
+        return own.gain - own.prior
 
     @property
     def map(self) -> Map:
@@ -68,11 +69,12 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     out = []
     for base, step in zip(bases, steps, strict=True):
         if step is not None:
-            out.append(_from_step(base, step, temper, workers))
+            out.append(_from_step(search, base, step, temper, workers))
             continue
         without = next(refits)
         if without is None:  # no equilibrium without it: all that is known is how it came in
-            out.append(_from_step(base, accepted_at(search, base.model.members[-1]), temper, workers))
+            step = accepted_at(search, base.model.members[-1])
+            out.append(_from_step(search, base, step, temper, workers))
         else:
             out.append(_at_final_set(search, base, without, temper, workers))
     return tuple(out)
@@ -97,23 +99,29 @@ def _same_set(search: EffectSearch, base: Fit) -> Step | None:
     return step if same and all(a is b for a, b in errors) else None
 
 
-def _from_step(base: Fit, step: Step, temper: float, workers: DiscoveryWorkers) -> Alternatives:
+def _from_step(
+    search: EffectSearch, base: Fit, step: Step, temper: float, workers: DiscoveryWorkers
+) -> Alternatives:
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
-    own = _own(base, step.before)
-    kept = [t for t in step.trials if plausible(t) and _may_replace(base, t.hypothesis)]
+    own = _own(base, step.before, search.prior)
+    kept = [
+        t
+        for t in step.trials
+        if plausible(t)
+        and len(t.fit.model.members) == len(base.model.members)
+        and _may_replace(base, t.hypothesis)
+    ]
     axle = base.model.axle
     stale = [t for t in kept if t.fit.model.axle != axle and _frictional(t.fit)]
     starts = [(replace(t.fit.model, axle=axle), t.fit.z) for t in stale]
     fits = workers.fits(starts, "refitting rivals", step.before.jacobian) if starts else []
     again = {
-        t.hypothesis.name: HypothesisFit(
-            t.hypothesis, f, f.evidence - step.before.evidence + log_odds(t.hypothesis)
-        )
+        t.hypothesis.name: hypothesis_fit(f, step.before, search.prior)
         for t, f in zip(stale, fits, strict=True)
         if f is not None
     }
     rivals = sorted((again.get(t.hypothesis.name, t) for t in kept), key=lambda t: -t.gain)
-    first = next(s for s in step.screened if s.hypothesis == own.hypothesis)
+    first = next(s for s in step.screened if s.hypothesis.name == own.hypothesis.name)
     others = [s for s in step.screened if _may_replace(base, s.hypothesis)]
     return Alternatives(step.before, (first, *others), (own, *rivals), temper)
 
@@ -122,14 +130,14 @@ def _at_final_set(
     search: EffectSearch, base: Fit, without: Fit, temper: float, workers: DiscoveryWorkers
 ) -> Alternatives:
     """The alternatives from refits of the last set without the member and with each rival in its place."""
-    own = _own(base, without)
+    own = _own(base, without, search.prior)
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     first = score_test(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
     there = [score_test(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
     near = _near([first, *there], threshold(len(known) + 1), without, workers)
-    rivals = [t for t in joint_refits(without, near, workers) if plausible(t)]
+    rivals = [t for t in joint_refits(without, near, search.prior, workers) if plausible(t)]
     return Alternatives(without, (first, *there), (own, *rivals), temper)
 
 
@@ -137,19 +145,18 @@ def _near(
     screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers
 ) -> list[Screened]:
     """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
-    chosen = [s.hypothesis for s in leaders(screened, without.projection, least / 2.0)[1:]]
+    chosen = [s.hypothesis for s in leaders(screened, without.without_traces, least / 2.0)[1:]]
     return [s for s in workers.screenings(without, chosen) if not s.failed]
 
 
-def _own(base: Fit, without: Fit) -> HypothesisFit:
-    member = base.model.members[-1]
-    return HypothesisFit(member, base, base.evidence - without.evidence + log_odds(member))
+def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
+    return hypothesis_fit(base, without, prior)
 
 
 def _may_replace(base: Fit, hypothesis: Hypothesis) -> bool:
     """Whether it may take the last member's place: members that are in the set together are no rivals."""
     *others, own = base.model.members
-    if hypothesis == own or (hypothesis.effect != own.effect and _among(others, hypothesis.effect)):
+    if hypothesis.name == own.name or (hypothesis.effect != own.effect and _among(others, hypothesis.effect)):
         return False
     return compatible(base.model.without(own), hypothesis)
 

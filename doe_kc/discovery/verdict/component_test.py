@@ -74,7 +74,7 @@ class _Tuning:
 
     @staticmethod
     def of(fit: Fit) -> _Tuning:
-        model, count = fit.model, fit.model.dimension
+        model, count = fit.model, fit.model.traces.start
         hessian = fit.hessian[:count, :count]
         covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(count)))
         known = np.array([_known(v, float(u)) for v, u in zip(model.space.variables, fit.z, strict=False)])

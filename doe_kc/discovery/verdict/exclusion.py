@@ -12,7 +12,14 @@ from scipy.special import ndtr
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.thresholds import ALIKE_CORRELATION, HIDING_LISTED, ONE_SIDED, POWER, UNSURE_SHARE
+from doe_kc.discovery.thresholds import (
+    ALIKE_CORRELATION,
+    HIDING_LISTED,
+    ONE_SIDED,
+    POWER,
+    TRACE_SD,
+    UNSURE_SHARE,
+)
 from doe_kc.discovery.verdict.component_test import ComponentTest, component_tests
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
@@ -122,8 +129,11 @@ def trusted_detectability(visible: float, before: float, by_bounds: float) -> fl
 
 
 def _limit(visible: float, critical: float) -> float:
-    """Amplitude from which a size that makes `visible` standard deviations when typical would be found."""
-    return float("inf") if visible <= 0.0 else (critical + POWER) / visible
+    """Amplitude from which a size that makes `visible` standard deviations when typical would be found.
+
+    Beside a trace of the same effect, which every car has.
+    """
+    return float("inf") if visible <= 0.0 else (critical + POWER) * float(np.hypot(1.0 / visible, TRACE_SD))
 
 
 def _upper(screened: Screened) -> FloatArray:
@@ -141,7 +151,7 @@ def _status(screened: Screened, detectable: float, *, resolved: bool) -> Status:
 
 def _moves(fit: Fit, changes: FloatArray) -> FloatArray:
     """(d, k) how the tunable parameters would follow each change, the sizes of the effects held."""
-    count = fit.model.dimension
+    count = fit.model.traces.start
     hessian, jacobian = fit.hessian[:count, :count], fit.jacobian[:, :count]
     return np.asarray(-cho_solve(cho_factor(hessian), jacobian.T @ changes))
 

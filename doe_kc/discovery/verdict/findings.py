@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr, logsumexp, ndtr
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
@@ -21,13 +19,11 @@ from doe_kc.discovery.thresholds import (
     NAME_LEVEL,
     NOISE_CHANCE,
     RIVAL_LISTED,
-    TRACE_LEVEL,
-    TRACE_SD,
     WRONG_NAME_CHANCE,
 )
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
-from doe_kc.effects import EFFECTS
+from doe_kc.discovery.verdict.mixture import spread_between_sets
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
@@ -37,9 +33,8 @@ NO_EFFECT = ""
 
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
-    trace_sd = unseen_effect_sd(search)
     every = [
-        _finding(search, one, place, trace_sd[place.start - search.with_law_discrepancy.model.dimension :])
+        _finding(search, one, place, compared)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     ]
     most = max((f.gain for f in every), default=0.0)
@@ -61,10 +56,11 @@ def _stands_out(own: Alternatives, least: float) -> bool:
     return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE_CHANCE)
 
 
-def _finding(search: EffectSearch, own: Alternatives, place: slice, trace_sd: FloatArray) -> Finding:
-    """trace_sd: standard deviations by effects that are not seen, of its sizes and those behind them."""
+def _finding(
+    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives]
+) -> Finding:
     hypothesis = own.hypothesis
-    logs = log_probabilities(own, [s.hypothesis for s in search.steps[0].screened])
+    logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
     most_probable, _ = amplitude_estimates(search.with_effects, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
@@ -74,6 +70,7 @@ def _finding(search: EffectSearch, own: Alternatives, place: slice, trace_sd: Fl
         amplitude_estimates(search.with_law_discrepancy, hypothesis)[1],
         search.discrepancy_shares,
     )
+    sd = np.hypot(sd, spread_between_sets(hypothesis, most_probable, compared))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_name_chances(own, detectability)
@@ -86,10 +83,7 @@ def _finding(search: EffectSearch, own: Alternatives, place: slice, trace_sd: Fl
     )
     return Finding(
         hypothesis=hypothesis,
-        estimates=tuple(
-            estimate(s, a, float(np.hypot(e, more)))
-            for (s, a), e, more in zip(sizes, sd, trace_sd[: len(sizes)], strict=True)
-        ),
+        estimates=tuple(estimate(s, a, float(e)) for (s, a), e in zip(sizes, sd, strict=True)),
         probability=float(np.exp(logs[hypothesis.effect])),
         log10_odds=odds,
         against=against,
@@ -117,16 +111,12 @@ def _with_law(
     return np.asarray(np.hypot(sd, own))
 
 
-def log_probabilities(own: Alternatives, library: Sequence[Hypothesis]) -> dict[str, float]:
-    """Effect id -> ln of its probability in this place of the last set; NOTHING: of none at all.
-
-    Prior odds are those of the effects, shared between the places that each has in the library.
-    """
-    places = Counter(h.effect for h in library)
+def log_probabilities(own: Alternatives) -> dict[str, float]:
+    """Effect id -> ln of its probability in this place of the last set; NO_EFFECT: of none at all."""
     logs: dict[str, float] = {NO_EFFECT: 0.0}
     for t in own.trials:
         effect = t.hypothesis.effect
-        log = t.gain / own.temper - float(np.log(max(places[effect], 1)))
+        log = t.gain / own.temper
         logs[effect] = float(np.logaddexp(logs.get(effect, -np.inf), log))
     total = float(logsumexp(list(logs.values())))
     return {effect: log - total for effect, log in logs.items()}
@@ -165,7 +155,7 @@ def _detectability(fit: Fit, place: slice) -> float:
 
 def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:
     """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
-    projection = own.without.projection
+    projection = own.without.without_traces
     first, *others = own.screened
     direction = _unit(projection(first.change))
     out: dict[str, float] = {}
@@ -230,23 +220,3 @@ def _elsewhere(own: Alternatives) -> tuple[str, ...]:
 def _unit(seen: FloatArray) -> FloatArray:
     length = float(np.linalg.norm(seen))
     return np.asarray(seen / length if length > 1e-9 else 0.0 * seen)
-
-
-def unseen_effect_sd(search: EffectSearch) -> FloatArray:
-    """(m,) standard deviation of the last model's amplitudes by all effects that are not in it.
-
-    To first order: each at PRESENT of its typical size, less where more would have been seen, independently.
-    """
-    fit = search.with_law_discrepancy
-    members = {h.name for h in fit.model.members}
-    others = [
-        s
-        for s in search.steps[-1].screened
-        if not s.failed and s.hypothesis.name not in members and not EFFECTS[s.hypothesis.effect].on_rig
-    ]
-    if not others:
-        return np.zeros(fit.amplitudes.size)
-    sizes = np.array([min(TRACE_SD, TRACE_LEVEL / max(s.detectability, 1e-9)) for s in others])
-    changes = np.array([s.change for s in others]).T * sizes
-    moves = cho_solve(cho_factor(fit.hessian), fit.jacobian.T @ changes)
-    return np.asarray(np.linalg.norm(moves[fit.model.dimension :], axis=1))

@@ -69,6 +69,14 @@ def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str
         return "No effect is missing: re-tuning explains all records, though only beyond the bounds."
     if verdict.kind == "none":
         return "No effect is missing: re-tuning within production scatter explains all records."
+    sure = [f for f in findings if f.verdict == "named"]
+    if sure:
+        named = " and ".join(_label(f) for f in sure)
+        more = " and ".join(_label(f) for f in findings if f not in sure)
+        lead = f"; the best lead is {more}" if more else ""
+        return (
+            f"The model lacks {named}, and something besides that the library does not name for sure{lead}."
+        )
     if findings:
         return f"Something is missing that the library does not name for sure; the best lead is {names}."
     return "Something is missing that no effect of the library explains."

@@ -12,7 +12,7 @@ from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
 from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen
-from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR
+from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR, TRACE_SD
 from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
 from tests.discovery.cases import library, model
 
@@ -79,7 +79,8 @@ def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> N
     hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(projection(followed))))
     assert hidden.detectability > 10.0
     shown, unsure = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=True)
-    least = max(4.84 / clear.detectability, abs(clear.amplitudes[0]) + 1.645 * clear.sd[0])
+    beside_trace = 4.84 * np.hypot(1.0 / clear.detectability, TRACE_SD)
+    least = max(beside_trace, abs(clear.amplitudes[0]) + 1.645 * clear.sd[0])
     assert shown.status == "excluded" and shown.limits[0] == pytest.approx(least)
     open_, _ = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=False)
     assert open_.status == "unresolved" and open_.limits[0] == shown.limits[0]

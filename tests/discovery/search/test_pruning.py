@@ -7,6 +7,7 @@ import numpy as np
 from doe_kc.discovery.fit import Fit, fit, refit_to_errors, rewhitened_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.pruning import backward_elimination
+from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
@@ -21,17 +22,27 @@ def two_fitted() -> tuple[Fit, Hypothesis]:
 
 def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
-    exact, hub = two_fitted()
-    wide = with_discrepancy(exact.model, effect_signals(exact), [0.5, 0.0])
+    exact, hub = hub_fitted()
+    wide = with_discrepancy(exact.model, effect_signals(exact), [0.5])
     found = fit(wide, exact.z, tuning=rewhitened_fit(exact, wide).jacobian[:, : wide.dimension])
     fooled = _loss(found, hub)
     own = _loss(refit_to_errors(found, exact.model.likelihood), hub)
     assert own > 1.5 * fooled
     between = float(np.sqrt(own * fooled))
-    assert hub not in backward_elimination(found, between, DiscoveryWorkers(), {}).model.members
-    judged = backward_elimination(found, between, DiscoveryWorkers(), {hub.name: exact.model.likelihood})
+    prior = SetPrior({})
+    least = between + prior.log_odds([], hub)
+    assert hub not in backward_elimination(found, least, DiscoveryWorkers(), {}, prior).model.members
+    own_errors = {hub.name: exact.model.likelihood}
+    judged = backward_elimination(found, least, DiscoveryWorkers(), own_errors, prior)
     assert hub in judged.model.members
     assert judged.model.likelihood is wide.likelihood
+
+
+def hub_fitted() -> tuple[Fit, Hypothesis]:
+    """The same car, fitted with the hub alone."""
+    (hub,) = library("hub_compliance")
+    extended = model("named").extended(hub)
+    return fit(extended, np.append(extended.centre[: extended.dimension], np.ones(2))), hub
 
 
 def _loss(found: Fit, member: Hypothesis) -> float:

@@ -96,5 +96,5 @@ def test_one_effect_alone_is_judged_by_the_refits_of_the_search() -> None:
     """No solution more: the set without it is the re-tuned axle."""
     search = discovery("named").search
     (one,) = alternatives(search, 1.0, DiscoveryWorkers())
-    assert one.without is search.tuned
+    assert one.without is search.steps[0].before
     assert {id(t) for t in one.trials[1:]} <= {id(t) for t in search.steps[0].trials}

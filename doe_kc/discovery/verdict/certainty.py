@@ -1,0 +1,63 @@
+"""Which effects are certain although something else remains: a partial answer.
+
+What is not in the library can take the name of an effect that makes the same deviations, but not where those
+are explained to the last and are many times larger than all that remains.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.result import Finding
+from doe_kc.discovery.screening.disagreement import Map
+from doe_kc.discovery.thresholds import (
+    CERTAIN,
+    CERTAIN_SHARE,
+    CONFIDENT,
+    NAME_ALWAYS_LEVEL,
+    OWN_CONTRASTS,
+    WRONG_NAMES,
+)
+from doe_kc.discovery.verdict.adequacy import Adequacy
+from doe_kc.discovery.verdict.alternatives import Alternatives
+from doe_kc.discovery.verdict.verdict import ambiguous
+from doe_kc.ground.typing import FloatArray
+
+
+def certain(finding: Finding, own: Alternatives, final: Fit) -> bool:
+    """Whether an effect is named whatever else is missing. final: the fit of the last set."""
+    if ambiguous(finding) or not (finding.relevant and finding.believed):
+        return False
+    strong = finding.log10_odds >= CERTAIN and 2.0 * own.loss >= NAME_ALWAYS_LEVEL**2
+    return strong and remaining_share(own, final) <= CERTAIN_SHARE and explained(own, final.residual_map)
+
+
+def remaining_share(own: Alternatives, final: Fit) -> float:
+    """What noise does not explain of the last fit, over what the effect explains, in squares."""
+    size = float(final.residual.size)
+    excess = final.misfit - size - CONFIDENT * float(np.sqrt(2.0 * size))
+    return max(0.0, excess) / max(2.0 * own.loss, 1.0)
+
+
+def name_doubt(own: Alternatives, final: Fit, explained: Adequacy | None) -> float:
+    """Odds that something outside the library is at work in a named effect's place.
+
+    How often a name was wrong in the benchmark, more where noise hardly explains what remains (`explained`;
+    None where that is at work beside the effect), and what remains over what the effect explains.
+    """
+    support = 1.0 if explained is None else explained.support
+    return WRONG_NAMES / support + remaining_share(own, final)
+
+
+def explained(own: Alternatives, remaining: Map) -> bool:
+    """Whether noise explains what remains of the contrasts in which the effect shows most."""
+    signal, left = own_contrasts(own), np.abs(np.nan_to_num(remaining.z))
+    asked = signal >= OWN_CONTRASTS * signal.max()
+    return bool((left[asked] <= remaining.threshold).all())
+
+
+def own_contrasts(own: Alternatives) -> FloatArray:
+    """(k,) what the effect makes of each contrast beyond what re-tuning could, without a sign."""
+    seen = own.without.without_traces(own.screened[0].change)[: own.without.residual.size]
+    return np.abs(own.without.model.contrasts.rows.T @ seen)

@@ -1,0 +1,76 @@
+"""Traces of absent effects: unknowns of the fit, none of an effect that is in the model."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.correlation.likelihood import rewhitened
+from doe_kc.discovery.clutter import Clutter
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.screening.screen import screen
+from doe_kc.discovery.search.search import tune, with_clutter
+from doe_kc.discovery.thresholds import TRACE_SD
+from tests.discovery.cases import library, model
+
+
+@pytest.fixture(scope="module")
+def tuned() -> Fit:
+    return tune(model("none"))
+
+
+@pytest.fixture(scope="module")
+def cluttered(tuned: Fit) -> Fit:
+    return with_clutter(tuned, [screen(tuned, h) for h in library("hub_compliance", "tie_rod_compliance")])
+
+
+def test_traces_are_of_amounts_at_three_per_cent(tuned: Fit, cluttered: Fit) -> None:
+    clutter = cluttered.model.clutter
+    assert clutter is not None
+    assert set(clutter.names) == {"hub_compliance", "tie_rod_compliance"}
+    (rod,) = library("tie_rod_compliance")
+    column = screen(tuned, rod).columns[:, 0]
+    own = clutter.columns[:, clutter.names.index("tie_rod_compliance")]
+    np.testing.assert_allclose(own, TRACE_SD * column)
+
+
+def test_a_member_has_no_trace_beside_its_sizes(cluttered: Fit) -> None:
+    (hub,) = library("hub_compliance")
+    extended = cluttered.model.extended(hub)
+    assert extended.dimension == cluttered.model.dimension
+    linear, clutter = extended.linear, cluttered.model.clutter
+    assert linear is not None and clutter is not None
+    traces = linear[:, -len(clutter.names) :]
+    for name, column in zip(clutter.names, traces.T, strict=True):
+        assert bool(np.any(column)) is (name != "hub_compliance")
+
+
+def test_sizes_have_the_variance_of_what_is_left_out(tuned: Fit) -> None:
+    """The covariance with traces is that of records with S + t^2 c c' as error."""
+    (hub,) = library("hub_compliance")
+    (rod,) = library("tie_rod_compliance")
+    column = screen(tuned, rod).columns[:, 0]
+    clutter = Clutter(("tie_rod_compliance",), TRACE_SD * column[:, None])
+    wide: EffectModel = replace(tuned.model, clutter=clutter).extended(hub)
+    z = np.concatenate([tuned.z, [0.0], [0.5, 0.5]])
+    sizes = np.random.default_rng(3).standard_normal((tuned.residual.size, 2))
+    jacobian = np.hstack([wide.with_own_nuisances(tuned.jacobian), sizes])
+    fit = Fit(wide, z, tuned.residual, jacobian, 0.0, 1, True)
+    errors = np.eye(tuned.residual.size) + TRACE_SD**2 * np.outer(column, column)
+    seen = np.hstack([tuned.jacobian, sizes])
+    prior = np.concatenate([tuned.model.prior_sd, np.ones(2)])
+    expected = np.linalg.inv(seen.T @ np.linalg.solve(errors, seen) + np.diag(prior**-2.0))
+    np.testing.assert_allclose(fit.covariance[-2:, -2:], expected[-2:, -2:], rtol=1e-6)
+
+
+def test_other_errors_change_the_units_of_traces(cluttered: Fit) -> None:
+    model, clutter = cluttered.model, cluttered.model.clutter
+    curves = tuple(replace(c, root=2.0 * c.root) for c in model.likelihood.curves)
+    wide = model.with_likelihood(replace(model.likelihood, curves=curves))
+    assert clutter is not None and wide.clutter is not None
+    expected = rewhitened(clutter.columns, model.likelihood, wide.likelihood)
+    np.testing.assert_allclose(wide.clutter.columns, expected)
+    np.testing.assert_allclose(wide.clutter.columns[:10], 0.5 * clutter.columns[:10])
