@@ -137,7 +137,8 @@ def _heading(page: Sheet, text: str, left: float, top: float) -> float:
 
 def _files(page: Sheet, files: Mapping[str, str], top: float, width: float) -> None:
     """As many as there is room for, in two columns."""
-    top = _heading(page, "Where to find the rest", EDGE, top)
+    if top - ABOVE - HEADING - 3.0 * LINE * SMALL > FOOT:
+        top = _heading(page, "Where to find the rest", EDGE, top)
     names, half = list(files), (len(files) + 1) // 2
     for column, part in enumerate((names[:half], names[half:])):
         down = top
