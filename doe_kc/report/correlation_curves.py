@@ -20,7 +20,7 @@ from doe_kc.report.names import case_label, input_label, response_axis
 from doe_kc.report.panel import Dash, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.sheet import Sheet, sheet
-from doe_kc.targets.comparison.compare import same_input
+from doe_kc.targets.comparison import same_input
 
 CURVE_PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
 BAND_SDS = 2.0

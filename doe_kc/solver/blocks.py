@@ -12,8 +12,8 @@ from scipy import sparse
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.assembly import assemble
 from doe_kc.solver.compiled import compiled_kernel
+from doe_kc.solver.equations import assemble
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, generate, library_of
 

@@ -26,6 +26,7 @@ COMPILE_VARIABLE = "DOE_KC_COMPILE"
 """Set to 0 to stay interpreted."""
 DEFAULT_FLAGS = "-O1"
 COMPILE_TIMEOUT = 120.0
+"""s: after it the axle is solved by the interpreted kernel, which needs no build."""
 PACKAGE = Path(__file__).parents[1]
 ORIGINS = ("solver/**/*.py", "solver/*.c", "axle/*.py", "curves.py")
 """Sources of the package that generated code follows from."""

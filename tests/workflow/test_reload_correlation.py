@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from doe_kc.campaign.key import design_key
-from doe_kc.campaign.record import StoredEvaluation, packed_outcome
+from doe_kc.campaign.record import StoredEvaluation, design_key, packed_outcome
 from doe_kc.campaign.store import open_store
 from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
 from doe_kc.correlation.assessment import Objection
