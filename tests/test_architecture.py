@@ -14,6 +14,7 @@ FLOORS = [
     "load_cases",
     "curves",
     "axle",
+    "axle_types",
     "effects",
     "axle_file",
     "characteristics",

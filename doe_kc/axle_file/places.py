@@ -28,7 +28,7 @@ def own_place(name: str) -> Place:
         return ("right", path)
     if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
         return ("hardpoints", head, "xyz".index(rest))
-    if head in BUSHINGS:
+    if head in BUSHINGS and not rest.startswith("rubber."):
         return ("bushings", head, *(["factor", rest] if rest in BUSHING_AXES else rest.split(".")))
     return (head, rest) if rest in _keys(head) else (head,) if path in AxleFile.model_fields else ()
 

@@ -14,6 +14,7 @@ from tomlkit.items import Table
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import parameter_value
+from doe_kc.axle.places import Places, places_of
 from doe_kc.axle_file.places import (
     Place,
     effect_id,
@@ -47,7 +48,7 @@ def set_effects(document: tomlkit.TOMLDocument, axle: Axle) -> None:
     present = {effect_id(key): key for key in tables}
     for ident, options in axle.effects.items():
         if ident in present:
-            _change(tables[present[ident]], ident, options)
+            _change(tables[present[ident]], ident, options, places_of(axle))
         elif not EFFECTS[ident].on_rig:
             if "effects" not in document:
                 document["effects"] = tomlkit.table(is_super_table=True)
@@ -75,10 +76,10 @@ def unit_beside(ident: str, key: str) -> str:
     return "" if unit in NO_UNIT or key.endswith(said) else unit
 
 
-def _change(table: MutableMapping[str, Any], ident: str, options: Mapping[str, Any]) -> None:
+def _change(table: MutableMapping[str, Any], ident: str, options: Mapping[str, Any], places: Places) -> None:
     """Bring a table that the file has to other options, key by key."""
     effect = EFFECTS[ident]
-    if effect.read(dict(table), "axle") == effect.read(options, "axle"):
+    if effect.read(dict(table), "axle", places) == effect.read(options, "axle", places):
         return
     for key in list(table):
         if key not in options:

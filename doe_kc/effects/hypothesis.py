@@ -64,13 +64,16 @@ class Size:
 class Hypothesis:
     """An effect in one place. location: bushing or joint, with _L or _R for one side; None: no choice.
 
-    sizes: none for an effect that is there or not. fixed: further options, as in the effect's table.
+    sizes: none for an effect that is there or not. fixed: further options, as in the effect's table. law:
+    option of that name, for a variant of the effect by another law than its default (see `Effect.variants`);
+    a variant has the name of its effect, since a car has one of them.
     """
 
     effect: str
     location: str | None
     sizes: tuple[Size, ...]
     fixed: Mapping[str, Any] = field(default_factory=dict)
+    law: str = ""
 
     @property
     def name(self) -> str:
@@ -80,7 +83,7 @@ class Hypothesis:
 
     def options(self, amplitudes: Mapping[str, float]) -> dict[str, Any]:
         """The effect's table at the amplitudes, by `Size.name`."""
-        out: dict[str, Any] = dict(self.fixed)
+        out: dict[str, Any] = dict(self.fixed) | ({"law": self.law} if self.law else {})
         for size in self.sizes:
             value = size.value(amplitudes[size.name])
             if size.index is None:

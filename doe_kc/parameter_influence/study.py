@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters
@@ -22,6 +22,9 @@ from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.own import AxleSolver
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NONLINEAR_PERCENT = 5.0
 """A cell is flagged when one-at-a-time and exact change differ by more than this share of the larger one
@@ -82,8 +85,15 @@ class Influence:
             exact=self.exact[:, index],
         )
 
+    def columns(self, values: FloatArray) -> dict[str, Any]:
+        """`values` with a first column of parameter paths, then one a characteristic."""
+        ids = (c.id for c in self.characteristics)
+        return {"parameter": [p.path for p in self.parameters], **dict(zip(ids, values.T, strict=True))}
+
     def frame(self, values: FloatArray) -> pd.DataFrame:
         """`values` with parameter paths as index and characteristic ids as columns."""
+        import pandas as pd
+
         return pd.DataFrame(
             values,
             index=[p.path for p in self.parameters],

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.correlation.result import Correlation
@@ -51,9 +50,10 @@ def term_rows(correlation: Correlation) -> list[TermRow]:
     return [*_objectives(correlation), *_curves(correlation), *_constraints(correlation)]
 
 
-def term_frame(correlation: Correlation) -> pd.DataFrame:
+def term_columns(correlation: Correlation) -> dict[str, list[Any]]:
     """One row a term, with its weights."""
-    return pd.DataFrame([asdict(r) for r in term_rows(correlation)])
+    rows = term_rows(correlation)
+    return {f.name: [getattr(row, f.name) for row in rows] for f in fields(TermRow)}
 
 
 def _weights(of: Objective | Constraint) -> dict[str, Any]:

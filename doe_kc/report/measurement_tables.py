@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Gradient, GradientEstimate, Measurement, NoiseModel
 from doe_kc.report.table import Column, Table
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 CURVE_COLUMNS = (
     "load_case", "input", "input_unit", "side", "response", "unit", "mean", "half_width", "sd",
@@ -100,7 +102,7 @@ def noise_table(measurement: Measurement) -> Table[CurveNoise]:
     return Table("Noise", "Standard deviations of the parts of each curve's error.", NOISE_COLUMNS, rows)
 
 
-def measured_curve_frame(measurement: Measurement) -> pd.DataFrame:
+def measured_curve_columns(measurement: Measurement) -> dict[str, Any]:
     """One row a point of a curve: `CURVE_COLUMNS`, sd its standard error.
 
     Array by array, no `Table`: of ten thousands of points a row each would take longer than to reduce them.
@@ -121,4 +123,11 @@ def measured_curve_frame(measurement: Measurement) -> pd.DataFrame:
     columns: dict[str, Any] = {n: np.repeat(np.array(t, dtype=object), sizes) for n, t in texts}
     values = zip(("input", "mean", "half_width", "sd"), zip(*numbers, strict=True), strict=True)
     columns |= {n: np.concatenate(v) for n, v in values}
-    return pd.DataFrame(columns, columns=list(CURVE_COLUMNS))
+    return {name: columns[name] for name in CURVE_COLUMNS}
+
+
+def measured_curve_frame(measurement: Measurement) -> pd.DataFrame:
+    """`measured_curve_columns` as a data frame."""
+    import pandas as pd
+
+    return pd.DataFrame(measured_curve_columns(measurement))

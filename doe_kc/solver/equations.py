@@ -1,15 +1,12 @@
-"""The equations of one topology: elements assembled; residual, outputs, state update as expressions."""
+"""The finished equations of one topology: residual, outputs and state update as symbolic expressions."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 
-from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.solver.builder import FORCE_SCALE, MOMENT_SCALE, Builder, Unknown
-from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.probe import Probe
 
 
@@ -103,12 +100,3 @@ def finish(b: Builder) -> Equations:
         e=ca.vertcat(ca.SX(0, 1), *[s for _, s, _ in b.probes]),
         seen=ca.vertcat(ca.SX(0, 1), *[response() for _, _, response in b.probes]),
     )
-
-
-@lru_cache(maxsize=TOPOLOGY_CACHE)
-def assemble(topology: Topology) -> Equations:
-    """Every registered element, in order, then virtual work (cached per topology: a pure function)."""
-    builder = Builder(topology)
-    for unit in ELEMENTS:
-        unit.assemble(builder)
-    return finish(builder)

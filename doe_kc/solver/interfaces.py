@@ -18,9 +18,9 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
+from doe_kc.solver.assembly import assemble
 from doe_kc.solver.blocks import Block, blocks, equilibrium_change
 from doe_kc.solver.datum import AT_REST, control_gradient, gradient_between
-from doe_kc.solver.equations import assemble
 from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.result import BranchSolution, Solution, StaticState

@@ -12,7 +12,7 @@ import numpy as np
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.equations import assemble
+from doe_kc.solver.assembly import assemble
 from doe_kc.solver.layout import EquationLayout, layout_of, layout_text, read_layout
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, store_text, stored_library, stored_text
 

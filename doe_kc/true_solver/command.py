@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameter_kinds import KINDS
+from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.axle.parameters import with_values
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.true_solver.answer import Unreadable, read_characteristics, read_curves
@@ -197,8 +197,8 @@ def parameters_document(values: Values) -> str:
 
 def unit_of(path: str) -> str:
     """Unit of a parameter; "-" for a factor, empty when it is none of the design parameters."""
-    name = path.split(".", 1)[1] if path.startswith(("left.", "right.")) else path
-    return KINDS[name].unit if name in KINDS else ""
+    kind = kind_of(path)
+    return kind.unit if kind is not None else ""
 
 
 def _replaced(word: str, marks: Mapping[str, str]) -> str:

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.curves import CurveSet
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
 from doe_kc.report.comparison_tables import compared_characteristic_table, compared_curve_table
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
 from doe_kc.study import Study
@@ -29,8 +29,10 @@ def write_comparison(
 ) -> list[Path]:
     """characteristics.csv, curves.csv (RMS) and one figure a load case."""
     written = [
-        write_csv(folder / "characteristics.csv", table_frame(compared_characteristic_table(comparison))),
-        write_csv(folder / "curves.csv", table_frame(compared_curve_table(comparison))),
+        write_columns(
+            folder / "characteristics.csv", table_columns(compared_characteristic_table(comparison))
+        ),
+        write_columns(folder / "curves.csv", table_columns(compared_curve_table(comparison))),
     ]
     if pictures == "none":
         return written

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import places_of
 from doe_kc.campaign.executors import processes
 from doe_kc.campaign.processes import available_cores
 from doe_kc.correlation.likelihood import record_likelihood
@@ -75,8 +76,9 @@ def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis,
             raise InputError(
                 f"--exclude {ident}: is no effect; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
             )
-    wanted = [e for e in EFFECTS.values() if e.id not in exclude and not e.present(axle)]
-    return tuple(h for e in wanted for h in e.hypotheses())
+    places = places_of(axle)
+    wanted = [e for e in EFFECTS.values() if e.id not in exclude and e.possible(places)]
+    return tuple(h for e in wanted if not e.present(axle) for h in e.hypotheses(places))
 
 
 def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:

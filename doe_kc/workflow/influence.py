@@ -11,7 +11,8 @@ from typing import Any
 
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.correlation.options import ObjectiveKind
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
 from doe_kc.parameter_influence.selection import select_variables
@@ -106,7 +107,7 @@ def write_influence(
     )
     tables = {"percent": matrix.percent, "absolute": matrix.absolute, "exact": matrix.exact}
     csv = [
-        write_csv(folder / f"influence_{name}.csv", matrix.frame(values).reset_index(names="parameter"))
+        write_columns(folder / f"influence_{name}.csv", matrix.columns(values))
         for name, values in tables.items()
     ]
     if study.pictures == "none":
@@ -122,6 +123,14 @@ def write_influence(
 def influence_document(influence: Influence) -> dict[str, Any]:
     """`{"percent": {characteristic: {parameter: number}}, "absolute": ..., "exact": ..., "seconds"}`."""
     tables = {"percent": influence.percent, "absolute": influence.absolute, "exact": influence.exact}
-    document: dict[str, Any] = {name: influence.frame(values).to_dict() for name, values in tables.items()}
+    document: dict[str, Any] = {
+        name: _by_characteristic(influence, values) for name, values in tables.items()
+    }
     steps = {p.path: p.step for p in influence.parameters}
     return document | {"steps": steps, "failures": influence.failures, "seconds": influence.seconds}
+
+
+def _by_characteristic(influence: Influence, values: FloatArray) -> dict[str, dict[str, float]]:
+    columns = influence.columns(values)
+    paths = columns.pop("parameter")
+    return {ident: dict(zip(paths, column.tolist(), strict=True)) for ident, column in columns.items()}

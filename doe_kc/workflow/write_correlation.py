@@ -11,16 +11,16 @@ from doe_kc.axle_file.write import write_axle
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.correlation_evaluations import evaluation_table
 from doe_kc.report.correlation_parameters import parameter_table, remark_sentences
 from doe_kc.report.correlation_summary import summary
-from doe_kc.report.correlation_terms import curve_table, term_frame
+from doe_kc.report.correlation_terms import curve_table, term_columns
 from doe_kc.report.correlation_workbook import write_correlation_workbook
 from doe_kc.report.page import write_correlation_page
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
 from doe_kc.report.table import Table
@@ -64,8 +64,11 @@ def write_correlation(
     }
     return [
         axle,
-        *(write_csv(folder / name, table_frame(of(correlation))) for name, of in CORRELATION_TABLES.items()),
-        write_csv(folder / "rating_terms.csv", term_frame(correlation)),
+        *(
+            write_columns(folder / name, table_columns(of(correlation)))
+            for name, of in CORRELATION_TABLES.items()
+        ),
+        write_columns(folder / "rating_terms.csv", term_columns(correlation)),
         write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
         write_correlation_page(folder / "report.html", correlation, measurement, **words),
         *_write_figures(study, correlation, measurement, folder, workers),
@@ -95,7 +98,7 @@ def axle_note(correlation: Correlation, assessment: Assessment) -> str:
 def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[Path]:
     """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
     front = front_of(correlation.problem.search, correlation.run.evaluated)
-    table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
+    table = write_columns(folder / "pareto_front.csv", front.columns())
     if study.pictures == "none":
         return [table]
     from doe_kc.report.pareto_figure import write_pareto_figure

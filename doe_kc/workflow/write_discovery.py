@@ -9,7 +9,7 @@ from typing import Any
 
 from doe_kc.axle_file.write import write_axle
 from doe_kc.discovery.result import Discovery
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_figures import write_discovery_figures
@@ -19,7 +19,7 @@ from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_o
 from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.table import Table
 from doe_kc.study import Study
 from doe_kc.workflow.write_correlation import AXLE
@@ -62,7 +62,10 @@ def write_discovery(
     known = {"Measurement": measurement.manifest.name, **notes}
     return [
         *written,
-        *(write_csv(folder / name, table_frame(of(discovery))) for name, of in DISCOVERY_TABLES.items()),
+        *(
+            write_columns(folder / name, table_columns(of(discovery)))
+            for name, of in DISCOVERY_TABLES.items()
+        ),
         write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
         write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words),
         *write_discovery_figures(

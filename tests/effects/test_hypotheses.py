@@ -11,10 +11,11 @@ import pytest
 from doe_kc.axle import Axle
 from doe_kc.axle.parameters import design_parameters, settable_paths
 from doe_kc.curves import CurveSet
-from doe_kc.effects import EFFECTS, apply_effect, observed
+from doe_kc.effects import apply_effect, observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 from tests.reference import nominal
 
 HYPOTHESES = [h for e in EFFECTS.values() for h in e.hypotheses()]

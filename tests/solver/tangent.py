@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.axle import Axle
-from doe_kc.solver.equations import assemble
+from doe_kc.solver.assembly import assemble
 from doe_kc.solver.equilibria import March, Start
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.march import march

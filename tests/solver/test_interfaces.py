@@ -14,10 +14,10 @@ from doe_kc.axle.topology import Topology
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, CurveSet
 from doe_kc.effects import apply_effect
 from doe_kc.effects.subframe_flexibility import JOINT_STIFFNESS
+from doe_kc.solver.assembly import assemble
 from doe_kc.solver.curve_gradient import CurveGradients
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.wheel import SPIN_STIFFNESS
-from doe_kc.solver.equations import assemble
 from doe_kc.solver.interface_columns import LAWS, law_columns, stop_operator
 from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.newton import NewtonSettings

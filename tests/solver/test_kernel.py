@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.solver import kernel as kernels
-from doe_kc.solver.equations import assemble
+from doe_kc.solver.assembly import assemble
 from doe_kc.solver.kernel import interpreted_functions, kernel
 from doe_kc.solver.layout import layout_text, read_layout
 from doe_kc.solver.library import CACHE_VARIABLE, find_compiler

@@ -5,13 +5,10 @@ from __future__ import annotations
 import base64
 import io
 
-from matplotlib import rc_context
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-
 from doe_kc.correlation.result import Correlation
 from doe_kc.report.axle_views import AxleView, axle_figure, correlation_view
 from doe_kc.report.render.page import Section, render
-from doe_kc.report.style import RC
+from doe_kc.report.style import write_svg
 
 AXLE_LEAD = (
     "Arrows show how far each hardpoint of the left side moved, drawn longer by the factor in the key; the "
@@ -28,9 +25,7 @@ def axle_section(correlation: Correlation) -> Section:
 def svg_data(view: AxleView) -> str:
     """The drawing as a data URL, the same for the same axles."""
     stream = io.BytesIO()
-    page = axle_figure(view)
-    with rc_context(dict(RC)):  # type: ignore[arg-type]  # matplotlib types the keys as literals
-        FigureCanvasSVG(page).print_svg(stream, metadata={"Date": None})  # type: ignore[no-untyped-call]
+    write_svg(axle_figure(view), stream)
     return "data:image/svg+xml;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
 

@@ -3,7 +3,10 @@
 Dahl: dF/dx = (Fc / x_pre)(1 - F/Fc sgn dx), exact over a monotone step,
 F -> s Fc - (s Fc - F) exp(-|dx| / x_pre). Prandtl-Iwan: Jenkins elements in parallel,
 F = sum clip(k_j (x - z_j), +-F_j), closed minor loops; the distribution of yield displacements makes its
-virgin curve the Dahl one, Fc (1 - exp(-x / x_pre)): density y exp(-y / x_pre) of strength, a gamma law.
+virgin curve the Dahl one, Fc (1 - exp(-x / x_pre)): density y exp(-y / x_pre) of strength, a gamma law. The
+same with yield displacements that are log-normal, x_pre = Fc / initial stiffness. Or a backbone of its own:
+five sliders at fixed yield displacements, whose shares in Fc are numbers of the axle, so that any monotone
+backbone of decreasing slope is near one of them.
 """
 
 from __future__ import annotations
@@ -13,10 +16,11 @@ from typing import ClassVar
 import casadi as ca
 import numpy as np
 
-from doe_kc.axle.topology import FrictionLaw
+from doe_kc.axle.topology import BACKBONE_YIELDS, FrictionLaw
 from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements._base import Element, Stage, element
+from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
 IWAN_ELEMENTS = 8
 
@@ -46,16 +50,33 @@ def add_friction(b: Builder, freedom: str, law: FrictionLaw, x: ca.SX, prefix: s
     if law == "dahl":
         before = ca.SX.sym(f"{freedom} state", 2)
         force = on * dahl_force(x, before[0], before[1], level, presliding)
-        b.state(freedom, before, ca.vertcat(x, force))
-    else:
+        b.state(before, ca.vertcat(x, force), freedom=freedom)
+    elif law == "iwan":
         before = ca.SX.sym(f"{freedom} state", IWAN_ELEMENTS)
         strength = level / IWAN_ELEMENTS
         rates = strength / (presliding * ca.SX(iwan_yields()))
         each = on * ca.fmin(ca.fmax(rates * (x - before), -strength), strength)
         force = ca.sum1(each)
-        b.state(freedom, before, x - each / rates)
+        b.state(before, x - each / rates, freedom=freedom)
+    else:
+        yields, shares = _sliders(b, law, prefix, suffix)
+        distances = b.constant(presliding * yields)
+        before = ca.SX.sym(f"{freedom} state", shares.numel())
+        deflections = slider_deflections(x, before, distances, on)
+        force = ca.dot(b.constant(level * shares / distances), deflections)
+        b.state(before, x - deflections, freedom=freedom)
     b.resist(freedom, force)
     return force
+
+
+def _sliders(b: Builder, law: FrictionLaw, prefix: str, suffix: str) -> tuple[ca.SX, ca.SX]:
+    """(n,) yield displacements over the presliding distance, and (n,) shares in the limit."""
+    if law == "lognormal":
+        spread = b.parameter(f"{prefix}.spread{suffix}")
+        return lognormal_yields(spread, IWAN_ELEMENTS), ca.SX.ones(IWAN_ELEMENTS) / IWAN_ELEMENTS
+    count = len(BACKBONE_YIELDS)
+    weights = ca.vertcat(*[b.parameter(f"{prefix}.share{i}{suffix}") for i in range(count)])
+    return ca.SX(BACKBONE_YIELDS), weights / ca.sum1(weights)
 
 
 @element

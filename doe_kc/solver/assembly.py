@@ -1,0 +1,23 @@
+"""From a topology to the equations of the axle."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.solver.builder import Builder
+from doe_kc.solver.elements import ELEMENTS
+from doe_kc.solver.equations import Equations, finish
+from doe_kc.solver.structure.assembly import assemble_structure
+
+
+@lru_cache(maxsize=TOPOLOGY_CACHE)
+def assemble(topology: Topology) -> Equations:
+    """Every element of the topology's type, in order, then virtual work (cached: a pure function)."""
+    builder = Builder(topology)
+    if topology.structure is not None:
+        assemble_structure(builder, topology.structure)
+        return finish(builder)
+    for unit in ELEMENTS:
+        unit.assemble(builder)
+    return finish(builder)
