@@ -8,7 +8,7 @@ from functools import lru_cache
 from typing import Literal
 
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS
-from doe_kc.axle.topology import BACKBONE_YIELDS
+from doe_kc.axle.sliders import BACKBONE_YIELDS
 
 Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
 Quantity = Literal[
@@ -147,7 +147,7 @@ POSITIVE_PARAMETERS = {
     *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
     *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
-    *("gap", "contact", "reference", "spread"),
+    *("gap", "contact", "reference", "spread", "exponent"),
     *(f"share{i}" for i in range(len(BACKBONE_YIELDS))),
 }
 NOT_BELOW_ZERO = {

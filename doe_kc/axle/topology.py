@@ -7,9 +7,7 @@ from typing import Literal
 
 from doe_kc.axle.structure import Structure
 
-FrictionLaw = Literal["none", "dahl", "iwan", "lognormal", "backbone"]
-BACKBONE_YIELDS = (0.16, 0.4, 1.0, 2.5, 6.25)
-"""Yield displacements of the sliders of a free backbone, over the presliding distance."""
+FrictionLaw = Literal["none", "dahl", "iwan", "duhem", "lognormal", "backbone"]
 
 TOPOLOGY_CACHE = 64
 """Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""

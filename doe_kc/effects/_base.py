@@ -84,6 +84,11 @@ class Effect(ABC):
         del places
         return (Hypothesis(self.id, None, self.sizes),)
 
+    def consequence(self, options: Mapping[str, Any]) -> str:
+        """A sentence on what the effect means at its options beyond the axle; empty for most."""
+        del options
+        return ""
+
     def variants(self, hypothesis: Hypothesis) -> tuple[Hypothesis, ...]:
         """The hypothesis by each law that the effect can follow, the default one, itself, first."""
         others = list(self.laws.items())[1:]

@@ -20,9 +20,9 @@ class Size:
 
     key: option of the effect's table; index: place in it where the option is a list. typical: value at
     a = 1, in `unit`. growth: amount, value = typical a; compliance, value = typical a^(-1/power), rigid at
-    0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(0.7 a), a number
-    that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend, value =
-    typical a, a shape that may go either way and is none at 0.
+    0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(log_sd a), a
+    number that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend,
+    value = typical a, a shape that may go either way and is none at 0.
     signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
     have. needed: whether without it what is left is another effect.
     """
@@ -36,6 +36,7 @@ class Size:
     power: float = 1.0
     most: float = 3.0
     needed: bool = False
+    log_sd: float = SHAPE_LOG_SD
 
     @property
     def name(self) -> str:
@@ -57,7 +58,7 @@ class Size:
             return float(self.typical * max(amplitude, ABSENT) ** (-1.0 / self.power))
         if self.growth == "factor":
             return float(self.typical**amplitude)
-        return float(self.typical * 2.718281828459045 ** (SHAPE_LOG_SD * amplitude))
+        return float(self.typical * 2.718281828459045 ** (self.log_sd * amplitude))
 
 
 @dataclass(frozen=True)

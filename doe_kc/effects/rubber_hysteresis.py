@@ -10,6 +10,7 @@ from doe_kc.axle.model import BUSHINGS, Axle
 from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
 from doe_kc.axle.structure import of_side
 from doe_kc.effects._base import Effect, Option, Part, effect
+from doe_kc.effects._dynamic_stiffness import dynamic_stiffness
 from doe_kc.effects._friction import SPREAD
 from doe_kc.effects._tables import checked_number, named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -17,6 +18,8 @@ from doe_kc.ground.errors import InputError, nearest
 
 NUMBERS = {"share": "share", "yield_mm": "yield", "spread": "spread"}
 """Key of the table -> last part of the axle value, as in `llr.rubber.share`."""
+BENCH_TRAVELS = (0.05, 0.5, 2.0)
+"""mm, of benches for dynamic stiffness, and of a K&C rig."""
 REAR = ("LLR",)
 """The compliance bushing of the lower arm: the loops of drive and brake are its own."""
 
@@ -65,6 +68,20 @@ class RubberHysteresis(Effect):
             everywhere,
             Hypothesis(self.id, *REAR, self.sizes, {"bushings": list(REAR)}),
             Hypothesis(self.id, "REST", self.sizes, {"bushings": rest}),
+        )
+
+    def consequence(self, options: Mapping[str, Any]) -> str:
+        """What it makes of a supplier's dynamic stiffness; of the first bushing where they differ."""
+        numbers = {k: options.get(k, o.default) for k, o in self.options.items() if k in NUMBERS}
+        first = {k: next(iter(v.values())) if isinstance(v, Mapping) else v for k, v in numbers.items()}
+        at = [dynamic_stiffness(**first, amplitude=amplitude) for amplitude in BENCH_TRAVELS]
+        travels = ", ".join(f"{amplitude:g}" for amplitude in BENCH_TRAVELS)
+        ratios = ", ".join(f"{each.ratio:.2f}" for each in at)
+        angles = ", ".join(f"{each.loss_angle:.1f}" for each in at)
+        return (
+            f"Over +-{travels} mm such a bushing is {ratios} times as stiff as its elastic law, its loss "
+            f"angle {angles} deg: a supplier's dynamic stiffness, measured over a small travel, is not "
+            "the stiffness that the rig sees."
         )
 
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:

@@ -10,7 +10,6 @@ from openpyxl.workbook import Workbook
 from doe_kc import __version__
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.thresholds import RELEVANT
-from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_table
@@ -21,6 +20,7 @@ from doe_kc.report.discovery_words import (
     effect_label,
     hypothesis_label,
     own_sentences,
+    physics_words,
     size_words,
 )
 from doe_kc.report.render.workbook import lines_sheet, new_book, table_sheet, write_book
@@ -156,7 +156,7 @@ def verdict_lines(discovery: Discovery) -> list[tuple[str, str]]:
 def finding_words(discovery: Discovery, finding: Finding) -> str:
     """Name and place, sizes, and what happens in the car."""
     sizes = f": {size_words(discovery, finding)}" if finding.hypothesis.sizes else ""
-    return f"{hypothesis_label(finding.hypothesis)}{sizes}. {EFFECTS[finding.hypothesis.effect].physics}"
+    return f"{hypothesis_label(finding.hypothesis)}{sizes}. {physics_words(finding)}"
 
 
 def scan_lines(discovery: Discovery) -> list[str]:

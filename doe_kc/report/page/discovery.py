@@ -38,6 +38,7 @@ from doe_kc.report.discovery_words import (
     found_sizes,
     hypothesis_label,
     own_sentences,
+    physics_words,
 )
 from doe_kc.report.names import case_label, response_name
 from doe_kc.report.page.discovery_candidates import (
@@ -86,7 +87,7 @@ def _effect(discovery: Discovery, finding: Finding) -> dict[str, Any]:
         "against": against_words(finding),
         "sizes": [s.sentence for s in found_sizes(discovery, finding)],
         "rivals": rival_words(finding) or "–",
-        "physics": EFFECTS[ident].physics,
+        "physics": physics_words(finding),
         "shown_by": EFFECTS[ident].shown_by,
     }
 

@@ -9,7 +9,8 @@ Reference: A. Visintin, Differential Models of Hysteresis, Springer, 1994, chapt
 from __future__ import annotations
 
 import casadi as ca
-import numpy as np
+
+from doe_kc.axle.sliders import normal_quantiles
 
 
 def slider_deflections(x: ca.SX, before: ca.SX, yields: ca.SX, on: ca.SX) -> ca.SX:
@@ -17,17 +18,7 @@ def slider_deflections(x: ca.SX, before: ca.SX, yields: ca.SX, on: ca.SX) -> ca.
     return on * ca.fmin(ca.fmax(x - before, -yields), yields)
 
 
-def normal_quantiles(count: int) -> np.ndarray:
-    """(count,) mid-quantiles of the standard normal distribution."""
-    from scipy.special import ndtri
-
-    return np.asarray(ndtri((np.arange(count) + 0.5) / count))
-
-
 def lognormal_yields(spread: ca.SX, count: int) -> ca.SX:
-    """(count,) yield displacements of elements of equal strength, over the whole's limit / initial stiffness.
-
-    spread: standard deviation of their logarithm; 0 is one elastic-perfectly plastic element.
-    """
+    """(count,) as `yield_ratios`, of a symbolic spread."""
     quantiles = ca.SX(normal_quantiles(count))
     return ca.exp(spread * quantiles) * ca.sum1(ca.exp(-spread * quantiles)) / count

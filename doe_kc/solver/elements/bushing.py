@@ -15,6 +15,7 @@ from __future__ import annotations
 import casadi as ca
 
 from doe_kc.axle.model import FORCE_AXES, NM_PER_DEG
+from doe_kc.axle.sliders import RUBBER_SLIDERS
 from doe_kc.axle.structure import of_side
 from doe_kc.solver import curve, rotation
 from doe_kc.solver.builder import Body, Builder, Response
@@ -24,7 +25,6 @@ from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 TORQUE_AXES = ("Tx", "Ty", "Tz")
 RUBBER = ("share", "yield", "spread")
 """Values of a bushing's friction: see `_friction`."""
-RUBBER_SLIDERS = 4
 
 
 def connect(
