@@ -19,6 +19,7 @@ from doe_kc.report.table import (
     SheetLayout,
     Table,
     TerminalCell,
+    row_digits,
 )
 from doe_kc.targets import Improvement
 from doe_kc.targets.comparison import FLOOR, constraint_interval
@@ -135,22 +136,27 @@ def characteristic_rows(correlation: Correlation) -> list[CharacteristicRow]:
     ]
 
 
+def value_format(row: CharacteristicRow) -> str:
+    """Number format of its values: two digits of the target's standard deviation."""
+    return row_digits(row.entry.target.sd, row.entry.target.value or row.entry.final)
+
+
 APPENDIX_D_COLUMNS: tuple[Column[CharacteristicRow], ...] = (
-    Column("id", "Id", lambda r: r.id, width=32, json="name", terminal=TerminalCell("characteristic", "34")),
-    Column("label", "Characteristic", lambda r: r.label, width=28,
+    Column("id", None, lambda r: r.id, json="name", terminal=TerminalCell("characteristic", "34")),
+    Column("label", "Characteristic", lambda r: r.label, width=52, cell=lambda r: f"{r.label} ({r.id})",
            page=PageCell(style="first", attributes=lambda r: {"title": r.id})),
     Column("load_case", "Load case", lambda r: r.load_case, width=25, page=PageCell()),
     Column("unit", "Unit", lambda r: r.unit, width=9, page=PageCell(), json="unit"),
-    Column("target", "Target", lambda r: r.entry.target.value, "0.0000", page=PageCell(), json="target",
+    Column("target", "Target", lambda r: r.entry.target.value, value_format, page=PageCell(), json="target",
            terminal=TerminalCell("target", ">11", ".4g")),
-    Column("target_sd", "Target sd", lambda r: r.entry.target.sd, "0.0000",
+    Column("target_sd", "Target sd", lambda r: r.entry.target.sd, value_format,
            page=PageCell("± sd", digits=2), json="sd"),
-    Column("baseline", "Baseline", lambda r: r.entry.baseline, "0.0000", page=PageCell(), json="baseline",
+    Column("baseline", "Baseline", lambda r: r.entry.baseline, value_format, page=PageCell(), json="baseline",
            terminal=TerminalCell("baseline", ">11", ".4g")),
-    Column("final", "Final", lambda r: r.entry.final, "0.0000", page=PageCell(strong=lambda r: True),
+    Column("final", "Final", lambda r: r.entry.final, value_format, page=PageCell(strong=lambda r: True),
            json="final", terminal=TerminalCell("final", ">11", ".4g")),
-    Column("low", "Low", lambda r: r.interval[0], "0.0000", page=PageCell(), json="low"),
-    Column("high", "High", lambda r: r.interval[1], "0.0000", page=PageCell(), json="high"),
+    Column("low", "Low", lambda r: r.interval[0], value_format, page=PageCell(), json="low"),
+    Column("high", "High", lambda r: r.interval[1], value_format, page=PageCell(), json="high"),
     Column("inside", "Inside", lambda r: r.inside, width=8),
     Column("objective", None, lambda r: r.objective),
     Column("constraint", None, lambda r: r.constraint),
@@ -183,7 +189,7 @@ def characteristic_table(correlation: Correlation) -> Table[CharacteristicRow]:
         APPENDIX_D_COLUMNS,
         characteristic_rows(correlation),
         colors=(Inside("final", "low", "high"), Bar("improvement_percent", NEGATIVE_FILL, 100)),
-        sheet=SheetLayout(frozen="id", paper="A3", single=True, first=("load_case", "label")),
+        sheet=SheetLayout(frozen="unit", single=True, first=("load_case", "label")),
         page=PageLayout(
             "characteristics-table",
             "Characteristics",

@@ -157,7 +157,7 @@ class WorstView:
         view = self.view
         name, unit = response_name(view.response), RESPONSE_UNITS[view.response]
         if view.branches == "half_width":
-            return f"{name}, half-width of the loop [{unit}]"
+            return f"{name},\nhalf-width of the loop [{unit}]"
         return f"{'' if view.response == TYRE_LOAD else 'Δ '}{name} [{unit}]"
 
 
@@ -244,7 +244,8 @@ def _deviation(panel: Panel, worst: WorstView) -> None:
     for name, dash in DASHES.items():
         if name in view.models:
             panel.plot(view.input, view.deviation(name)[worst.side], dash, color=MODEL_COLOURS[name], lw=1.2)
-    panel.set_labels(view.input_label, "model − measured\n[sd of the noise]")
+    panel.set_labels(view.input_label, None)
+    panel.set_labels(None, "model − measured\n[sd of the noise]", 6.5)
     panel.x.set_locator(ticks(6))
     panel.y.set_locator(ticks(4))
 

@@ -73,8 +73,9 @@ def library_rows(discovery: Discovery) -> list[LibraryRow]:
 
 
 LIBRARY_COLUMNS: tuple[Column[LibraryRow], ...] = (
-    Column("effect", "Id", lambda r: r.effect, width=24),
-    Column("label", "Effect", lambda r: effect_label(r.effect), width=30,
+    Column("effect", None, lambda r: r.effect),
+    Column("label", "Effect", lambda r: effect_label(r.effect), width=36,
+           cell=lambda r: f"{effect_label(r.effect)} ({r.effect})",
            page=PageCell(text=lambda r: hypothesis_label(r.status.hypothesis), style="first",
                          strong=lambda r: r.tag == "found",
                          attributes=lambda r: {"title": r.status.hypothesis.name})),
@@ -115,7 +116,7 @@ def library_table(discovery: Discovery) -> Table[LibraryRow]:
         LIBRARY_COLUMNS,
         library_rows(discovery),
         title="Library of effects",
-        sheet=SheetLayout(frozen="status", paper="A3", wrapped=True, printed_to="looks_like"),
+        sheet=SheetLayout(frozen="status", wrapped=True, printed_to="looks_like"),
         page=PageLayout(
             "library-table",
             "Library of effects",

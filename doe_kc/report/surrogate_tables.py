@@ -79,9 +79,7 @@ def quality_table(report: SurrogateReport) -> Table[QualityRow]:
         QUALITY_COLUMNS,
         rows,
         title="Surrogates",
-        sheet=SheetLayout(
-            frozen="unit", paper="A3", single=True, first=("load_case", "characteristic", "unit")
-        ),
+        sheet=SheetLayout(frozen="unit", single=True, first=("load_case", "characteristic", "unit")),
     )
 
 
@@ -182,7 +180,7 @@ def matrix_table(report: SurrogateReport, name: str, remark: str, percent: Float
         Column("step", "Step", lambda r: r.step, width=12),
         *(_matrix_column(j, entry) for j, entry in enumerate(report.designs.characteristics)),
     )
-    layout = SheetLayout(frozen=columns[2].key, paper="A3", single=True)
+    layout = SheetLayout(frozen=columns[2].key, single=True)
     return Table(name, remark, columns, rows, title=f"{name} by surrogates", sheet=layout)
 
 

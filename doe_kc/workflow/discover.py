@@ -83,7 +83,8 @@ def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis,
 
 def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
     """The study's variables but those that are an effect in other words: they would absorb it wholly."""
-    held = {path for e in EFFECTS.values() for path in e.replaces}
+    places = places_of(axle)
+    held = {path for e in EFFECTS.values() if e.possible(places) for path in e.replaces}
     named = set() if options.use == "selection" else set(options.use)
     changes = [c for c in options.change if not any(fnmatchcase(path, c.match) for path in held & {c.match})]
     use = [glob for glob in named if glob not in held] or ["*"]

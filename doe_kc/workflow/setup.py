@@ -22,5 +22,5 @@ def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
     return [
         f"{manifest.name}: the rig's {key} is {rig:g}, the model's {ours:g}; set {where} of the axle file."
         for key, rig, ours, where in pairs
-        if rig is not None and ours is not None and abs(rig - ours) > 1e-6 * abs(ours)
+        if rig is not None and ours and abs(rig - ours) > 1e-6 * abs(ours)
     ]

@@ -18,11 +18,13 @@ from doe_kc.axle.model import with_roll
 from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.axle_file import read_axle
 from doe_kc.cli._app import app
-from doe_kc.cli.options import JsonOption
+from doe_kc.cli.options import JsonOption, PictureChoice
 from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_json
+from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.report.simulation_tables import characteristics_document, write_simulation
+from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 
 SETTING = re.compile(r"\s*([^=+*\s]+)\s*([+*]?=)\s*(\S+)\s*$")
@@ -114,12 +116,19 @@ def simulate(
     ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Load case; all by default.")] = None,
     roll: Annotated[str | None, typer.Option(help="Roll technique: body or counter_phase.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for curves.csv, characteristics.csv.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for curves.csv, characteristics.csv and pictures.")
+    ] = None,
+    pictures: Annotated[
+        PictureChoice, typer.Option(help="Format in which the deformed shapes are drawn, into --out.")
+    ] = PictureChoice.NONE,
     json: JsonOption = None,
 ) -> None:
     """Solve the K&C load cases of an axle: curves (tidy CSV) and characteristics."""
     model = apply_settings(apply_effects(read_axle(axle), effects or []), settings or [])
     model = with_roll(model, roll, source="--roll")
+    if pictures is not PictureChoice.NONE and out is None:
+        raise InputError("--pictures: needs a folder to draw into; add --out DIR.")
     for sentence in axle_warnings(model):
         log.warning(sentence)
     started = time.perf_counter()
@@ -129,10 +138,18 @@ def simulate(
     if json is not None:
         write_json(json, document)
     if out is not None:
-        for path in write_simulation(solution, out):
+        for path in (*write_simulation(solution, out), *_shapes(model, solution, out, pictures.value)):
             typer.echo(f"wrote {path}", err=True)
     for name, entry in document["characteristics"].items():
         typer.echo(f"{name:36}{entry['value']:>14.6g}  {entry['unit']}")
+
+
+def _shapes(axle: Axle, solution: Solution, folder: Path, pictures: PictureFormat) -> list[Path]:
+    if pictures == "none":
+        return []
+    from doe_kc.report.axle_shapes import write_shape_figures
+
+    return write_shape_figures(axle, solution, folder, pictures=pictures)
 
 
 def checked_cases(axle: Axle, cases: list[str] | None) -> list[str] | None:

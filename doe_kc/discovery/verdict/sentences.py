@@ -13,7 +13,7 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.extra_test import ExtraTest
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.effects import EFFECTS
-from doe_kc.ground.numbers import unit_words, with_sd
+from doe_kc.ground.numbers import number, unit_words, with_sd
 
 
 def sentences(
@@ -127,7 +127,7 @@ def adequacy_words(adequacy: Adequacy) -> str:
 
 
 def _share(chance: float) -> str:
-    return "less than 0.1 %" if chance <= 1.0 / NOISE_DRAWS else f"{100.0 * chance:.2g} %"
+    return "less than 0.1 %" if chance <= 1.0 / NOISE_DRAWS else f"{number(100.0 * chance, 2)} %"
 
 
 def next_tests(
