@@ -15,7 +15,7 @@ from scipy.stats import qmc
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.surrogates.calibration import calibration_factors
 from doe_kc.surrogates.folds import refit_folds

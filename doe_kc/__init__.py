@@ -16,7 +16,7 @@ TYPE_CHECKING = False
 """As `typing.TYPE_CHECKING`, which costs as much to import as all the rest here."""
 
 if TYPE_CHECKING:
-    from doe_kc.api.axle import parameters, read_axle, with_effects, with_values
+    from doe_kc.api.axle import parameters, read_axle, types, with_effects, with_values
     from doe_kc.api.check import CheckResult, check
     from doe_kc.api.comparison import ComparisonResult, compare
     from doe_kc.api.correlation import CorrelationResult, correlate
@@ -70,6 +70,7 @@ _HOMES = {
     "sensitivities": "doe_kc.api.sensitivity",
     "simulate": "doe_kc.api.simulation",
     "surrogates": "doe_kc.api.surrogates",
+    "types": "doe_kc.api.axle",
     "with_effects": "doe_kc.api.axle",
     "with_values": "doe_kc.api.axle",
 }
@@ -111,6 +112,7 @@ __all__ = [
     "sensitivities",
     "simulate",
     "surrogates",
+    "types",
     "with_effects",
     "with_values",
 ]

@@ -30,7 +30,7 @@ from doe_kc.correlation.problem import Problem
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, reduce_measurement
 from doe_kc.targets import Targets, build_targets, improvements, mean_improvement
-from doe_kc.targets.comparison.interval import FLOOR
+from doe_kc.targets.comparison import FLOOR
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import VariableOptions, build_space
 

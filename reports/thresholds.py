@@ -17,7 +17,8 @@ HEAD = """# The numbers by which discovery decides
 
 Printed from `doe_kc/discovery/thresholds.py` by `python reports/thresholds.py`; the terms are those of
 the [glossary](glossary.md), the steps those of [discovery](discovery.md). "A choice" says that neither
-statistics nor the accuracy of rigs and benches fixes the number; what speaks for it follows.
+statistics nor the accuracy of rigs and benches fixes the number; what speaks for it follows. What other
+values give is measured by `python -m benchmarks.thresholds`.
 """
 
 

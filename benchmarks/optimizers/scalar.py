@@ -10,7 +10,7 @@ from optimizers.peer import Peer
 from scipy import optimize
 from scipy.stats import qmc
 
-from doe_kc.correlation.objectives import objectives
+from doe_kc.correlation.front import objectives
 from doe_kc.ground.typing import FloatArray
 
 BUDGET = 300

@@ -11,6 +11,8 @@ from doe_kc import axle_file
 from doe_kc.axle import Axle, design_parameters
 from doe_kc.axle import with_values as changed_axle
 from doe_kc.axle.geometry import check_geometry
+from doe_kc.axle_types import BUILT_IN, read_axle_type
+from doe_kc.axle_types.read import FOLDER
 from doe_kc.effects import apply_effect
 
 if TYPE_CHECKING:
@@ -87,3 +89,30 @@ def parameters(axle: Axle | str | PathLike[str]) -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame([vars(p) for p in design_parameters(as_axle(axle))]).set_index("path")
+
+
+def types() -> pd.DataFrame:
+    """The axle types, one row each, the name for `type` of an axle file as index.
+
+    Columns: label; bodies, with commas; bushings, balls, rods: how many connections of each kind (of one
+    side and the middle); rack: whether it steers; file: that describes it. mcpherson_front, an axle file
+    without type, is described by no file: its bodies are "" and its counts nan.
+
+    >>> kc.types().loc["five_link_rear", "label"]
+    'Five-link, rear'
+    """
+    import pandas as pd
+
+    rows: list[tuple[object, ...]] = [
+        ("mcpherson_front", "McPherson strut, front", "", *(None,) * 3, True, "")
+    ]
+    for name in BUILT_IN:
+        axle_type = read_axle_type(name, Path(), source=name)
+        s = axle_type.structure
+        bodies = ", ".join((*s.single_bodies, *s.bodies)).replace("_", " ")
+        counts = (len(s.bushings), len(s.balls), len(s.rods))
+        rows.append(
+            (name, axle_type.label, bodies, *counts, s.rack is not None, str(FOLDER / f"{name}.toml"))
+        )
+    columns = ["name", "label", "bodies", "bushings", "balls", "rods", "rack", "file"]
+    return pd.DataFrame(rows, columns=columns).set_index("name")

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 
@@ -18,14 +19,13 @@ from doe_kc.correlation.assessment import Assessment, Status, assess
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.correlation.result import Correlation
 from doe_kc.measurement import Measurement
-from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.report.correlation_characteristics import characteristic_rows, characteristic_table
 from doe_kc.report.correlation_evaluations import evaluation_table
 from doe_kc.report.correlation_parameters import parameter_table
 from doe_kc.report.correlation_terms import curve_table
 from doe_kc.report.render.csv import table_frame
 from doe_kc.study import Study
-from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.correlate import CorrelationChoices
 from doe_kc.workflow.correlate import correlate as run_correlation
 from doe_kc.workflow.measure import Reduced, study_records
 from doe_kc.workflow.reload_correlation import write_run
@@ -128,6 +128,48 @@ class CorrelationResult(FrameResult):
         )
 
 
+class CorrelatedAxle(FrameResult):
+    """A result that hands over one axle: what its correlation says of it."""
+
+    @property
+    @abstractmethod
+    def correlation(self) -> CorrelationResult:
+        """Of the axle that is handed over."""
+
+    @property
+    def status(self) -> Status:
+        """sound, doubtful or not_usable."""
+        return self.correlation.status
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why, in sentences; for a sound axle what was checked."""
+        return self.correlation.reasons
+
+    @property
+    def axle(self) -> Axle:
+        """The axle to use: with the effects that were adopted, correlated."""
+        return self.correlation.axle
+
+    @property
+    def characteristics(self) -> pd.DataFrame:
+        """As `CorrelationResult.characteristics`."""
+        return self.correlation.characteristics
+
+    @property
+    def parameters(self) -> pd.DataFrame:
+        """As `CorrelationResult.parameters`."""
+        return self.correlation.parameters
+
+    def to_frame(self) -> pd.DataFrame:
+        """`characteristics`."""
+        return self.characteristics
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """As `CorrelationResult.plot`."""
+        return self.correlation.plot(ax)
+
+
 def correlate(
     study: Study | str | PathLike[str],
     *,
@@ -141,7 +183,7 @@ def correlate(
     """Tune the study's variables to the measured car; every candidate is confirmed by the true solver.
 
     What the axle may lack is not looked for: `run` does that first. method ("ego", "gauss_newton", "pareto",
-    "hybrid", "smt_ego"), budget (true-solver evaluations): in place of the study's own. out: folder for what
+    "hybrid"), budget (true-solver evaluations): in place of the study's own. out: folder for what
     `doe-kc correlate --out` writes, its store among it, whose evaluations are not run again; by default
     nothing is written (but an outside solver's answers always go to the study's store). workers: processes,
     one per core by default. scheduler: address of a Dask scheduler. progress: called with (what, evaluations
@@ -160,13 +202,7 @@ def correlate(
     reduced = study_records(chosen)
     with stored(chosen, out) as kept:
         result = correlation_of(
-            kept,
-            reduced,
-            method=method,
-            budget=budget,
-            workers=workers,
-            scheduler=scheduler,
-            progress=progress,
+            kept, reduced, progress, method=method, budget=budget, workers=workers, scheduler=scheduler
         )
     if out is not None:
         write_run(result.correlation, Path(out) / "correlate")
@@ -177,31 +213,15 @@ def correlate(
 def correlation_of(
     study: Study,
     reduced: Reduced | None,
-    *,
-    adoption: Adoption | None = None,
-    selection: Selection | None = None,
-    method: str | None = None,
-    budget: int | None = None,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    progress: Progress | None = None,
+    progress: Progress | None,
+    **choices: Unpack[CorrelationChoices],
 ) -> CorrelationResult:
     """The same of records that are reduced already, with effects adopted before."""
-    advance = step_counter(progress, "correlating", budget or study.correlation.budget)
+    advance = step_counter(progress, "correlating", choices.get("budget") or study.correlation.budget)
 
     def watch(new: Sequence[Evaluated]) -> None:
         advance(len(new))
 
-    correlation = run_correlation(
-        study,
-        reduced,
-        adoption=adoption,
-        selection=selection,
-        method=method,
-        budget=budget,
-        workers=workers,
-        scheduler=scheduler,
-        watch=watch,
-    )
+    correlation = run_correlation(study, reduced, watch=watch, **choices)
     measurement = None if reduced is None else reduced.measurement
     return CorrelationResult(study, correlation, assess(correlation), measurement)

@@ -6,26 +6,18 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from doe_kc.api.comparison import ComparisonResult
-from doe_kc.api.correlation import CorrelationResult
-from doe_kc.api.frame_result import FrameResult
+from doe_kc.api.correlation import CorrelatedAxle, CorrelationResult
 from doe_kc.api.studies import as_study
-from doe_kc.axle import Axle
 from doe_kc.correlation.answer_record import AnswerRecord
-from doe_kc.correlation.assessment import Status
 from doe_kc.study import Study
 from doe_kc.workflow.answer import answer_lines
 from doe_kc.workflow.rebuild import Rebuilt, rebuild, write_rebuilt
 
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-
 
 @dataclass(frozen=True, repr=False, eq=False)
-class ReportResult(FrameResult):
+class ReportResult(CorrelatedAxle):
     """A correlation, or the answer of a run, as its folder holds it, rated by the study's present weights.
     rebuilt: the data of it."""
 
@@ -52,45 +44,12 @@ class ReportResult(FrameResult):
         return self.rebuilt.recalled.answer
 
     @property
-    def status(self) -> Status:
-        """sound, doubtful or not_usable."""
-        return self.correlation.status
-
-    @property
-    def reasons(self) -> tuple[str, ...]:
-        """Why, in sentences; for a sound axle what was checked."""
-        return self.correlation.reasons
-
-    @property
-    def axle(self) -> Axle:
-        """The axle to use."""
-        return self.correlation.axle
-
-    @property
-    def characteristics(self) -> pd.DataFrame:
-        """As `CorrelationResult.characteristics`."""
-        return self.correlation.characteristics
-
-    @property
-    def parameters(self) -> pd.DataFrame:
-        """As `CorrelationResult.parameters`."""
-        return self.correlation.parameters
-
-    def to_frame(self) -> pd.DataFrame:
-        """`characteristics`."""
-        return self.characteristics
-
-    @property
     def lines(self) -> list[str]:
         """Status, and of a run effects and gap, of a correlation what was done."""
         record = self.record
         if record is None:
             return self.correlation.lines
         return answer_lines(self.correlation.assessment, record)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """As `CorrelationResult.plot`."""
-        return self.correlation.plot(ax)
 
     def write(self, out: str | PathLike[str], *, workers: int | None = None) -> list[Path]:
         """What `doe-kc report` writes: `out`/correlate, and of a run `out`/compare and the answer at the top;

@@ -6,19 +6,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from doe_kc.api.comparison import ComparisonResult
-from doe_kc.api.correlation import CorrelationResult, correlation_of
+from doe_kc.api.correlation import CorrelatedAxle, CorrelationResult, correlation_of
 from doe_kc.api.discovery import DiscoveryResult, discovery_of
-from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.influence import InfluenceResult, influence_of
 from doe_kc.api.measurement import ReductionResult
 from doe_kc.api.simulation import SimulationResult
 from doe_kc.api.studies import Progress, as_study, stored
-from doe_kc.axle import Axle
 from doe_kc.correlation.answer_record import AnswerRecord
-from doe_kc.correlation.assessment import Status
 from doe_kc.correlation.result import Correlation
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
@@ -31,13 +27,9 @@ from doe_kc.workflow.influence import StudyInfluence
 from doe_kc.workflow.measure import Reduced
 from doe_kc.workflow.run_files import RunFiles
 
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-
 
 @dataclass(frozen=True, repr=False, eq=False)
-class RunResult(FrameResult):
+class RunResult(CorrelatedAxle):
     """What `doe-kc run` finds. chain: the data of every step."""
 
     study: Study
@@ -89,42 +81,9 @@ class RunResult(FrameResult):
         return self.chain.record
 
     @property
-    def status(self) -> Status:
-        """sound, doubtful or not_usable."""
-        return self.answer.assessment.status
-
-    @property
-    def reasons(self) -> tuple[str, ...]:
-        """Why, in sentences; for a sound axle what was checked."""
-        return self.answer.assessment.reasons
-
-    @property
-    def axle(self) -> Axle:
-        """The axle to use: with the effects that it lacked, correlated."""
-        return self.correlation.axle
-
-    @property
-    def characteristics(self) -> pd.DataFrame:
-        """As `CorrelationResult.characteristics`."""
-        return self.correlation.characteristics
-
-    @property
-    def parameters(self) -> pd.DataFrame:
-        """As `CorrelationResult.parameters`."""
-        return self.correlation.parameters
-
-    def to_frame(self) -> pd.DataFrame:
-        """`characteristics`."""
-        return self.characteristics
-
-    @property
     def lines(self) -> list[str]:
         """Status, effects added, gap."""
         return answer_lines(self.answer.assessment, self.record)
-
-    def plot(self, ax: Axes | None = None) -> Axes:
-        """As `CorrelationResult.plot`."""
-        return self.correlation.plot(ax)
 
     def write(self, out: str | PathLike[str], *, workers: int | None = None) -> list[Path]:
         """What `doe-kc run` writes in `out`: the answer (axle.toml, summary.json, index.html) and a folder a
@@ -173,11 +132,11 @@ def run(
         return correlation_of(
             of,
             reduced,
+            progress,
             adoption=adoption,
             selection=selection,
             workers=workers,
             scheduler=scheduler,
-            progress=progress,
         ).correlation
 
     with stored(chosen, out) as kept:

@@ -17,7 +17,7 @@ from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_csv
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.study import select
 

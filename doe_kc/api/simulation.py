@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from doe_kc.api.axle import as_axle
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.axle import Axle, axle_warnings
-from doe_kc.axle.roll import with_roll
+from doe_kc.axle.model import with_roll
 from doe_kc.curves import CurveSet
 from doe_kc.report.simulation_tables import characteristics_frame, curves_frame, write_simulation
 from doe_kc.solver.curve_set import curve_set

@@ -7,7 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from doe_kc.axle.topology import Topology
+from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import LoadCase
+from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 
 FORCE_AXES = ("Fx", "Fy", "Fz")
 
@@ -113,3 +115,12 @@ def strut_clamp(points: Mapping[str, Sequence[float]]) -> list[float]:
 def both(name: str, value: float) -> dict[str, float]:
     """The same value on both sides."""
     return {f"{name}@L": value, f"{name}@R": value}
+
+
+def with_roll(axle: Axle, technique: str | None, *, source: str = "roll") -> Axle:
+    """The axle with that roll technique, None: as it is; InputError for an unknown one."""
+    if technique is None:
+        return axle
+    if technique not in ROLL_TECHNIQUES:
+        raise InputError(f"{source} {technique}: expected {' or '.join(ROLL_TECHNIQUES)}.")
+    return replace(axle, load_cases={**axle.load_cases, "roll": ROLL_TECHNIQUES[technique]})

@@ -8,8 +8,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 
 from doe_kc.campaign.interrupts import Interrupts
-from doe_kc.campaign.record import Packed
-from doe_kc.campaign.task import Task
+from doe_kc.campaign.record import Packed, Task
 from doe_kc.ground.errors import RunError
 from doe_kc.true_solver.protocol import Values
 

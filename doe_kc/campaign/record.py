@@ -1,18 +1,59 @@
-"""One evaluation as it is kept: what a worker hands back, and the row around it."""
+"""One evaluation: its name in the store, its run in whatever process, and what is kept of it."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from doe_kc.campaign.curves_codec import pack, unpack
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import CurveSet
+from doe_kc.ground.errors import DoeKcError, InputError
 from doe_kc.ground.typing import FloatArray
-from doe_kc.true_solver.outcome import Outcome, reduced
+from doe_kc.solver.result import NotConverged
+from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
+from doe_kc.true_solver.protocol import TrueSolver, Values
+
+KEY_DIGITS = 12
+"""Significant digits that tell two designs apart: 0.1 + 0.2 is 0.3."""
+
+
+def rounded(value: float) -> float:
+    """The value with twelve significant digits; -0 is 0."""
+    return float(f"{value:.{KEY_DIGITS}g}") + 0.0
+
+
+def design_key(values: Mapping[str, float]) -> str:
+    """SHA-256 of the sorted path/value pairs, 64 hex digits; InputError for a value that is not finite."""
+    for path, value in values.items():
+        if not math.isfinite(value):
+            raise InputError(f"design: {path} = {value}, expected a finite number.")
+    pairs = [(path, repr(rounded(float(value)))) for path, value in sorted(values.items())]
+    return hashlib.sha256(json.dumps(pairs).encode()).hexdigest()
+
+
+def run_one(solver: TrueSolver, values: Values) -> Packed:
+    """One design, packed. InputError, RunError and MemoryError end the campaign, all else is a failure."""
+    try:
+        outcome = checked(solver.evaluate(values))
+    except NotConverged as error:
+        outcome = failure(str(error))
+    except (DoeKcError, MemoryError):
+        raise
+    except Exception as error:  # whatever an outside solver trips over
+        outcome = failure(f"{solver.name} raised {type(error).__name__}: {error}")
+    return packed_outcome(outcome)
+
+
+def task_for(solver: TrueSolver) -> Task:
+    """What to submit to an executor for each design."""
+    return partial(run_one, solver)
 
 
 @dataclass(frozen=True)
@@ -48,6 +89,9 @@ class StoredEvaluation:
     def status(self) -> str:
         """ok or failed."""
         return "failed" if self.packed.reason else "ok"
+
+
+Task = Callable[[Values], Packed]
 
 
 def packed_outcome(outcome: Outcome) -> Packed:

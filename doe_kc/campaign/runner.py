@@ -14,11 +14,9 @@ from pathlib import Path
 from doe_kc import __version__
 from doe_kc.campaign.executors import executor_for, in_process
 from doe_kc.campaign.interrupts import Interrupts
-from doe_kc.campaign.key import design_key
 from doe_kc.campaign.pending import PendingRuns
-from doe_kc.campaign.record import Packed, StoredEvaluation
+from doe_kc.campaign.record import Packed, StoredEvaluation, design_key, task_for
 from doe_kc.campaign.store import Store, open_store
-from doe_kc.campaign.task import task_for
 from doe_kc.ground.errors import DoeKcError, RunError
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver, Values

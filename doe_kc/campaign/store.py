@@ -10,11 +10,10 @@ from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
-from doe_kc.campaign import schema
+from doe_kc.campaign import store_file
 from doe_kc.campaign.curves_codec import DamagedCurves
-from doe_kc.campaign.lock import lock
 from doe_kc.campaign.record import Packed, StoredEvaluation, outcome_of
-from doe_kc.campaign.sql_errors import REMOVE, in_words
+from doe_kc.campaign.store_file import REMOVE, in_words, lock
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import make_folder
 from doe_kc.true_solver.outcome import Outcome
@@ -142,10 +141,10 @@ def open_store(path: Path | None, solver: TrueSolver) -> Store:
             undo.enter_context(closing(lock(path)))
         connection = undo.enter_context(closing(_connected(str(path or ":memory:"))))
         description = solver.describe()
-        if schema.is_empty(connection):
-            schema.create(connection, solver.fingerprint(), description)
-        meta = schema.read_meta(connection, where)
-        schema.check_solver(meta, solver.fingerprint(), description, where)
+        if store_file.is_empty(connection):
+            store_file.create(connection, solver.fingerprint(), description)
+        meta = store_file.read_meta(connection, where)
+        store_file.check_solver(meta, solver.fingerprint(), description, where)
         if path is not None:  # only now that the file is known to be ours: it changes its header
             connection.execute("PRAGMA journal_mode = WAL")
             connection.execute("PRAGMA synchronous = NORMAL")
@@ -159,7 +158,7 @@ def read_store(path: Path) -> Store:
     with ExitStack() as undo, in_words(str(path)):
         connection = undo.enter_context(closing(_connected(_to_read(path))))
         connection.execute("PRAGMA query_only = ON")
-        meta = schema.read_meta(connection, str(path))
+        meta = store_file.read_meta(connection, str(path))
         return Store(connection, path, meta, undo.pop_all())
 
 

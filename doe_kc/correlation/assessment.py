@@ -15,7 +15,7 @@ from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.search_targets import hold_distance, hold_rms
 from doe_kc.targets import Improvement
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval
 from doe_kc.targets.improvement import SIGNIFICANT
 
 Status = Literal["sound", "doubtful", "not_usable"]

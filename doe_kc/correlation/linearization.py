@@ -11,8 +11,12 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver import suite
-from doe_kc.solver.characteristic_gradient import characteristic_gradients
-from doe_kc.solver.curve_gradient import CurveGradients, curve_gradients, interpolated
+from doe_kc.solver.curve_gradient import (
+    CurveGradients,
+    characteristic_gradients,
+    curve_gradients,
+    interpolated,
+)
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.targets import CurveTarget

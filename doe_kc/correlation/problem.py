@@ -9,9 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from doe_kc.axle.model import Axle
+from doe_kc.correlation.least_squares import PRIOR_RIDGE, Prior
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
-from doe_kc.correlation.prior import PRIOR_RIDGE, Prior
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Rating, Score, Targets, rate, score

@@ -9,7 +9,7 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
-from doe_kc.campaign.key import design_key
+from doe_kc.campaign.record import design_key
 from doe_kc.campaign.store import Store
 from doe_kc.correlation.answer_record import AnswerRecord
 from doe_kc.correlation.assessment import Objection

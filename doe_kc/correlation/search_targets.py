@@ -20,7 +20,7 @@ from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.options import ObjectiveKind
 from doe_kc.correlation.reach import Relaxation
 from doe_kc.targets import Constraint, CurveTarget, MisfitTerm, Objective, Score, Target, Targets
-from doe_kc.targets.comparison.interval import INTERVAL_SHARE, constraint_interval
+from doe_kc.targets.comparison import INTERVAL_SHARE, constraint_interval
 from doe_kc.targets.improvement import SIGNIFICANT
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import Space

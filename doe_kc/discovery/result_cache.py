@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc import __version__
-from doe_kc.campaign.sql_errors import in_words
+from doe_kc.campaign.store_file import in_words
 from doe_kc.discovery.model import EffectModel
 from doe_kc.ground.output import make_folder
 from doe_kc.ground.typing import FloatArray

@@ -18,7 +18,7 @@ NOISE_SD_SHARE = 0.02
 """-, standard deviation of the noise's own size in a prediction. Taken from three runs of every load case."""
 TRACE_SD = 0.03
 """typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some of
-each: a choice, small beside the tenth that is worth a name."""
+each; `RELEVANT` is 3.3 of it, so that fewer than one trace in a thousand is large enough for a name."""
 
 TRACE_SEEN = 0.1
 """standard deviations of the records, below which a trace is left out. It moves nothing."""
@@ -44,13 +44,16 @@ LAST_STEP_DECREASE = 1.0
 """ln likelihood times 2, predicted decrease below which a step is the last and keeps the derivatives before
 it. One standard deviation; the quadratic convergence of Gauss-Newton leaves a hundredth of it."""
 FRESH_DECREASE = 3.0
-"""ln likelihood times 2, decrease since derivatives were taken up to which they may end a fit. A choice: less
-than two standard deviations, over which derivatives hardly change."""
+"""ln likelihood times 2, decrease since derivatives were taken up to which they may end a fit. Less than
+two standard deviations, over which derivatives hardly change: on a car with one effect 0.3 and 30 gave the
+same verdict and sizes to 0.1 %."""
 REUSE_DECREASE = 3000.0
-"""ln likelihood times 2, decrease below which old derivatives still lead on. A choice that saves
-solutions."""
+"""ln likelihood times 2, decrease below which old derivatives still lead on. On a car with
+one effect the sizes were the same to 0.1 % with fresh derivatives at every step (0), and from 300 to 30 000,
+at the same time within a tenth."""
 FIT_STEPS = 24
-"""-, steps of a fit at most. A choice: a fit that takes more is lost."""
+"""-, steps of a fit at most. A fit that takes more is lost: on a car with one effect 12 were enough
+for the same verdict and sizes."""
 REFIT_STEPS = 8
 """-, steps of a refit with a load case held out at most. It begins close to where it ends."""
 CHORD_STEPS = 6
@@ -63,9 +66,11 @@ FIT_POOR_RATIO = 0.25
 FIT_GOOD_RATIO = 0.75
 """-, decrease over its prediction, above which the trust radius grows. Usual (Conn, Gould, Toint 2000)."""
 LEAST_STEP = 0.0001
-"""prior standard deviations, trust radius below which a fit is given up. A choice, beyond any use."""
+"""prior standard deviations, trust radius below which a fit is given up. Beyond any
+use: on a car with one effect 0.001 and 0.00001 gave the same."""
 LARGEST_RADIUS = 2.0
-"""prior standard deviations, trust radius at most. Beyond, no axle is linear: a choice."""
+"""prior standard deviations, trust radius at most. Beyond, no axle is linear; on a car with one effect
+0.7 and 6 gave the same verdict and sizes."""
 AMPLITUDE_LIMIT = 2.0
 """times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is too
 large."""
@@ -111,13 +116,15 @@ PROBE = 0.3
 """typical sizes, first size at which an effect is solved for. Small enough to be nearly linear, large enough
 to open a clearance."""
 PROBE_FACTOR = 0.1
-"""-, factor of the first size where the effect is not linear below it. A choice: a tenth brings it to 0.03
-typical sizes, where effects that level off are still linear."""
+"""-, factor of the first size where the effect is not linear below it. A tenth brings it to 0.03
+typical sizes, where effects that level off are still linear; on a car with one effect 0.3 and 0.03 gave the
+same."""
 SCREEN_STEPS = 4
 """-, steps of a screening at most. A ranking needs no more: the leaders are refitted."""
 SCREEN_STEP_SHARES = (1.0, 0.5, 0.2, 0.05)
-"""-, shares of a step, tried one after the other until one gains. A choice: four solutions at most, down to a
-twentieth."""
+"""-, shares of a step, tried one after the other until one gains. Four solutions at most, down to a
+twentieth; on a car with one effect the whole step alone, and seven shares down to a hundredth, gave the
+same."""
 HOPELESS = 1.0
 """ln likelihood, that a step must promise over the model without the effect. Less is what noise gives any
 column."""
@@ -139,7 +146,8 @@ CHUNKS = 4
 # Refits
 
 REFITS_MOST = 5
-"""-, hypotheses that are refitted at each step. A choice: each costs a refit."""
+"""-, hypotheses that are refitted at each step. Each costs a refit; on a car with one
+effect 2, 3 and 10 gave the same verdict and sizes at the same time within a tenth."""
 RIVAL_CORRELATION = 0.3
 """-, |correlation| of what two effects explain, from which they are rivals. Below, both would be needed."""
 REFIT_SHARE = 0.2
@@ -201,8 +209,8 @@ NAME_ALWAYS_LEVEL = 10.0
 """standard deviations, from which an effect is named beside any other. A choice: far above the six of
 `NAME_LEVEL`."""
 GAP_CLOSURE = 0.9
-"""-, share of the gap that a name must close where the gap is clear of noise. A choice: a tenth is what laws
-leave."""
+"""-, share of the gap that a name must close where the gap is clear of noise. A law that is a tenth off, the
+largest of `DISCREPANCY_SHARES`, leaves a tenth."""
 GAP_CLEAR = 5.0
 """standard deviations of a sum of squares, beyond which a gap is clear of noise. Beyond all chance."""
 HARM = 6.0

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from doe_kc.campaign.in_process import InProcess
+from doe_kc.campaign.executors import InProcess
 from doe_kc.discovery.fit import Fit, cost_of, fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of

@@ -132,7 +132,10 @@ def _check_monotone(values: FloatArray, loop: Loop, label: str) -> None:
 
 
 DEGREE = 2
+"""Of the local polynomial: a line would flatten the curvature at a bump stop's contact, a cubic lets more
+noise through for a bias that is small already."""
 MIN_NEIGHBOURS = 7
+"""Samples under the kernel at least: two for each unknown of the quadratic, and one."""
 
 
 def local_weights(samples: FloatArray, grid: FloatArray, half_width: float) -> FloatArray:

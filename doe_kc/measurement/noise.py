@@ -13,9 +13,11 @@ from doe_kc.ground.typing import FloatArray
 
 Source = Literal["repeats", "resolution"]
 _ORDER = 4
+"""Of the differences: they annul the cubic that a smooth curve is between five neighbouring samples."""
 _BINOMIAL_NORM = 70.0**0.5
 """sqrt(1 + 16 + 36 + 16 + 1): sd of a fourth difference of unit white noise."""
 _MAD_TO_SD = 1.4826
+"""1 / Phi^-1(3/4): the median absolute value of a normal variable to its standard deviation."""
 _KEPT = 0.95
 """Share of the smallest differences that count where more than half vanish."""
 

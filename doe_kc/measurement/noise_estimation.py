@@ -20,6 +20,7 @@ _START = np.log([1.0, 2e-3, 0.5, 0.3])
 TYPICAL_GAIN = 2e-3
 """Run-to-run gain error assumed of a rig whose repeats are not at hand, -."""
 TYPICAL_LENGTH = 0.3
+"""The same of the correlation length, share of the amplitude; also where the likelihood starts from."""
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from doe_kc.measurement.trend import PolynomialTrend, fit_trends
 HALF_TRACK = 790.0
 """|y| of the design wheel centre, mm."""
 MIN_WINDOW_POINTS = 3
+"""A line through two points has no scatter to tell an error by."""
 _ALIGNMENT_KEYS = {"toe": "toe_deg", "camber": "camber_deg", "spin": "caster_deg"}
 
 

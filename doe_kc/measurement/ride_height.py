@@ -24,6 +24,8 @@ LOAD_RANGE = (-40.0, 50.0)
 SEARCH = 25.0
 """Largest ride-height difference looked for, mm either way."""
 _MARGIN = 2.0
+"""mm that a sweep must go beyond what is compared: curves are interpolated, never
+continued past their ends."""
 
 
 @dataclass(frozen=True)

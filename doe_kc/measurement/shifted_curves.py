@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline, PchipInterpolator
 
 _STENCIL = 3
+"""Points of a parabola."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from doe_kc.ground.typing import FloatArray
 
 MAX_DEGREE = 15
 TREND_FOLDS = 10
+"""Usual (Breiman, Spector, Int. Stat. Rev. 60, 1992)."""
 BLOCKS = 40
 """Blocks of neighbouring inputs, dealt out to the folds in turn: neighbours share noise and a branch."""
 

@@ -28,7 +28,7 @@ from doe_kc.parameter_influence.identifiability import (
 )
 from doe_kc.parameter_influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
 from doe_kc.parameter_influence.study import Influence
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval
 
 BOUND_TOLERANCE = 1e-6
 """Share of the range within which a move counts as being at its bound."""

@@ -18,7 +18,7 @@ from doe_kc.ground.errors import RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling.one_at_a_time import one_at_a_time
-from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.own import AxleSolver

@@ -19,7 +19,7 @@ from doe_kc.report.panel import Dash, PageBox, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.series import draw_series
 from doe_kc.report.sheet import Sheet, sheet
-from doe_kc.targets.comparison.compare import Comparison, same_input
+from doe_kc.targets.comparison import Comparison, same_input
 
 SIDE_COLOURS = (style.PALETTE["blue"], style.PALETTE["vermillion"])
 SIDE_NAMES = ("left", "right")

@@ -23,7 +23,7 @@ from doe_kc.report.table import (
     row_digits,
 )
 from doe_kc.targets import Improvement
-from doe_kc.targets.comparison.interval import FLOOR, constraint_interval
+from doe_kc.targets.comparison import FLOOR, constraint_interval
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from doe_kc.report.names import case_label, input_label, response_axis, without_
 from doe_kc.report.panel import Dash, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.sheet import Sheet, sheet
-from doe_kc.targets.comparison.compare import same_input
+from doe_kc.targets.comparison import same_input
 
 BAND_SDS = 2.0
 """Standard deviations of the measured mean curve that its band shows."""

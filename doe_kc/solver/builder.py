@@ -18,6 +18,7 @@ from doe_kc.solver.probe import Probe
 Response = Callable[[], ca.SX]
 
 FORCE_SCALE = 1.0
+"""N: the unit of the convergence norm."""
 MOMENT_SCALE = 100.0
 """N mm that weigh as much as 1 N in the convergence norm: a lever of 100 mm."""
 LENGTH_SCALE = 1e-3

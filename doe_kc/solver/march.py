@@ -18,6 +18,7 @@ from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.solver.newton import Iterate, Newton, NewtonSettings
 
 HISTORY = 4
+"""Equilibria that a prediction passes through: a cubic in the input."""
 PREDICTION_SHARE = 0.1
 """Largest distance between prediction and equilibrium, over the length of the predicted step."""
 SMOOTH = 0.03

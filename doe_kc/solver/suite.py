@@ -33,6 +33,7 @@ from doe_kc.solver.static import control_matrix, static_state
 
 log = logging.getLogger("doe_kc")
 SEEDS = 3
+"""Equilibria of the other branch before the static one, from which the first prediction is cubic."""
 
 
 def solve(

@@ -17,7 +17,7 @@ from doe_kc.curves import RIG_RESPONSES, CaseCurves
 from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement import Measurement
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
 from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from doe_kc.curves import CurveSet
 from doe_kc.ground.typing import FloatArray
-from doe_kc.targets.comparison.deviation import rms_deviation
+from doe_kc.targets.comparison import rms_deviation
 from doe_kc.targets.target import Constraint, Objective, Targets, sampled
 
 

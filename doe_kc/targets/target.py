@@ -12,7 +12,7 @@ import numpy as np
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.curves import CurveSet
 from doe_kc.ground.typing import FloatArray
-from doe_kc.targets.comparison.interval import FLOOR
+from doe_kc.targets.comparison import FLOOR
 from doe_kc.targets.options import Goal
 
 LIMIT_MARGIN = 5e-4

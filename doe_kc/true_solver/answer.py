@@ -21,6 +21,7 @@ from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 
 ROW_KEYS = ("load_case", "branch", "input", "input_unit", "side")
 NEARLY = 1e-9
+"""Relative: rounding of numbers that were written as text."""
 
 
 class Unreadable(Exception):

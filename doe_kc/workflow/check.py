@@ -23,7 +23,7 @@ from doe_kc.workflow.check_targets import (
     missed_targets,
     stated_intervals,
 )
-from doe_kc.workflow.measure import setup_differences
+from doe_kc.workflow.setup import setup_differences
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from doe_kc.curves import CurveSet
 from doe_kc.measurement import Manifest
 from doe_kc.study import Study
 from doe_kc.targets.build import first, last
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval
 
 
 @dataclass(frozen=True)

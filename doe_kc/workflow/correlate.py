@@ -5,17 +5,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
+from typing import TypedDict
 
 import numpy as np
 
 from doe_kc.campaign.runner import Campaign
-from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import Method, MethodSettings, method_class
 from doe_kc.correlation.posterior import ParameterPosterior, posterior
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
-from doe_kc.correlation.reach import Relaxation
+from doe_kc.correlation.reach import Relaxation, conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
@@ -113,6 +113,17 @@ def refit_proposal(problem: Problem, adoption: Adoption | None) -> list[Candidat
 
 
 Watch = Callable[[Sequence[Evaluated]], None]
+
+
+class CorrelationChoices(TypedDict, total=False):
+    """Keywords of `correlate` that callers hand on."""
+
+    adoption: Adoption | None
+    selection: Selection | None
+    method: str | None
+    budget: int | None
+    workers: int | None
+    scheduler: str | None
 
 
 @one_thread()

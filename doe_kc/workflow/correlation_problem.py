@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from doe_kc.axle.model import Axle
+from doe_kc.correlation.least_squares import PRIOR_RIDGE, RIDGE_MEASURED
 from doe_kc.correlation.likelihood import build_likelihood
 from doe_kc.correlation.linearization import Linearization, linearize
-from doe_kc.correlation.prior import PRIOR_RIDGE, RIDGE_MEASURED
 from doe_kc.correlation.problem import Problem
 from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets

@@ -21,7 +21,7 @@ from doe_kc.parameter_influence.study import Influence, influence_study
 from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval
 
 FORECAST_SHARE = 0.2
 """Of the constraint interval's half width: the error granted to a linear forecast of a target."""

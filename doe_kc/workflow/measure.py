@@ -1,4 +1,4 @@
-"""Reduce: rig records to curves, noise, gradients, targets, ride height and pictures; the rig's set-up."""
+"""Reduce: rig records to curves, noise, gradients, targets, ride height and pictures."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement import Manifest, Measurement, RideHeight, infer_ride_height, reduce_measurement
+from doe_kc.measurement import Measurement, RideHeight, infer_ride_height, reduce_measurement
 from doe_kc.report.measurement_tables import (
     gradient_table,
     measured_characteristic_table,
@@ -28,26 +28,7 @@ from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
-
-
-def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
-    """Where the rig's set-up is not the model's, in sentences."""
-    setup, offset = manifest.setup, getattr(axle.load_cases.get("lateral_offset"), "offset", None)
-    pairs = [
-        ("rack_mm_per_rev", setup.rack_mm_per_rev, axle.rack_mm_per_rev, "[steering] rack_mm_per_rev"),
-        ("lateral_offset_mm", setup.lateral_offset_mm, offset, "[load_cases.lateral_offset] offset"),
-        (
-            "reference_wheel_load_N",
-            setup.reference_wheel_load_N,
-            axle.values["tyre.static_load"],
-            "[tyre] static_load",
-        ),
-    ]
-    return [
-        f"{manifest.name}: the rig's {key} is {rig:g}, the model's {ours:g}; set {where} of the axle file."
-        for key, rig, ours, where in pairs
-        if rig is not None and ours and abs(rig - ours) > 1e-6 * abs(ours)
-    ]
+from doe_kc.workflow.setup import setup_differences
 
 
 def vertical_scatter(axle: Axle, solution: Solution) -> dict[str, FloatArray]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import doe_kc as kc
+from tests.cli.runner import succeeds
 from tests.reference import EXAMPLE
 
 AXLE = EXAMPLE / "axle.toml"
@@ -49,3 +52,11 @@ def test_parameters_are_those_that_can_be_set() -> None:
     same = kc.with_values(AXLE, frame["nominal"].to_dict())
     assert same.values == kc.read_axle(AXLE).values
     assert (frame["lower"] <= frame["nominal"]).all() and (frame["nominal"] <= frame["upper"]).all()
+
+
+def test_the_types_are_those_of_the_command() -> None:
+    frame = kc.types()
+    listed = succeeds("types").out.splitlines()[:-1]
+    assert [line.split()[0] for line in listed] == list(frame.index)
+    assert all(row["label"] in line for (_, row), line in zip(frame.iterrows(), listed, strict=True))
+    assert frame["bushings"].iloc[1:].ge(0).all() and Path(frame["file"].iloc[1]).is_file()

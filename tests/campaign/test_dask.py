@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.campaign import dask_cluster
+from doe_kc.campaign import executors
 from doe_kc.campaign.executors import dask
 from doe_kc.campaign.runner import Campaign
 from doe_kc.ground.errors import InputError
@@ -100,7 +100,7 @@ def test_bad_input_comes_back_from_the_cluster(
 
 def test_nobody_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("distributed", reason="the extra dask is not in")
-    monkeypatch.setattr(dask_cluster, "TIMEOUT", "1s")
+    monkeypatch.setattr(executors, "TIMEOUT", "1s")
     with pytest.raises(InputError, match=r"--scheduler tcp://127\.0\.0\.1:9: no Dask scheduler answers"):
         dask("tcp://127.0.0.1:9")
     with pytest.raises(InputError, match="no Dask scheduler answers"):

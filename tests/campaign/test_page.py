@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.campaign.schema import STORE_SCHEMA
+from doe_kc.campaign.store_file import STORE_SCHEMA
 from doe_kc.sampling import SAMPLERS
 from doe_kc.sampling.options import SamplingOptions
 

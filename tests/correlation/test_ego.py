@@ -7,17 +7,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from doe_kc.correlation.least_squares import Prior
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
-from doe_kc.correlation.methods.ego.calibration import VarianceCalibration
-from doe_kc.correlation.methods.ego.improvement import ExpectedImprovement
-from doe_kc.correlation.methods.ego.strategy import EGO_PATIENCE, PROPOSAL_CYCLE, RESTARTS, Strategy
+from doe_kc.correlation.methods.ego.proposer import ExpectedImprovement
+from doe_kc.correlation.methods.ego.strategy import (
+    EGO_PATIENCE,
+    PROPOSAL_CYCLE,
+    RESTARTS,
+    Strategy,
+    VarianceCalibration,
+)
 from doe_kc.correlation.modelled.archive import build_archive
-from doe_kc.correlation.modelled.maximizer import gauss_newton
+from doe_kc.correlation.modelled.proposal import gauss_newton
 from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.correlation.options import Gradients
-from doe_kc.correlation.prior import Prior
 from doe_kc.correlation.problem import Candidate, Evaluated, RatingForecast
 from doe_kc.surrogates.models.gp import GaussianProcess
 from doe_kc.targets import Score, improvements, mean_improvement

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import with_values
-from doe_kc.correlation.constraint_penalty import ConstraintPenalty
+from doe_kc.correlation.least_squares import ConstraintPenalty
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
 from doe_kc.correlation.posterior import posterior

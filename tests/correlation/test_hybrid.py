@@ -10,8 +10,8 @@ from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods._base import MethodSettings
 from doe_kc.correlation.methods.hybrid import method as hybrid
 from doe_kc.correlation.methods.hybrid.evolution import DifferentialEvolution, Mutation
-from doe_kc.correlation.methods.hybrid.linear_model import linear_model
 from doe_kc.correlation.methods.hybrid.method import Hybrid
+from doe_kc.correlation.methods.hybrid.model_searches import linear_model
 from doe_kc.correlation.methods.hybrid.search import LEAST_CREDIT, Credit, SearchTrial, reward
 from doe_kc.correlation.modelled.history import SearchHistory, nearest
 from doe_kc.correlation.problem import Candidate, Evaluated

@@ -8,16 +8,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.correlation.front import VIOLATION, front_of, knee, non_dominated
+from doe_kc.correlation.front import (
+    VIOLATION,
+    front_of,
+    knee,
+    non_dominated,
+    objectives,
+    relative_violation,
+    weighted,
+)
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods._base import MethodSettings
-from doe_kc.correlation.methods.pareto.infill import spread_out
+from doe_kc.correlation.methods.pareto.infill import ModelledObjectives, spread_out
 from doe_kc.correlation.methods.pareto.method import Pareto
-from doe_kc.correlation.methods.pareto.modelled_objectives import ModelledObjectives
 from doe_kc.correlation.methods.pareto.nsga3 import nsga3, reference_directions
 from doe_kc.correlation.modelled.archive import build_archive
-from doe_kc.correlation.modelled.output_model import fit_outputs
-from doe_kc.correlation.objectives import objectives, relative_violation, weighted
+from doe_kc.correlation.modelled.proposal import fit_outputs
 from doe_kc.correlation.problem import Candidate, Evaluated
 from doe_kc.ground.errors import InputError
 from doe_kc.targets import Targets, rate

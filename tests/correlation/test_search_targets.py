@@ -16,7 +16,7 @@ from doe_kc.correlation.search_targets import (
     search_targets,
 )
 from doe_kc.targets import CharacteristicOptions, Score, Targets, build_targets, score
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval
 from doe_kc.targets.options import CurveOptions
 from doe_kc.true_solver.outcome import Outcome
 from tests.correlation.cases import AXLE, measured, outcome, problem

@@ -18,8 +18,7 @@ from doe_kc.solver.assembly import assemble
 from doe_kc.solver.curve_gradient import CurveGradients
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.wheel import SPIN_STIFFNESS
-from doe_kc.solver.interface_columns import law_columns
-from doe_kc.solver.interface_laws import LAWS, stop_operator
+from doe_kc.solver.interface_columns import LAWS, law_columns, stop_operator
 from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.probe import Probe

@@ -12,7 +12,7 @@ from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
 from doe_kc.axle.parameters import settable_paths
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.effects import apply_effect
-from doe_kc.solver.characteristic_gradient import characteristic_gradients
+from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
 from doe_kc.solver.kernel import kernel

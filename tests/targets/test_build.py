@@ -12,8 +12,7 @@ from doe_kc.ground.files import validate
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.targets import CharacteristicOptions, CurveOptions, Targets, build_targets, score
-from doe_kc.targets.comparison.deviation import rms_deviation
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import constraint_interval, rms_deviation
 from tests.correlation.cases import measured
 from tests.reference import nominal
 

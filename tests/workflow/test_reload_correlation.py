@@ -9,8 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from doe_kc.campaign.key import design_key
-from doe_kc.campaign.record import StoredEvaluation, packed_outcome
+from doe_kc.campaign.record import StoredEvaluation, design_key, packed_outcome
 from doe_kc.campaign.store import open_store
 from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
 from doe_kc.correlation.assessment import Objection

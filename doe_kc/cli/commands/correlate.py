@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Unpack
 
 import typer
 
@@ -13,9 +13,8 @@ from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.output import write_json
-from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.study import Study
-from doe_kc.workflow.adopt import Adoption
+from doe_kc.workflow.correlate import CorrelationChoices
 from doe_kc.workflow.correlate import correlate as run_correlation
 from doe_kc.workflow.measure import Reduced, study_records
 from doe_kc.workflow.reload_correlation import write_run
@@ -67,27 +66,7 @@ def leave_unless_usable(assessment: Assessment) -> None:
         raise typer.Exit(RunError.exit_code)
 
 
-def correlated(
-    study: Study,
-    reduced: Reduced | None,
-    *,
-    adoption: Adoption | None = None,
-    selection: Selection | None = None,
-    method: str | None = None,
-    budget: int | None = None,
-    workers: int | None = None,
-    scheduler: str | None = None,
-) -> Correlation:
+def correlated(study: Study, reduced: Reduced | None, **choices: Unpack[CorrelationChoices]) -> Correlation:
     """The correlation, its progress shown."""
-    with correlation_bar(budget or study.correlation.budget) as watch:
-        return run_correlation(
-            study,
-            reduced,
-            adoption=adoption,
-            selection=selection,
-            method=method,
-            budget=budget,
-            workers=workers,
-            scheduler=scheduler,
-            watch=watch,
-        )
+    with correlation_bar(choices.get("budget") or study.correlation.budget) as watch:
+        return run_correlation(study, reduced, watch=watch, **choices)

@@ -14,8 +14,8 @@ import typer
 
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.geometry import check_geometry
+from doe_kc.axle.model import with_roll
 from doe_kc.axle.plausibility import axle_warnings
-from doe_kc.axle.roll import with_roll
 from doe_kc.axle_file import read_axle
 from doe_kc.cli._app import app
 from doe_kc.cli.options import JsonOption, PictureChoice

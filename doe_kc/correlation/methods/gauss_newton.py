@@ -15,8 +15,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 
-from doe_kc.correlation.constraint_penalty import ConstraintPenalty
-from doe_kc.correlation.least_squares import bounded_step, normal_equations
+from doe_kc.correlation.least_squares import ConstraintPenalty, bounded_step, normal_equations
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.methods._base import Method, MethodSettings, best_design, register
 from doe_kc.correlation.modelled.trust_region import RadiusRule, TrustRegion

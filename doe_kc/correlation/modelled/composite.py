@@ -12,8 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.correlation.modelled.curve_terms import CurveTerms
-from doe_kc.correlation.modelled.scalar_terms import ConstraintTerms, ObjectiveTerms
+from doe_kc.correlation.modelled.terms import ConstraintTerms, CurveTerms, ObjectiveTerms
 from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
 

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from doe_kc.correlation.modelled.archive import Archive, build_archive
-from doe_kc.correlation.modelled.output_model import fit_outputs, level_steps
+from doe_kc.correlation.modelled.proposal import fit_outputs, level_steps
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
@@ -18,6 +18,7 @@ from doe_kc.surrogates.training import constant_outputs
 ROWS = 160
 """Designs that surrogates are fitted to, those nearest the best one: the cost grows with their cube."""
 TRIES = 200
+"""A guard: only on very few levels are so many neighbours known."""
 MODEL_DESIGNS = 5
 """Sound designs below which nothing is modelled."""
 NUGGET = 1e-5

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.correlation.modelled.output_model import level_steps
+from doe_kc.correlation.modelled.proposal import level_steps
 from doe_kc.correlation.modelled.unit_samples import latin_hypercube
 from doe_kc.correlation.problem import Candidate
 from doe_kc.ground.typing import FloatArray

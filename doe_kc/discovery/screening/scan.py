@@ -18,8 +18,7 @@ from doe_kc.axle.structure import of_side
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.thresholds import COLUMN_SHARE, PLACE_PROBABILITY
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.interface_columns import law_columns
-from doe_kc.solver.interface_laws import LAWS
+from doe_kc.solver.interface_columns import LAWS, law_columns
 from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.probe import Probe
 

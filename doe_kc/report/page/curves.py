@@ -16,7 +16,7 @@ from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_curves import BAND_SDS, CaseView, case_views
 from doe_kc.report.names import case_label, input_label, response_axis
 from doe_kc.report.render.page import Section, embedded, render
-from doe_kc.targets.comparison.deviation import rms_deviation
+from doe_kc.targets.comparison import rms_deviation
 
 
 @dataclass(frozen=True)

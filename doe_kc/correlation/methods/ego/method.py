@@ -19,12 +19,11 @@ import numpy as np
 from doe_kc.correlation.least_squares import most_probable_step
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
-from doe_kc.correlation.methods.ego.calibration import VarianceCalibration
 from doe_kc.correlation.methods.ego.proposer import Proposer
-from doe_kc.correlation.methods.ego.strategy import PATIENCE_WITH_SLOPES, Strategy
+from doe_kc.correlation.methods.ego.strategy import PATIENCE_WITH_SLOPES, Strategy, VarianceCalibration
 from doe_kc.correlation.modelled.archive import Archive, Slopes, build_archive
 from doe_kc.correlation.modelled.initial_design import InitialDesign
-from doe_kc.correlation.modelled.output_model import fit_outputs
+from doe_kc.correlation.modelled.proposal import fit_outputs
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
 

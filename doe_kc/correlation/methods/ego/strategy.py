@@ -1,13 +1,49 @@
-"""What to propose next: how much to trust the surrogates, and when to stop."""
+"""What to propose next: how far to trust the surrogates, calibrated by confirmed candidates; when to stop."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from doe_kc.correlation.modelled.trust_region import RadiusRule, TrustRegion
+from doe_kc.correlation.problem import Evaluated
+
+MEMORY = 6
+"""Last confirmations that count."""
+LIMITS = (1e-3, 10.0)
+"""Of the factor: a run of luck must not make predictions certain, nor bad luck drown what the model knows."""
+
+
+class VarianceCalibration:
+    """`factor`: of the predicted variances that the last confirmations ask for."""
+
+    def __init__(self) -> None:
+        self._ratios = [1.0]
+
+    @property
+    def factor(self) -> float:
+        """Geometric mean of the squared errors over the predicted variances."""
+        return float(np.clip(np.exp(np.mean(np.log(self._ratios[-MEMORY:]))), *LIMITS))
+
+    def learn(self, answers: Iterable[Evaluated]) -> None:
+        """From answers to candidates whose standard deviations carried the present factor."""
+        factor = self.factor
+        self._ratios.extend(r for a in answers if (r := _squared_error(a, factor)) is not None)
+
+
+def _squared_error(answer: Evaluated, factor: float) -> float | None:
+    predicted = answer.candidate.predicted
+    if answer.score is None or predicted is None:
+        return None
+    doubted = predicted.sd > 0.0  # the others never change, or are predicted to round-off
+    if not doubted.any():
+        return None
+    z = (answer.score.values - predicted.values)[doubted] / predicted.sd[doubted]
+    return max(factor * float(np.mean(z**2)), 1e-6)
+
 
 ProposalKind = Literal["Gauss-Newton", "expected improvement", "trust region", "restart"]
 PROPOSAL_CYCLE: tuple[ProposalKind, ...] = ("Gauss-Newton", "expected improvement", "trust region")
@@ -22,6 +58,7 @@ RESTARTS = 3
 DARE, FEAR = 0.3, 3.0
 """Factors of the risk aversion after a worthwhile Gauss-Newton proposal and after another."""
 AVERSION = (1e-3, 1.0)
+"""From the mean taken at its word to the expected rating, in which a variance counts in full."""
 EGO_RADIUS = RadiusRule(first=0.1, smallest=0.02, largest=0.3, shrinkage=0.7, growth=1.6, floor="stay")
 """Of the trust region in which predictions are taken at their word."""
 FIRST_REGION = TrustRegion.first(EGO_RADIUS)

@@ -14,16 +14,14 @@ from typing import ClassVar, final
 
 import numpy as np
 
-from doe_kc.correlation.front import Front, front_of, knee
+from doe_kc.correlation.front import Front, front_of, knee, objectives
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
-from doe_kc.correlation.methods.pareto.infill import predicted_front, spread_out
-from doe_kc.correlation.methods.pareto.modelled_objectives import ModelledObjectives
+from doe_kc.correlation.methods.pareto.infill import ModelledObjectives, predicted_front, spread_out
 from doe_kc.correlation.methods.pareto.nsga3 import check_installed
 from doe_kc.correlation.modelled.history import SearchHistory
-from doe_kc.correlation.modelled.output_model import best_predicted, forecast
+from doe_kc.correlation.modelled.proposal import best_predicted, forecast
 from doe_kc.correlation.modelled.trust_region import RadiusRule, TrustBox, TrustRegion
-from doe_kc.correlation.objectives import objectives
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.ground.typing import FloatArray
 

@@ -1,14 +1,76 @@
-"""Tables of the store, and whether a file is a store of the same model and solver."""
+"""The store's file: its lock, its tables and whose they are, and its errors in words."""
 
 from __future__ import annotations
 
 import json
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from datetime import UTC, datetime
+from pathlib import Path
 
-from doe_kc.campaign.sql_errors import REMOVE
-from doe_kc.ground.errors import InputError
+from doe_kc.ground.errors import DoeKcError, InputError, RunError
+
+
+def lock(path: Path) -> sqlite3.Connection:
+    """Holds `path`.lock until the connection is closed; RunError when another run has it.
+
+    SQLite's own lock on an empty file beside the store: worker processes do not inherit it, as they would
+    an flock, and readers of the store are not in its way.
+    """
+    place = path.with_name(path.name + ".lock")
+    try:
+        connection = sqlite3.connect(place, timeout=0.0, isolation_level=None)
+    except sqlite3.DatabaseError as error:
+        raise translated(error, str(place)) from None
+    try:
+        connection.execute("BEGIN EXCLUSIVE")
+    except sqlite3.DatabaseError as error:
+        connection.close()
+        if (error.sqlite_errorname or "").startswith("SQLITE_BUSY"):
+            raise RunError(
+                f"{path}: another run is writing to this store; wait until it has ended, or choose another "
+                "folder with --out."
+            ) from None
+        raise translated(error, str(place)) from None
+    return connection
+
+
+DAMAGED = ("SQLITE_NOTADB", "SQLITE_CORRUPT", "SQLITE_FORMAT")
+REMOVE = "move it away and run again, or choose another folder with --out"
+
+
+@contextmanager
+def in_words(where: str) -> Iterator[None]:
+    """InputError for a file that is no sound store, RunError for a disk that is full or not writable."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        raise translated(error, where) from None
+
+
+def translated(error: sqlite3.DatabaseError, where: str) -> DoeKcError:
+    """The error to raise in place of SQLite's."""
+    code = getattr(error, "sqlite_errorname", "") or ""
+    if code.startswith(DAMAGED):
+        return InputError(f"{where}: is not a store of evaluations, or is damaged ({error}); {REMOVE}.")
+    if code.startswith("SQLITE_FULL"):
+        return RunError(
+            f"{where}: the disk is full; the evaluations stored before are kept. Free some space and give "
+            "the same command again."
+        )
+    if code.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_PERM", "SQLITE_AUTH")):
+        return RunError(
+            f"{where}: cannot be written ({error}); make file and folder writable, or choose another folder "
+            "with --out."
+        )
+    if code.startswith(("SQLITE_BUSY", "SQLITE_LOCKED")):
+        return RunError(f"{where}: another program holds the file ({error}); wait for it or end it.")
+    return RunError(
+        f"{where}: cannot be read or written ({error}); the evaluations stored before are kept. Check the "
+        "disk and give the same command again."
+    )
+
 
 SCHEMA = 1
 STORE_SCHEMA = """
@@ -28,6 +90,7 @@ CREATE TABLE evaluations (
 );
 """
 DIFFERENCES = 3
+"""Of another solver that one sentence lists."""
 
 
 def create(connection: sqlite3.Connection, fingerprint: str, description: Mapping[str, str]) -> None:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from doe_kc.campaign.key import design_key
+from doe_kc.campaign.record import design_key
 from doe_kc.ground.errors import InputError
 
 NUMBER = st.floats(min_value=1e-6, max_value=1e6) | st.floats(min_value=-1e6, max_value=-1e-6)

@@ -13,10 +13,7 @@ from hypothesis import strategies as st
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
-from doe_kc.targets.comparison import compare
-from doe_kc.targets.comparison.compare import resample
-from doe_kc.targets.comparison.deviation import rms_deviation
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.targets.comparison import compare, constraint_interval, resample, rms_deviation
 
 SLOPES = {"toe": 0.02, "camber": -0.015, "caster": 0.04, "spin": 0.03, "wc_x": 0.05, "wc_y": -0.1}
 

@@ -1,4 +1,4 @@
-"""Puts a model's curves beside measured ones."""
+"""Model against measurement: characteristics with constraint intervals, curves with RMS deviations."""
 
 from __future__ import annotations
 
@@ -11,8 +11,29 @@ import numpy as np
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.curves import RIG_RESPONSES, SIDES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
-from doe_kc.targets.comparison.deviation import rms_deviation
-from doe_kc.targets.comparison.interval import constraint_interval
+
+INTERVAL_SHARE = 0.15
+"""Of the target: the half width of its constraint interval (equation 5.1 of the thesis)."""
+FLOOR = 0.005
+"""Added to the target's square, so that the interval of a target near 0 has a width (equation 5.2)."""
+
+
+def constraint_interval(target: float) -> tuple[float, float]:
+    """(low, high) = target -+ 0.15 sqrt(target^2 + 0.005), in the target's unit.
+
+    Widens the relative interval of targets close to zero.
+    """
+    half = INTERVAL_SHARE * math.sqrt(target**2 + FLOOR)
+    return target - half, target + half
+
+
+def rms_deviation(curve: FloatArray, target: FloatArray) -> float:
+    """sqrt(1/N sum (y_i - y'_i)^2), in the unit of y.
+
+    curve, target: (n,) on the same inputs. The thesis prints the input's increment under the root too, which
+    gives the result the unit of y times the root of the input's; here it is 1.
+    """
+    return float(np.sqrt(np.mean((curve - target) ** 2)))
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from doe_kc.correlation.modelled.levels import descend
+from doe_kc.correlation.modelled.proposal import descend
 
 
 @pytest.mark.parametrize("seed", range(5))
