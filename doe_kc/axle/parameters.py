@@ -196,18 +196,22 @@ def internal_gradient(axle: Axle, path: str, *, source: str = "parameter") -> di
 
 def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[str, float]]:
     name, side = _split(axle, path, source)
-    change = _to_left(name, side, value) - axle.values[_internal(axle, name, side or "L")]
-    reference = axle.values[_internal(axle, name, side or "L")]
-    for each in (side,) if side else ("L", "R"):
-        internal = _internal(axle, name, each)
-        scales = must_be_positive(name) and reference != 0
-        yield internal, change * (axle.values[internal] / reference if scales else 1.0)
-        if "@" not in internal:
-            return
+    known, sides = axle.values, (side,) if side else ("L", "R")
+    reference = known[_internal(axle, name, sides[0])]
+    change = _to_left(name, side, value) - reference
+    scales = reference != 0 and must_be_positive(name)
+    if f"{name}@{sides[0]}" not in known:
+        yield name, change * (known[name] / reference if scales else 1.0)
+        return
+    for each in sides:
+        internal = f"{name}@{each}"
+        yield internal, change * (known[internal] / reference if scales else 1.0)
     point, _, axis = name.partition(".")
+    if axis not in "xyz":
+        return
     for follower, leader in axle.follow.items():
-        if leader == point and axis in "xyz":
-            for each in (side,) if side else ("L", "R"):
+        if leader == point:
+            for each in sides:
                 yield f"{follower}.{axis}@{each}", change
 
 

@@ -6,6 +6,7 @@ Points of a side are the left side's, mirrored in y for the right; those of `sin
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 CHASSIS = "body"
@@ -128,6 +129,29 @@ class Structure:
     def on_side(self, body: str, side: str) -> str:
         """Name of a body's instance on a side: `arm.L`, or the name itself of a single one."""
         return body if body == CHASSIS or body in self.single_bodies else f"{body}.{side}"
+
+    def places(self) -> Iterator[tuple[str, str]]:
+        """(body, hardpoint) of all that connections and the wheel name; a point may be on several bodies."""
+        yield self.carrier, "WLC"
+        for ball in self.balls:
+            yield from ((ball.a, ball.at), (ball.b, ball.at))
+        for bush in self.bushings:
+            yield from ((bush.outer, bush.at), (bush.inner, bush.at))
+        damper = () if self.damper is None else (self.damper,)
+        for line in (*self.rods, *self.cylindricals, *self.springs, *damper):
+            yield from ((line.a, line.at_a), (line.b, line.at_b))
+        if self.bar is not None:
+            yield self.bar.body, self.bar.at
+        if (pin := self.kingpin) is not None:
+            yield from ((pin.lower_body, pin.lower), (pin.upper_body, pin.upper))
+
+    def body_at(self, point: str) -> str:
+        """The first moving body that carries a hardpoint; the vehicle body where none does."""
+        return next((body for body, at in self.places() if at == point and body != CHASSIS), CHASSIS)
+
+    def points_on(self, body: str) -> tuple[str, ...]:
+        """Hardpoints on a body, each once."""
+        return tuple(dict.fromkeys(at for name, at in self.places() if name == body))
 
 
 def of_side(name: str, side: str) -> str:

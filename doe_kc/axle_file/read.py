@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from doe_kc.axle.freedoms import check_freedoms
 from doe_kc.axle.geometry import check_geometry
 from doe_kc.axle.model import BUSHING_AXES, STRUT_BENDING, STRUT_TORSION, Axle, both, strut_clamp
 from doe_kc.axle.parameters import with_values
@@ -32,6 +33,8 @@ def axle_from_document(document: Mapping[str, Any], *, source: str, folder: Path
         refuse_on_rig(ident, source)
         axle = apply_effect(axle, ident, options, source=source)
     check_geometry(axle, source)
+    if axle.topology.structure is not None:
+        check_freedoms(axle, axle.topology.structure, source)
     return axle
 
 

@@ -12,7 +12,7 @@ from doe_kc.ground.errors import InputError, nearest
 
 
 class BallEffect(Effect):
-    """joints: those that have it, each with its side; all by default."""
+    """joints: those that have it, each with its side; none named: all."""
 
     def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         """Each ball joint, on both sides alike."""
@@ -30,7 +30,7 @@ class BallEffect(Effect):
         self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
-        joints = checked["joints"] if "joints" in options else list(places.balls)
+        joints = checked["joints"] or list(places.balls)
         joints = list(joints) if isinstance(joints, list | tuple) else [joints]
         wrong = [name for name in joints if name not in places.balls]
         if wrong or not joints:

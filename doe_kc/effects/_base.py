@@ -161,9 +161,9 @@ def effect(cls: type[Effect]) -> type[Effect]:
 def observed(axle: Axle, curves: CurveSet) -> CurveSet:
     """What the rig reads of the axle's own curves, with the faults that it has among its effects."""
     for ident, options in axle.effects.items():
-        found = EFFECTS[ident]
-        if found.on_rig:
-            curves = found.observe(curves, found.read(options, axle.name))
+        effect = EFFECTS[ident]
+        if effect.on_rig:
+            curves = effect.observe(curves, effect.read(options, axle.name))
     return curves
 
 
@@ -174,17 +174,17 @@ def apply_effect(axle: Axle, ident: str, options: Mapping[str, Any], *, source: 
         raise InputError(
             f"{source}: unknown effect {ident!r}; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
         )
-    found = EFFECTS[ident]
-    changed = found.apply(axle, options, source)
+    effect = EFFECTS[ident]
+    changed = effect.apply(axle, options, source)
     before = axle.effects.get(ident)
-    all_options = dict(options) if before is None else found.combined(before, options, changed)
+    all_options = dict(options) if before is None else effect.combined(before, options, changed)
     return replace(changed, effects={**axle.effects, ident: all_options})
 
 
 def refuse_on_rig(ident: str, source: str) -> None:
     """InputError for a fault of the measurement in an axle file."""
-    found = EFFECTS.get(ident)
-    if found is not None and found.on_rig:
+    effect = EFFECTS.get(ident)
+    if effect is not None and effect.on_rig:
         raise InputError(
             f"{source}: [effects.{ident}] is a fault of the measurement, but an axle file describes an axle; "
             "expected an effect in the car. Remove the table and correct the records instead."

@@ -1,16 +1,19 @@
-"""Raw tables of text or numbers, from CSV bytes, with the row numbers that messages need."""
+"""Raw tables of text or numbers, of CSV bytes or an Excel sheet, with the row numbers that messages need."""
 
 from __future__ import annotations
 
+import io
 import math
 import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from doe_kc.ground.errors import InputError
+from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 
 Cell = str | float | None
@@ -150,9 +153,9 @@ def number_at(table: RecordTable, row: int, column: int) -> float:
     value = _number(cell, table.decimal_comma)
     if value is not None and math.isfinite(value):
         return value
-    found = "is empty" if cell is None or cell == "" else f'holds "{_short(cell)}"'
+    fault = "is empty" if cell is None or cell == "" else f'holds "{_short(cell)}"'
     raise InputError(
-        f'{table.label}: row {table.numbers[row]}, column "{table.headings[column]}" {found}; '
+        f'{table.label}: row {table.numbers[row]}, column "{table.headings[column]}" {fault}; '
         "expected a finite number, so mend the cell or record the channel again."
     )
 
@@ -169,3 +172,78 @@ def _number(cell: Cell, decimal_comma: bool) -> float | None:
 def _short(cell: Cell) -> str:
     text = str(cell)
     return text if len(text) <= 24 else text[:21] + "..."
+
+
+def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> RecordTable:
+    """Table of a sheet of an .xlsx file: the named, else the only one, else `load_case`.
+
+    Values only: a formula counts by its stored result. InputError when file or sheet cannot be used.
+    """
+    data = read_bytes(path)
+    if not data.startswith(ZIP_MAGIC):
+        raise InputError(
+            f"{path}: is not an Excel workbook in spite of its name; expected .xlsx contents, "
+            "so save it from Excel as .xlsx, or rename it to .csv if it is text."
+        )
+    rows, title = _read(path, data, sheet, load_case)
+    return _table(f"{path}#{title}", rows)
+
+
+def _read(path: Path, data: bytes, sheet: str | None, load_case: str) -> tuple[list[tuple[Any, ...]], str]:
+    import openpyxl
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # openpyxl warns of extensions that hold no values
+            book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
+            title = _choose(path, list(book.sheetnames), sheet, load_case)
+            return list(book[title].iter_rows(values_only=True)), title
+    except InputError:
+        raise
+    except Exception as error:  # a damaged workbook fails anywhere inside zip, XML or openpyxl
+        raise InputError(
+            f"{path}: cannot be read as an Excel workbook ({type(error).__name__}); "
+            "expected an undamaged .xlsx, save it again from Excel."
+        ) from None
+
+
+def _choose(path: Path, titles: list[str], sheet: str | None, load_case: str) -> str:
+    if sheet is None and len(titles) == 1:
+        return titles[0]
+    wanted = load_case if sheet is None else sheet
+    if wanted in titles:
+        return wanted
+    raise InputError(
+        f'{path}: has no sheet "{wanted}", its sheets are {", ".join(titles)};'
+        f"{nearest(wanted, titles)} Write the record as {path.name}#Sheet."
+    )
+
+
+def _table(label: str, rows: list[tuple[Any, ...]]) -> RecordTable:
+    filled = [(i + 1, row) for i, row in enumerate(rows) if any(c is not None for c in row)]
+    if not filled:
+        raise InputError(f"{label}: the sheet is empty; expected a heading row and samples.")
+    headings = _trimmed(filled[0][1])
+    body = [(n, [_cell(c) for c in row[: len(headings)]]) for n, row in filled[1:]]
+    padded = [(n, row + [None] * (len(headings) - len(row))) for n, row in body]
+    return RecordTable(
+        label=label,
+        headings=tuple("" if h is None else str(h) for h in headings),
+        rows=tuple(row for _, row in padded),
+        numbers=tuple(n for n, _ in padded),
+    )
+
+
+def _trimmed(row: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Heading cells without the empty ones that Excel keeps on the right."""
+    last = max(i for i, c in enumerate(row) if c is not None)
+    return row[: last + 1]
+
+
+def _cell(value: Any) -> Cell:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        try:
+            return float(value)
+        except OverflowError:
+            return float("inf")
+    return None if value is None else str(value)

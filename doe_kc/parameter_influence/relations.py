@@ -15,7 +15,7 @@ import numpy as np
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 
 if TYPE_CHECKING:
     import pandas as pd

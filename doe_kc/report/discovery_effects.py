@@ -79,8 +79,8 @@ def rival_words(finding: Finding) -> str:
 
 
 EFFECT_COLUMNS: tuple[Column[EffectRow], ...] = (
-    Column("effect", "Id", lambda r: r.effect, width=24),
-    Column("label", "Effect", lambda r: r.label, width=30),
+    Column("effect", None, lambda r: r.effect),
+    Column("label", "Effect", lambda r: r.label, width=36, cell=lambda r: f"{r.label} ({r.effect})"),
     Column("place", "Place", lambda r: r.place, width=16),
     Column("kind", "Kind", lambda r: r.kind, width=9),
     Column("probability", "Probability", lambda r: r.finding.probability, "0.0%"),
@@ -116,7 +116,6 @@ def effect_table(discovery: Discovery) -> Table[EffectRow]:
         empty="No effect is asked for.",
         sheet=SheetLayout(
             frozen="kind",
-            paper="A3",
             wrapped=True,
             printed_to="rivals",
             printed=max(1, len(rows)),

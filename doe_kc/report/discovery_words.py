@@ -81,6 +81,12 @@ def physics_words(finding: Finding) -> str:
     return f"{effect.physics} {effect.consequence(options)}".strip()
 
 
+def hypothesis_words(hypothesis: Hypothesis) -> str:
+    """Name and place within a sentence, e.g. `bushing preload, LLR`."""
+    label = hypothesis_label(hypothesis)
+    return label[0].lower() + label[1:]
+
+
 def mistaken_words(ident: str) -> str:
     """What looks alike, effects by their names and parameters by their paths."""
     return ", ".join(effect_label(m) if m in EFFECTS else m for m in EFFECTS[ident].mistaken_for)

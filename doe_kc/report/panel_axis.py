@@ -151,8 +151,8 @@ class PanelAxis:
         places = np.asarray(locator.tick_values(low, high), dtype=float)
         formatter = self._formatter or _usual_formatter()
         words = _formatted(formatter, places, (low, high))
-        found = Ticks(places, words, (False,) * places.size, np.zeros(0), formatter.get_offset())
-        return _inside(found, self.limits)
+        major = Ticks(places, words, (False,) * places.size, np.zeros(0), formatter.get_offset())
+        return _inside(major, self.limits)
 
     def _decades(self, low: float, high: float) -> Ticks:
         places = np.asarray(LogLocator(10.0).tick_values(low, high), dtype=float)

@@ -15,7 +15,7 @@ from doe_kc.report.picture_digest import PictureDigests, shows
 
 Job = tuple[Path, Callable[[], style.Picture]]
 FEW = 3
-"""Pictures that are drawn in this process: they take 0.2 s each, the start of the others as much."""
+"""Pictures that are drawn in this process: they take 0.1 s each, the start of the others as much."""
 
 
 def draw_series(

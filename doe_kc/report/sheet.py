@@ -20,7 +20,7 @@ from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import PanelAxis
 from doe_kc.report.panel_frame import Frame
 from doe_kc.report.style import A4, DPI
-from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent
+from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent, with_minus_sign
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -114,7 +114,7 @@ class Sheet:
             for artist in artists:
                 self._place(artist, artist.get_zorder())
             frame.words += words
-        self._words.entries += frame.words
+        self._words.entries = [with_minus_sign(w) for w in (*self._words.entries, *frame.words)]
         self._artists.append(self._words)
 
     def _segments(self, segments: Sequence[Any], color: str, width: float, order: float) -> None:
@@ -132,6 +132,7 @@ class Sheet:
         self._dots.clear().scale(DPI)
         for artist in self._ordered():
             if isinstance(artist, PolyCollection):  # its own method asks a figure for the dots of its sizes
+                artist.set_urls([None, None])  # else one polygon alone asks a figure too, for its size
                 Collection.draw(artist, renderer)
             else:
                 artist.draw(renderer)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,9 +14,10 @@ from numpy.typing import NDArray
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.curves import SIDES
 from doe_kc.ground.output import write_columns
+from doe_kc.report.names import case_label, response_name
 from doe_kc.report.render.csv import table_columns, table_frame
 from doe_kc.report.render.json import table_records
-from doe_kc.report.table import Column, Table
+from doe_kc.report.table import Column, PageCell, PageLayout, Table
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.elements.responses import output_unit
 from doe_kc.solver.result import BranchSolution, CaseSolution, Solution
@@ -75,12 +77,16 @@ class SimulatedCharacteristic:
 
 
 SIMULATED_COLUMNS: tuple[Column[SimulatedCharacteristic], ...] = (
-    Column("name", "Id", lambda r: r.entry.id),
-    Column("load_case", "Load case", lambda r: r.entry.load_case, json="load_case"),
-    Column("response", "Response", lambda r: r.entry.response),
-    Column("unit", "Unit", lambda r: r.entry.unit, json="unit"),
-    Column("value", "Value", lambda r: r.value, "0.0000", json="value"),
-)
+    Column("name", "Id", lambda r: r.entry.id,
+           page=PageCell("Characteristic", text=lambda r: r.entry.label, style="first",
+                         attributes=lambda r: {"title": r.entry.id})),
+    Column("load_case", "Load case", lambda r: r.entry.load_case, json="load_case",
+           page=PageCell(text=lambda r: case_label(r.entry.load_case))),
+    Column("response", "Response", lambda r: r.entry.response,
+           page=PageCell(text=lambda r: response_name(r.entry.response))),
+    Column("unit", "Unit", lambda r: r.entry.unit, json="unit", page=PageCell()),
+    Column("value", "Value", lambda r: r.value, "0.0000", json="value", page=PageCell()),
+)  # fmt: skip
 
 
 def simulated_characteristic_table(solution: Solution) -> Table[SimulatedCharacteristic]:
@@ -91,7 +97,14 @@ def simulated_characteristic_table(solution: Solution) -> Table[SimulatedCharact
         for name, entry in CHARACTERISTICS.items()
         if math.isfinite(values[name])
     ]
-    return Table("Characteristics", "Of the simulated axle, left wheel.", SIMULATED_COLUMNS, rows)
+    return simulated_table(rows)
+
+
+def simulated_table(rows: Sequence[SimulatedCharacteristic]) -> Table[SimulatedCharacteristic]:
+    """One row a characteristic."""
+    layout = PageLayout[SimulatedCharacteristic]("simulated-table", "Characteristics", filtered=True)
+    remark = "Of the simulated axle, left wheel."
+    return Table("Characteristics", remark, SIMULATED_COLUMNS, rows, page=layout)
 
 
 def characteristics_frame(solution: Solution) -> pd.DataFrame:

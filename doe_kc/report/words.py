@@ -7,6 +7,7 @@ with many panels. Here the size of a text is measured once a process.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -40,6 +41,8 @@ WORD_ORDER = 3.0
 Across = Literal["left", "center", "right"]
 Along = Literal["top", "center", "bottom", "baseline"]
 SHARE = {"left": 0.0, "center": 0.5, "right": 1.0}
+HYPHEN_BEFORE_NUMBER = re.compile(r"(?<![\w.\]])-(?=\.?\d)|(?<=\de)-(?=\d)")
+"""A hyphen that stands for a minus: not within a name such as `run-2`."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +65,13 @@ class Word:
     angle: float = 0.0
     backing: str | None = None
     formula: bool = False
+
+
+def with_minus_sign(word: Word) -> Word:
+    """The word with true minus signs before its numbers."""
+    if "-" not in word.text or word.formula:
+        return word
+    return replace(word, text=HYPHEN_BEFORE_NUMBER.sub("\N{MINUS SIGN}", word.text))
 
 
 @dataclass(frozen=True)
@@ -104,7 +114,7 @@ def _plain(line: str, size: float, weight: str, family: str) -> LineImage:
     width, height, descent = (v * SUBPIXEL for v in (*font.get_width_height(), font.get_descent()))
     font.draw_glyphs_to_bitmap(antialiased=True)
     coverage = np.array(font.get_image(), dtype=np.uint8)
-    left = -math.ceil(font.get_bitmap_offset()[0] * SUBPIXEL)  # FreeType cuts the fraction off
+    left = -round(font.get_bitmap_offset()[0] * SUBPIXEL)  # to a pixel: hinting moves the first letter
     below = coverage.shape[0] - math.trunc(height - descent) - 1  # FreeType's bitmap has a free row on top
     pixels = DPI / POINTS
     return LineImage(width / pixels, height / pixels, descent / pixels, coverage, left, below)

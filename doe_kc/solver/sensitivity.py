@@ -46,18 +46,18 @@ def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensi
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
-    found = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+    exact = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
         columns = _Differentiator(bent, lifted.static, tuple(paths[i] for i in soft)).run(lifted)
-        found.static[:, soft] = columns.static
+        exact.static[:, soft] = columns.static
         for ident, branches in columns.branches.items():
-            for own, other in zip(found.branches[ident], branches, strict=True):
+            for own, other in zip(exact.branches[ident], branches, strict=True):
                 own[:, :, soft] = other
-    return found
+    return exact
 
 
 def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:

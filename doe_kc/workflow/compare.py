@@ -27,13 +27,18 @@ def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Co
 def write_comparison(
     comparison: Comparison, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
-    """characteristics.csv, curves.csv (RMS) and one figure a load case."""
+    """characteristics.csv, curves.csv (RMS), report.html and one figure a load case."""
+    from doe_kc.report.page.comparison import write_comparison_page
+    from doe_kc.report.page.links import link_pages
+
     written = [
         write_columns(
             folder / "characteristics.csv", table_columns(compared_characteristic_table(comparison))
         ),
         write_columns(folder / "curves.csv", table_columns(compared_curve_table(comparison))),
+        write_comparison_page(folder / "report.html", comparison),
     ]
+    link_pages(folder.parent)
     if pictures == "none":
         return written
     from doe_kc.report.comparison_figures import write_comparison_figures

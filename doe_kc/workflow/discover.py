@@ -83,7 +83,8 @@ def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis,
 
 def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
     """The study's variables but those that are an effect in other words: they would absorb it wholly."""
-    held = {path for e in EFFECTS.values() for path in e.replaces}
+    places = places_of(axle)
+    held = {path for e in EFFECTS.values() if e.possible(places) for path in e.replaces}
     named = set() if options.use == "selection" else set(options.use)
     changes = [c for c in options.change if not any(fnmatchcase(path, c.match) for path in held & {c.match})]
     use = [glob for glob in named if glob not in held] or ["*"]
@@ -117,5 +118,5 @@ def discover_folder(
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
     with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as cache:
-        found = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
-    return dict(discovery_document(found, None))
+        discovery = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
+    return dict(discovery_document(discovery, None))

@@ -15,10 +15,9 @@ from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.parameter_influence.study import influence_study
+from doe_kc.parameter_influence.study import Influence, influence_study
 from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
@@ -90,7 +89,7 @@ def influence_runs(study: Study) -> int:
 def write_influence(
     study: Study, study_influence: StudyInfluence, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
-    """influence.xlsx, heat map and top-ten bars, and the three matrices as CSV."""
+    """influence.xlsx, report.html, heat map and top-ten bars, and the three matrices as CSV."""
     matrix = study_influence.matrix
     book = write_influence_workbook(
         folder / "influence.xlsx",
@@ -111,14 +110,21 @@ def write_influence(
         write_columns(folder / f"influence_{name}.csv", matrix.columns(values))
         for name, values in tables.items()
     ]
+    from doe_kc.report.page.influence import write_influence_page
+    from doe_kc.report.page.links import link_pages
+
+    page = write_influence_page(
+        folder / "report.html", matrix, study=study.name, date=date.today().isoformat()
+    )
+    link_pages(folder.parent)
     if study.pictures == "none":
-        return [book, *csv]
+        return [book, page, *csv]
     from doe_kc.report.influence_figures import write_influence_figures
 
     pictures = write_influence_figures(
         matrix, folder, study=study.name, workers=workers, pictures=study.pictures
     )
-    return [book, *pictures, *csv]
+    return [book, page, *pictures, *csv]
 
 
 def influence_document(influence: Influence) -> dict[str, Any]:

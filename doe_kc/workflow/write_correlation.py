@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,9 @@ from doe_kc.report.correlation_parameters import parameter_table, remark_sentenc
 from doe_kc.report.correlation_summary import summary
 from doe_kc.report.correlation_terms import curve_table, term_columns
 from doe_kc.report.correlation_workbook import write_correlation_workbook
+from doe_kc.report.hysteresis import hysteresis_table, loop_widths
 from doe_kc.report.page import write_correlation_page
+from doe_kc.report.page.links import link_pages
 from doe_kc.report.render.csv import table_columns
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
@@ -33,6 +35,7 @@ CORRELATION_TABLES: Mapping[str, Callable[[Correlation], Table[Any]]] = {
     "evaluations.csv": evaluation_table,
 }
 AXLE = "axle.toml"
+AXLE_PICTURE = "correlation_axle"
 
 
 def write_correlation(
@@ -44,7 +47,7 @@ def write_correlation(
     assessment: Assessment | None = None,
     workers: int | None = None,
 ) -> list[Path]:
-    """axle.toml, five tables, correlation.xlsx, report.html and the figures; returns the paths.
+    """axle.toml, the tables, correlation.xlsx, report.html and the figures; returns the paths.
 
     measurement: for the measured curves; None with typed targets. assessment: by default the correlation's
     own. workers: processes that draw. RunError when the folder cannot be written.
@@ -62,6 +65,10 @@ def write_correlation(
         "notes": notes,
         "assessment": verdict,
     }
+    page = write_correlation_page(folder / "report.html", correlation, measurement, **words)
+    link_pages(folder.parent)
+    loops = [] if measurement is None else loop_widths(correlation, measurement)
+    figures = _write_figures(study, correlation, measurement, folder, workers)
     return [
         axle,
         *(
@@ -69,9 +76,20 @@ def write_correlation(
             for name, of in CORRELATION_TABLES.items()
         ),
         write_columns(folder / "rating_terms.csv", term_columns(correlation)),
-        write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
-        write_correlation_page(folder / "report.html", correlation, measurement, **words),
-        *_write_figures(study, correlation, measurement, folder, workers),
+        *(
+            [write_columns(folder / "hysteresis.csv", table_columns(hysteresis_table(loops)))]
+            if loops
+            else ()
+        ),
+        write_correlation_workbook(
+            folder / "correlation.xlsx",
+            correlation,
+            **words,
+            loops=loops,
+            axle_picture=_axle_picture(figures),
+        ),
+        page,
+        *figures,
         *(_write_front(correlation, folder, study) if correlation.method == "pareto" else ()),
     ]
 
@@ -86,6 +104,12 @@ def _write_figures(
     return write_correlation_figures(
         correlation, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
     )
+
+
+def _axle_picture(figures: Sequence[Path]) -> bytes | None:
+    """The drawn axle, for the workbook; None where it is not drawn as PNG."""
+    drawn = [path for path in figures if path.name == f"{AXLE_PICTURE}.png"]
+    return drawn[0].read_bytes() if drawn else None
 
 
 def axle_note(correlation: Correlation, assessment: Assessment) -> str:

@@ -11,8 +11,7 @@ import pytest
 
 from doe_kc.axle import Axle, with_values
 from doe_kc.axle_file import read_axle
-from doe_kc.axle_file.effect_tables import unit_beside
-from doe_kc.axle_file.write import write_axle
+from doe_kc.axle_file.write import unit_beside, write_axle
 from doe_kc.effects import apply_effect
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.curve_set import curve_set

@@ -13,7 +13,7 @@ from doe_kc.ground.typing import FloatArray
 
 BITS = 30
 """Of a coordinate."""
-LEVELS = 6
+POWER_LEVELS = 6
 """Direction numbers a dimension that the table has: enough for 2^6 points."""
 DIRECTIONS = (
     "0000663d2fa33bd16fe8130a4975121468944a6e3404554847d560e32ab8637108f831b97a541eef1db744f2302545317b51"
@@ -46,7 +46,7 @@ def latin_hypercube(n: int, dimension: int, seed: int) -> FloatArray:
 
 def scrambled_sobol(levels: int, dimension: int, seed: int) -> FloatArray:
     """(2^levels, dimension) points in [0, 1) of Sobol's sequence, scrambled linearly and shifted."""
-    if levels > LEVELS or dimension > DIMENSIONS:
+    if levels > POWER_LEVELS or dimension > DIMENSIONS:
         from scipy.stats import qmc
 
         engine = qmc.Sobol(dimension, rng=np.random.default_rng(seed))
@@ -66,10 +66,10 @@ def scrambled_sobol(levels: int, dimension: int, seed: int) -> FloatArray:
 
 
 def _directions(dimension: int) -> np.ndarray:
-    """(dimension, LEVELS) m_k 2^(BITS - k)."""
-    out = np.empty((dimension, LEVELS), dtype=np.uint32)
+    """(dimension, POWER_LEVELS) m_k 2^(BITS - k)."""
+    out = np.empty((dimension, POWER_LEVELS), dtype=np.uint32)
     for d in range(dimension):
         code = int(DIRECTIONS[4 * d : 4 * d + 4], 16)
-        odd = [1, *(2 * (code >> k * (k - 1) // 2 & 2**k - 1) + 1 for k in range(1, LEVELS))]
+        odd = [1, *(2 * (code >> k * (k - 1) // 2 & 2**k - 1) + 1 for k in range(1, POWER_LEVELS))]
         out[d] = [m << BITS - 1 - k for k, m in enumerate(odd)]
     return out

@@ -70,7 +70,7 @@ class ExpectedImprovement:
     def maximum(self, box: TrustBox, starts: Sequence[FloatArray]) -> FloatArray:
         """(d,) best point found from the starts, by L-BFGS-B inside the box."""
         bounds = list(zip(box.lower, box.upper, strict=True))
-        found = [
+        optima = [
             minimize(
                 self._negative,
                 box.clip(start),
@@ -81,7 +81,7 @@ class ExpectedImprovement:
             )
             for start in starts
         ]
-        best = min(found, key=lambda r: float(r.fun))
+        best = min(optima, key=lambda r: float(r.fun))
         return np.asarray(box.clip(best.x))
 
     def _negative(self, point: FloatArray) -> tuple[float, FloatArray]:
