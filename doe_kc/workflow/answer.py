@@ -133,7 +133,7 @@ def _taken(finding: Finding, adoption: Adoption | None) -> bool:
 def _effect_entries(discovery: Discovery, adoption: Adoption | None) -> Iterator[dict[str, Any]]:
     for finding in (*discovery.findings, *discovery.traces):
         taken = _taken(finding, adoption)
-        named = discovery.verdict in ("named", "class") and finding in discovery.findings
+        named = finding in discovery.findings and finding.verdict != "lead"
         if named or taken:
             yield effect_entry(finding) | {"adopted": taken}
 

@@ -50,7 +50,7 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     "none": {},
     "named": {"hub_compliance": {"camber_Nm_deg": 5000.0, "toe_Nm_deg": 9000.0}},
     "friction": {"steering_friction": {"force_N": 200.0, "presliding_mm": 0.05}},
-    "class": {"steer_arm_compliance": {"radius_mm": 9.4}},
+    "class": {"steer_arm_compliance": {"radius_mm": 8.0}},
     "unexplained": {"tie_rod_free_play": {"gap_mm": 0.2}},
     "two": {"strut_friction": {"force_N": 120.0}, "rig_channel_gain": {"toe": 1.06}},
     "pair": {

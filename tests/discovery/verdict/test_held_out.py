@@ -49,7 +49,7 @@ def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch
         return tuning(self, *at)
 
     monkeypatch.setattr(EffectModel, "tuning_columns", counted)
-    near = fit_without(search.with_effects, "vertical")
+    near = fit_without(search.with_effects, "lateral_opposite")
     assert not taken and near.converged
     anew = fit(near.model, search.with_effects.z)
     assert np.linalg.norm((near.z - anew.z) / np.sqrt(np.diag(anew.covariance))) < 0.1
