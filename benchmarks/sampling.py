@@ -79,8 +79,8 @@ def main() -> None:
             "# Designs",
             "",
             f"{VARIABLES} variables in the unit cube, seed {SEED}. Largest smallest distance and discrepancy "
-            "over all variables, the largest correlation of two, smallest distance in planes of two neighbouring "
-            f"variables in the mean, seconds of a processor. One thread. {machine()}.",
+            "over all variables, the largest correlation of two, smallest distance in planes of two "
+            f"neighbouring variables in the mean, seconds of a processor. One thread. {machine()}.",
             "",
             "| method | designs | smallest distance | centred discrepancy | correlation | planes | seconds |",
             "|---|---|---|---|---|---|---|",
