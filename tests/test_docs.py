@@ -92,7 +92,7 @@ def test_the_commands_named_exist_with_their_options() -> None:
     known = known_commands()
     assert set(known) == {
         *("init", "types", "check", "simulate", "reduce", "influence", "sample"),
-        *("surrogates", "correlate", "discover", "report", "run"),
+        *("surrogates", "predict", "correlate", "discover", "report", "run"),
     }
     named = set()
     for page in PAGES:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from openpyxl.utils import get_column_letter
+from openpyxl.worksheet.properties import PageSetupProperties
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.output import write_whole
@@ -191,6 +192,10 @@ def _put_inputs(ws: Worksheet, saved: SavedSurrogate) -> None:
         ws.cell(r, 6).number_format = "0.0000"
     widths(ws, (24, 14, 9, 12, 12, 10, 3, 32, 16, 10, 14, 12))
     ws.freeze_panes = f"A{FIRST}"
+    ws.page_setup.orientation = "landscape"
+    ws.page_setup.fitToHeight = 0
+    ws.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
+    ws.print_title_rows = f"{FIRST - 1}:{FIRST - 1}"
 
 
 def _put_numbers(ws: Worksheet, j: int, name: str, formula: MeanFormula) -> None:
