@@ -1,15 +1,13 @@
-"""The columns of a rig record: which are needed, in which unit, and how to mend a wrong one."""
+"""The headings of a rig record's columns."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
-from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
-from doe_kc.ground.errors import InputError, nearest
-from doe_kc.load_cases import LOAD_CASES, LoadCase
-from doe_kc.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.curves import RIG_RESPONSES
+from doe_kc.measurement.units import is_unit
 
 RIG_NAMES: Mapping[str, str] = {r: "caster" if r == "spin" else r for r in RIG_RESPONSES}
 """Response -> channel name in a record; the rig's `caster` is read off the wheel, our `spin`."""
@@ -18,24 +16,12 @@ TIME = "time"
 TIME_UNIT = "s"
 
 _HEADING = re.compile(r"\s*([^\[\]]*?)\s*(?:\[\s*([^\[\]]*?)\s*\])?\s*")
-_FACTORS: Mapping[tuple[str, str], str] = {
-    ("rad", "deg"): "multiply by 57.2958",
-    ("mrad", "deg"): "multiply by 0.0572958",
-    ("min", "deg"): "divide by 60",
-    ("m", "mm"): "multiply by 1000",
-    ("cm", "mm"): "multiply by 10",
-    ("in", "mm"): "multiply by 25.4",
-    ("kN", "N"): "multiply by 1000",
-    ("daN", "N"): "multiply by 10",
-    ("kg", "N"): "multiply by 9.80665",
-    ("lbf", "N"): "multiply by 4.44822",
-    ("ms", "s"): "divide by 1000",
-}
+_ROUND = re.compile(r"(.*\S)\s*\(([^()]*)\)")
 
 
 @dataclass(frozen=True)
 class Heading:
-    """A column heading `name [unit]`; `unit` is None when there are no brackets."""
+    """A column heading `name [unit]` or `name (unit)`; `unit` is None when there are no brackets."""
 
     name: str
     unit: str | None
@@ -49,88 +35,7 @@ def parse_heading(text: str) -> Heading:
     match = _HEADING.fullmatch(text)
     if match is None:
         return Heading(text.strip(), None)
+    other = _ROUND.fullmatch(match[1]) if match[2] is None else None
+    if other is not None and is_unit(other[2]):
+        return Heading(other[1], other[2].strip())
     return Heading(match[1], match[2])
-
-
-def needed(case: LoadCase) -> dict[str, Heading]:
-    """Role -> heading of every column that a record of `case` must have.
-
-    Roles are `time`, `input` and `response_side` (`toe_L`, `spin_R`, ...).
-    """
-    out = {TIME: Heading(TIME, TIME_UNIT), "input": Heading(case.channel, case.unit)}
-    for side in SIDES:
-        for response in RIG_RESPONSES:
-            heading = Heading(f"{RIG_NAMES[response]}_{side}", RESPONSE_UNITS[response])
-            out[f"{response}_{side}"] = heading
-    return out
-
-
-def recorded_case(load_case: str, headings: Sequence[Heading]) -> LoadCase:
-    """The load case as the rig ran it: roll counts as counter-phase when its input is `pad_z`."""
-    names = {h.name for h in headings}
-    if load_case == "roll":
-        for technique in ROLL_TECHNIQUES.values():
-            if technique.channel in names:
-                return technique
-    return LOAD_CASES[load_case]
-
-
-def locate(label: str, texts: Sequence[str], load_case: str) -> tuple[LoadCase, dict[str, int]]:
-    """The load case as run and role -> column index; InputError for wrong columns.
-
-    Wrong are missing, double and wrong-unit columns; those that nobody needs are left alone.
-    label: the file (and sheet) for the message.
-    """
-    headings = [parse_heading(t) for t in texts]
-    case = recorded_case(load_case, headings)
-    roles = needed(case)
-    _refuse_missing(label, roles, headings, case)
-    _refuse_double(label, roles, headings)
-    names = [h.name for h in headings]
-    columns = {role: names.index(h.name) for role, h in roles.items()}
-    for role, column in columns.items():
-        _refuse_unit(label, headings[column], roles[role], column)
-    return case, columns
-
-
-def _refuse_missing(
-    label: str, roles: Mapping[str, Heading], headings: Sequence[Heading], case: LoadCase
-) -> None:
-    names = [h.name for h in headings]
-    missing = [h for h in roles.values() if h.name not in names]
-    if not missing:
-        return
-    spare = [n for n in names if n and n not in {h.name for h in roles.values()}]
-    wanted = ", ".join(f'"{h}"{_taken_for(h.name, spare)}' for h in missing)
-    raise InputError(
-        f"{label}: the heading row lacks {wanted}, needed for load case {case.id}; "
-        "name the columns `channel_side [unit]` and export the missing ones from the rig."
-    )
-
-
-def _taken_for(name: str, spare: Sequence[str]) -> str:
-    """Remark on the present column that was probably meant."""
-    hint = nearest(name, spare)
-    return "" if not hint else hint.replace(" Did you mean ", " (is it the column ").replace("?", "?)")
-
-
-def _refuse_double(label: str, roles: Mapping[str, Heading], headings: Sequence[Heading]) -> None:
-    names = [h.name for h in headings]
-    for heading in roles.values():
-        if names.count(heading.name) > 1:
-            at = " and ".join(str(i + 1) for i, n in enumerate(names) if n == heading.name)
-            raise InputError(
-                f'{label}: columns {at} are both named "{heading.name}"; expected it once, '
-                "so rename or delete the one that is not meant."
-            )
-
-
-def _refuse_unit(label: str, heading: Heading, expected: Heading, column: int) -> None:
-    if heading.unit == expected.unit:
-        return
-    have = "no unit" if heading.unit is None else f"the unit [{heading.unit}]"
-    remedy = _FACTORS.get((heading.unit or "", expected.unit or ""), "convert the values")
-    raise InputError(
-        f'{label}: column {column + 1} "{heading.name}" has {have}, expected [{expected.unit}]; '
-        f'{remedy} where needed and head the column "{expected}".'
-    )

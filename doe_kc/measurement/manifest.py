@@ -10,6 +10,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.load_cases import LOAD_CASES
+from doe_kc.measurement.channel_map import ChannelMap, channel_map, named_map
+from doe_kc.measurement.map_file import MapFile
 from doe_kc.measurement.sentences import refuse_unknown, sentence
 
 Finite = Annotated[float, Field(strict=True, allow_inf_nan=False)]
@@ -77,12 +79,18 @@ class SensorResolution(_Section):
 
 
 class Manifest(_Section):
-    """The whole file. `records`: load case -> files, main run first, then its repeats."""
+    """The whole file. `records`: load case -> files, main run first, then its repeats.
+
+    axle: a note, which axle was tested. channels: the channel map: a preset's name, the path of a map file
+    from this file's folder, or the map itself.
+    """
 
     name: Annotated[str, Field(strict=True, min_length=1)]
+    axle: Text = ""
     setup: Setup = Setup()
     alignment: Alignment | None = None
     sensor_resolution: SensorResolution = SensorResolution()
+    channels: Text | MapFile = "doe_kc"
     records: Annotated[dict[str, tuple[Text, ...]], Field(min_length=1)]
 
     @field_validator("records", mode="before")
@@ -132,6 +140,13 @@ def load_manifest(path: Path) -> Manifest:
         return Manifest.model_validate(data)
     except ValidationError as error:
         raise InputError(sentence(path, error)) from None
+
+
+def manifest_channels(path: Path, manifest: Manifest) -> ChannelMap:
+    """The channel map of a test. path: of its `test.toml`. InputError for a map that is wrong."""
+    if isinstance(manifest.channels, str):
+        return named_map(manifest.channels, path.parent, str(path))
+    return channel_map(manifest.channels, path.parent, str(path))
 
 
 def _parse(path: Path) -> dict[str, Any]:

@@ -1,9 +1,10 @@
-"""One rig record: a load case's channels over time, read from CSV or an Excel sheet and checked."""
+"""One rig record: a load case's channels over time, read through the channel map and checked."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,15 @@ from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
-from doe_kc.measurement.channels import TIME, locate
-from doe_kc.measurement.tables import RecordTable, column_numbers, read_csv_table
-from doe_kc.measurement.workbook import read_sheet_table
+from doe_kc.measurement.channel_map import INPUT_ROLE, ChannelMap, ColumnTerm, named_map
+from doe_kc.measurement.channels import TIME
+from doe_kc.measurement.containers import read_table
+from doe_kc.measurement.tables import ChannelTable
 
 MIN_SAMPLES = 64
 """Fewer samples per loop leave under 32 points a branch: gradients in the fit window become guesses."""
-
-WORKBOOK_SUFFIXES = (".xlsx", ".xlsm")
+OWN_NAMES = "doe_kc"
+"""Preset of the package's own channel names."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +29,11 @@ class RigRecord:
     """Samples of one run, as recorded.
 
     label: file (and sheet), for messages. case: the load case as the rig ran it.
-    time: (n,) s, strictly increasing. input: (n,) in `case.unit`.
+    time: (n,) s, strictly increasing; the samples' numbers where no time was recorded.
+    input: (n,) in `case.unit`.
     channels: response (`RIG_RESPONSES`) -> (2, n), left and right; deg, mm, N; changes from static
         for angles and wheel centre, tyre load absolute.
+    ignored: headings of columns that nothing is read from.
     """
 
     label: str
@@ -37,51 +41,61 @@ class RigRecord:
     time: FloatArray
     input: FloatArray
     channels: Mapping[str, FloatArray]
+    ignored: tuple[str, ...] = ()
 
 
-def read_record(path: Path, load_case: str, *, sheet: str | None = None) -> RigRecord:
+def read_record(
+    path: Path, load_case: str, *, sheet: str | None = None, channels: ChannelMap | None = None
+) -> RigRecord:
     """Read and check one record; every fault is an InputError naming file, place, expectation, remedy.
 
-    load_case: id in `LOAD_CASES`. sheet: of an Excel workbook; None = the only one or the one
-    named like the load case.
+    load_case: id in `LOAD_CASES`. sheet: of an Excel workbook, or part of another container; None = the only
+    one or the one named like the load case. channels: the rig's channel map, by default that of the package's
+    own names.
     """
-    return record_from_table(_read_table(path, sheet, load_case), load_case)
+    return record_from_table(read_table(path, sheet, load_case), load_case, channels or own_names())
 
 
-def _read_table(path: Path, sheet: str | None, load_case: str) -> RecordTable:
-    suffix = path.suffix.lower()
-    if suffix in WORKBOOK_SUFFIXES:
-        return read_sheet_table(path, sheet, load_case)
-    if suffix == ".xls":
-        raise InputError(f"{path}: is in the old Excel format .xls; expected .xlsx or .csv, save it as such.")
-    if sheet is not None:
-        raise InputError(
-            f'{path}: a sheet ("#{sheet}") is named of a file that is no .xlsx; '
-            "remove the part from # or name a workbook."
-        )
-    return read_csv_table(path)
+@cache
+def own_names() -> ChannelMap:
+    """Map of the package's own channel names."""
+    return named_map(OWN_NAMES, Path(), OWN_NAMES)
 
 
-def record_from_table(table: RecordTable, load_case: str) -> RigRecord:
+def record_from_table(table: ChannelTable, load_case: str, channels: ChannelMap) -> RigRecord:
     """Check the columns, numbers and sweep of a raw table."""
-    case, columns = locate(table.label, table.headings, load_case)
-    if len(table.rows) < MIN_SAMPLES:
+    columns = channels.columns(table.label, table.channels, load_case)
+    case = columns.case
+    if table.size < MIN_SAMPLES:
         raise InputError(
-            f"{table.label}: has {len(table.rows)} samples, expected at least {MIN_SAMPLES} in a loop; "
+            f"{table.label}: has {table.size} samples, expected at least {MIN_SAMPLES} in a loop; "
             "record at a higher rate or export the whole loop."
         )
-    values = {role: column_numbers(table, column) for role, column in columns.items()}
-    _check_time(table, values[TIME])
-    _check_sweep(table.label, case, values["input"])
-    channels = {r: np.stack([values[f"{r}_{s}"] for s in SIDES]) for r in RIG_RESPONSES}
-    return RigRecord(table.label, case, values[TIME], values["input"], channels)
+    values = {role: _combined(table, terms) for role, terms in columns.terms.items()}
+    time = values.get(TIME, np.arange(table.size, dtype=float))
+    _check_time(table, time)
+    _check_sweep(table.label, case, values[INPUT_ROLE])
+    responses = {r: np.stack([values[f"{r}_{s}"] for s in SIDES]) for r in RIG_RESPONSES}
+    return RigRecord(table.label, case, time, values[INPUT_ROLE], responses, columns.ignored)
 
 
-def _check_time(table: RecordTable, time: FloatArray) -> None:
+def _combined(table: ChannelTable, terms: Sequence[ColumnTerm]) -> FloatArray:
+    """(n,) sum of factor * (recorded - offset)."""
+    parts = [_scaled(table.numbers(t.column), t) for t in terms]
+    return parts[0] if len(parts) == 1 else np.asarray(np.sum(parts, axis=0))
+
+
+def _scaled(values: FloatArray, term: ColumnTerm) -> FloatArray:
+    if term.offset:
+        values = values - term.offset
+    return values if term.factor == 1.0 else term.factor * values
+
+
+def _check_time(table: ChannelTable, time: FloatArray) -> None:
     late = np.flatnonzero(np.diff(time) <= 0.0)
     if late.size:
         raise InputError(
-            f"{table.label}: row {table.numbers[late[0] + 1]}, time does not increase; expected samples "
+            f"{table.label}: row {table.row(int(late[0]) + 1)}, time does not increase; expected samples "
             "in the order of recording, so sort or export the record again."
         )
 

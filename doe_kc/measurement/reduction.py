@@ -14,6 +14,7 @@ from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.branches import RunCurves, case_curves, changes, reduce_case
+from doe_kc.measurement.channel_map import ChannelMap
 from doe_kc.measurement.gradients import (
     Gradient,
     GradientEstimate,
@@ -21,7 +22,7 @@ from doe_kc.measurement.gradients import (
     case_gradients,
     characteristic_estimates,
 )
-from doe_kc.measurement.manifest import Alignment, Manifest, load_manifest
+from doe_kc.measurement.manifest import Alignment, Manifest, load_manifest, manifest_channels
 from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.noise_estimation import estimate_noise
 from doe_kc.measurement.records import RigRecord, read_record
@@ -138,7 +139,8 @@ def measured_cases(manifest: Manifest) -> list[str]:
 
 def case_records(path: Path, manifest: Manifest, load_case: str) -> list[RigRecord]:
     """Main run and repeats of a load case. path: of the manifest. InputError for a bad one, or a copy."""
-    records = [_read(path.parent, entry, load_case) for entry in manifest.records[load_case]]
+    channels = manifest_channels(path, manifest)
+    records = [_read(path.parent, entry, load_case, channels) for entry in manifest.records[load_case]]
     main = records[0]
     for record in records[1:]:
         if type(record.case) is not type(main.case):
@@ -160,9 +162,9 @@ def _refuse_copy(main: RigRecord, record: RigRecord) -> None:
         )
 
 
-def _read(folder: Path, entry: str, load_case: str) -> RigRecord:
+def _read(folder: Path, entry: str, load_case: str, channels: ChannelMap) -> RigRecord:
     name, mark, sheet = entry.partition("#")
-    return read_record(folder / name, load_case, sheet=sheet if mark else None)
+    return read_record(folder / name, load_case, sheet=sheet if mark else None, channels=channels)
 
 
 def _resolution(manifest: Manifest) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Raw tables of text or numbers, from CSV bytes, with the row numbers that messages need."""
+"""Tables of channels, whatever container they come from, with the row numbers that messages need."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
+from doe_kc.measurement.channels import Heading, parse_heading
 
 Cell = str | float | None
 
@@ -22,20 +25,99 @@ _NUMBER = re.compile(_DECIMAL)
 _NUMBERS = re.compile(rf"(?:{_DECIMAL}\n)*+")
 
 
+class ChannelTable(Protocol):
+    """What every container of rig records gives: channels by name and unit, their numbers on request."""
+
+    @property
+    def label(self) -> str:
+        """File and part of it, for messages."""
+
+    @property
+    def channels(self) -> Sequence[Heading]:
+        """Name and unit of each column."""
+
+    @property
+    def size(self) -> int:
+        """Number of samples."""
+
+    def numbers(self, column: int) -> FloatArray:
+        """(size,) finite numbers; InputError naming the first cell that holds none."""
+
+    def row(self, sample: int) -> int:
+        """Number of a sample's row in its file, counted from 1."""
+
+
 @dataclass(frozen=True)
 class RecordTable:
-    """Heading texts, rows of cells, and the number (counted from 1) of each row in its file."""
+    """Heading texts, rows of cells, and the number (counted from 1) of each row in its file.
+
+    units: texts of a row of units below the headings, empty without one.
+    """
 
     label: str
     headings: tuple[str, ...]
     rows: tuple[Sequence[Cell], ...]
-    numbers: tuple[int, ...]
+    row_numbers: tuple[int, ...]
     decimal_comma: bool = False
+    units: tuple[str, ...] = ()
+
+    @cached_property
+    def channels(self) -> tuple[Heading, ...]:
+        """Headings with the unit of the row below where they have none of their own."""
+        names = [parse_heading(text) for text in self.headings]
+        units = [u.strip().strip("[](){}").strip() for u in self.units] + [""] * len(names)
+        return tuple(
+            Heading(h.name, u) if h.unit is None and u else h for h, u in zip(names, units, strict=False)
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of samples."""
+        return len(self.rows)
+
+    def numbers(self, column: int) -> FloatArray:
+        """As `column_numbers`."""
+        return column_numbers(self, column)
+
+    def row(self, sample: int) -> int:
+        """Number of a sample's row in its file."""
+        return self.row_numbers[sample]
+
+
+@dataclass(frozen=True)
+class ArrayTable:
+    """Table of a binary container. values: (n,) of each channel."""
+
+    label: str
+    channels: tuple[Heading, ...]
+    values: tuple[FloatArray, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of samples."""
+        return self.values[0].size if self.values else 0
+
+    def numbers(self, column: int) -> FloatArray:
+        """(size,) finite numbers; InputError naming the first sample that is none."""
+        values = self.values[column]
+        bad = np.flatnonzero(~np.isfinite(values))
+        if bad.size:
+            raise InputError(
+                f'{self.label}: sample {bad[0] + 1}, channel "{self.channels[column].name}" holds '
+                f"{values[bad[0]]:g}; expected a finite number, so export or record the channel again."
+            )
+        return values
+
+    def row(self, sample: int) -> int:
+        """Number of a sample, counted from 1."""
+        return sample + 1
 
 
 def read_bytes(path: Path) -> bytes:
-    """Contents of `path`; InputError when it cannot be read or is empty."""
+    """Contents of `path`; InputError when it cannot be read, is no file on a disk, or is empty."""
     try:
+        if not path.is_file() and not path.is_dir() and path.exists():
+            raise InputError(f"{path}: is a pipe or a device; expected a record file on a disk, name that.")
         data = path.read_bytes()
     except FileNotFoundError:
         raise InputError(
@@ -46,79 +128,6 @@ def read_bytes(path: Path) -> bytes:
     if not data.strip():
         raise InputError(f"{path}: the file is empty; expected a heading row and samples, export it again.")
     return data
-
-
-def read_csv_table(path: Path) -> RecordTable:
-    """Table of a UTF-8 CSV file, comma separated, or semicolon separated with decimal commas.
-
-    Raises InputError for Excel files in disguise, binary data, and rows unlike the heading.
-    """
-    data = read_bytes(path)
-    lines = _decode(path, data).replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    filled = [(i + 1, line) for i, line in enumerate(lines) if line.strip()]
-    separator = _separator(path, filled[0][1])
-    cells = [(number, _cells(line, separator)) for number, line in filled]
-    headings = cells[0][1]
-    _refuse_ragged(path, headings, cells[1:])
-    return RecordTable(
-        label=str(path),
-        headings=tuple(headings),
-        rows=tuple(row for _, row in cells[1:]),
-        numbers=tuple(number for number, _ in cells[1:]),
-        decimal_comma=separator == ";",
-    )
-
-
-def _cells(line: str, separator: str) -> list[str]:
-    if '"' not in line and len(line.split()) == 1:  # nothing to strip
-        return line.split(separator)
-    return [cell.strip().strip('"').strip() for cell in line.split(separator)]
-
-
-def _decode(path: Path, data: bytes) -> str:
-    if data.startswith((ZIP_MAGIC, OLE_MAGIC)):
-        raise InputError(
-            f"{path}: is an Excel workbook named {path.suffix or 'without suffix'}; expected CSV text, "
-            "so rename it to .xlsx or save it as CSV (UTF-8)."
-        )
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise InputError(
-            f"{path}: byte {error.start} is not UTF-8 text; expected a CSV file, save it as CSV (UTF-8)."
-        ) from None
-    if "\x00" in text:
-        raise InputError(f"{path}: contains binary data; expected CSV text, export the record again.")
-    if not text.strip():
-        raise InputError(f"{path}: the file is empty; expected a heading row and samples, export it again.")
-    return text
-
-
-def _separator(path: Path, heading: str) -> str:
-    if heading.count(";") > heading.count(","):
-        return ";"
-    if "," in heading:
-        return ","
-    what = "tabs" if "\t" in heading else "neither commas nor semicolons"
-    raise InputError(
-        f"{path}: the heading row is separated by {what}; expected commas, "
-        "or semicolons with a decimal comma; export the record as CSV."
-    )
-
-
-def _refuse_ragged(path: Path, headings: Sequence[str], rows: Sequence[tuple[int, list[str]]]) -> None:
-    for number, row in rows:
-        if len(row) == len(headings):
-            continue
-        if number == rows[-1][0] and len(row) < len(headings):
-            raise InputError(
-                f"{path}: row {number}, the last one, ends after {len(row)} of {len(headings)} columns: "
-                "the file is truncated; copy or export it again."
-            )
-        raise InputError(
-            f"{path}: row {number} has {len(row)} columns, expected {len(headings)} as in the heading; "
-            "look for a decimal comma or a missing separator there."
-        )
 
 
 def column_numbers(table: RecordTable, column: int) -> FloatArray:
@@ -152,7 +161,7 @@ def number_at(table: RecordTable, row: int, column: int) -> float:
         return value
     found = "is empty" if cell is None or cell == "" else f'holds "{_short(cell)}"'
     raise InputError(
-        f'{table.label}: row {table.numbers[row]}, column "{table.headings[column]}" {found}; '
+        f'{table.label}: row {table.row(row)}, column "{table.headings[column]}" {found}; '
         "expected a finite number, so mend the cell or record the channel again."
     )
 

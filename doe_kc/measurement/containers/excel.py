@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.ground.errors import InputError, nearest
+from doe_kc.measurement.layout import GridLayout, grid_layout
 from doe_kc.measurement.tables import ZIP_MAGIC, Cell, RecordTable, read_bytes
 
 
@@ -60,14 +61,20 @@ def _table(label: str, rows: list[tuple[Any, ...]]) -> RecordTable:
     filled = [(i + 1, row) for i, row in enumerate(rows) if any(c is not None for c in row)]
     if not filled:
         raise InputError(f"{label}: the sheet is empty; expected a heading row and samples.")
-    headings = _trimmed(filled[0][1])
-    body = [(n, [_cell(c) for c in row[: len(headings)]]) for n, row in filled[1:]]
+    layout = grid_layout([row for _, row in filled])
+    if layout is None or layout.headings is None:
+        layout = GridLayout(0, None, 1)
+    headings = _trimmed(filled[layout.headings or 0][1])
+    body = [(n, [_cell(c) for c in row[: len(headings)]]) for n, row in filled[layout.first :]]
     padded = [(n, row + [None] * (len(headings) - len(row))) for n, row in body]
+    units = filled[layout.units][1] if layout.units is not None else ()
     return RecordTable(
         label=label,
         headings=tuple("" if h is None else str(h) for h in headings),
         rows=tuple(row for _, row in padded),
-        numbers=tuple(n for n, _ in padded),
+        row_numbers=tuple(n for n, _ in padded),
+        decimal_comma=True,  # of numbers that a sheet holds as text
+        units=tuple("" if u is None else str(u) for u in units),
     )
 
 
