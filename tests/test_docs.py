@@ -89,7 +89,7 @@ def known_commands() -> dict[str, set[str]]:
 def test_the_commands_named_exist_with_their_options() -> None:
     known = known_commands()
     assert set(known) == {
-        *("init", "check", "simulate", "reduce", "influence", "sample"),
+        *("init", "check", "map", "simulate", "reduce", "influence", "sample"),
         *("surrogates", "correlate", "discover", "report", "run"),
     }
     named = set()

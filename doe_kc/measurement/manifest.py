@@ -78,6 +78,13 @@ class SensorResolution(_Section):
     tyre_load_N: Positive = 4.0
 
 
+class CheckOptions(_Section):
+    """accept: globs of findings, as `sign.vertical.pad_z`, that the test engineer has looked at: they are told
+    as warnings and stop nothing."""
+
+    accept: tuple[Text, ...] = ()
+
+
 class Manifest(_Section):
     """The whole file. `records`: load case -> files, main run first, then its repeats.
 
@@ -91,6 +98,7 @@ class Manifest(_Section):
     alignment: Alignment | None = None
     sensor_resolution: SensorResolution = SensorResolution()
     channels: Text | MapFile = "doe_kc"
+    checks: CheckOptions = CheckOptions()
     records: Annotated[dict[str, tuple[Text, ...]], Field(min_length=1)]
 
     @field_validator("records", mode="before")
@@ -151,6 +159,8 @@ def manifest_channels(path: Path, manifest: Manifest) -> ChannelMap:
 
 def _parse(path: Path) -> dict[str, Any]:
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise InputError(f"{path}: is a pipe or a device; expected a test.toml on a disk, name that.")
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         raise InputError(f"{path}: no such file; expected the rig's test.toml, check the path.") from None

@@ -16,6 +16,7 @@ from doe_kc.load_cases import LoadCase
 from doe_kc.measurement.channel_map import INPUT_ROLE, ChannelMap, ColumnTerm, named_map
 from doe_kc.measurement.channels import TIME
 from doe_kc.measurement.containers import read_table
+from doe_kc.measurement.outliers import Outlier, without_outliers
 from doe_kc.measurement.tables import ChannelTable
 
 MIN_SAMPLES = 64
@@ -33,7 +34,7 @@ class RigRecord:
     input: (n,) in `case.unit`.
     channels: response (`RIG_RESPONSES`) -> (2, n), left and right; deg, mm, N; changes from static
         for angles and wheel centre, tyre load absolute.
-    ignored: headings of columns that nothing is read from.
+    ignored: headings of columns that nothing is read from. outliers: samples replaced by their neighbours.
     """
 
     label: str
@@ -42,6 +43,7 @@ class RigRecord:
     input: FloatArray
     channels: Mapping[str, FloatArray]
     ignored: tuple[str, ...] = ()
+    outliers: tuple[Outlier, ...] = ()
 
 
 def read_record(
@@ -71,12 +73,13 @@ def record_from_table(table: ChannelTable, load_case: str, channels: ChannelMap)
             f"{table.label}: has {table.size} samples, expected at least {MIN_SAMPLES} in a loop; "
             "record at a higher rate or export the whole loop."
         )
-    values = {role: _combined(table, terms) for role, terms in columns.terms.items()}
-    time = values.get(TIME, np.arange(table.size, dtype=float))
+    raw = {role: _combined(table, terms) for role, terms in columns.terms.items()}
+    time = raw.pop(TIME, np.arange(table.size, dtype=float))
     _check_time(table, time)
+    values, outliers = without_outliers(raw, INPUT_ROLE)
     _check_sweep(table.label, case, values[INPUT_ROLE])
     responses = {r: np.stack([values[f"{r}_{s}"] for s in SIDES]) for r in RIG_RESPONSES}
-    return RigRecord(table.label, case, time, values[INPUT_ROLE], responses, columns.ignored)
+    return RigRecord(table.label, case, time, values[INPUT_ROLE], responses, columns.ignored, outliers)
 
 
 def _combined(table: ChannelTable, terms: Sequence[ColumnTerm]) -> FloatArray:

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from doe_kc.measurement.containers._registry import CONTAINERS, read_table
+from doe_kc.measurement.containers._registry import CONTAINERS, READABLE, read_table, table_parts
 
-__all__ = ["CONTAINERS", "read_table"]
+__all__ = ["CONTAINERS", "READABLE", "read_table", "table_parts"]

@@ -24,6 +24,17 @@ REFUSED: Mapping[str, str] = {
 }
 
 
+READABLE = frozenset((".csv", ".txt", ".tab", ".asc", *CONTAINERS))
+"""Suffixes of files that are looked at in a folder."""
+
+
+def table_parts(path: Path) -> list[str | None]:
+    """Parts of a file that each hold a table: sheets, groups; [None] where it holds one."""
+    place = CONTAINERS.get(path.suffix.lower(), TEXT_READER)
+    module = importlib.import_module(f"{__package__}.{place.split(':')[0]}")
+    return list(getattr(module, "parts", lambda _path: [None])(path))
+
+
 def read_table(path: Path, part: str | None, load_case: str) -> ChannelTable:
     """The table of channels in a file.
 

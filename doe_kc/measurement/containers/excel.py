@@ -27,6 +27,19 @@ def read_sheet_table(path: Path, sheet: str | None, load_case: str) -> RecordTab
     return _table(f"{path}#{title}", rows)
 
 
+def parts(path: Path) -> list[str | None]:
+    """Sheets; [None] for a workbook with one."""
+    import openpyxl
+
+    try:
+        titles = list(openpyxl.load_workbook(io.BytesIO(read_bytes(path)), read_only=True).sheetnames)
+    except InputError:
+        raise
+    except Exception:  # told by reading it
+        return [None]
+    return list(titles) if len(titles) > 1 else [None]
+
+
 def _read(path: Path, data: bytes, sheet: str | None, load_case: str) -> tuple[list[tuple[Any, ...]], str]:
     import openpyxl
 
