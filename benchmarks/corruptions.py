@@ -230,9 +230,7 @@ def alignment(change: Callable[[str, str, float], float]) -> Callable[[str], str
 def catalogue() -> list[Corruption]:
     """Every corruption, by kind."""
     out: list[Corruption] = []
-    for q in ALL:
-        where = {"toe": "LR", "camber": "LR"}.get(q, "LR")
-        out.append(Corruption(f"sign of {q}, all cases", ("sign",), f"{q}*", scaled(q, where, -1.0)))
+    out += [Corruption(f"sign of {q}, all cases", ("sign",), f"{q}*", scaled(q, "LR", -1.0)) for q in ALL]
     for q, side in (
         ("toe", "R"),
         ("camber", "L"),

@@ -79,7 +79,8 @@ class SensorResolution(_Section):
 
 
 class CheckOptions(_Section):
-    """accept: globs of findings, as `sign.vertical.pad_z`, that the test engineer has looked at: they are told
+    """accept: globs of findings, as `sign.vertical.pad_z`, that the test engineer has looked at: they are
+    told
     as warnings and stop nothing."""
 
     accept: tuple[Text, ...] = ()

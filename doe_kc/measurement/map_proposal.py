@@ -1,4 +1,5 @@
-"""What a rig's channel and file names say: quantity, side, unit, load case; nothing where they say two things."""
+"""What a rig's channel and file names say: quantity, side, unit, load case; nothing where they say two
+things."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ _WORDS: Sequence[tuple[str, str]] = (
         r"(wheelcent(re|er)|radmitte|radmittelpunkt|wc|centre|wheeltobody|hub|rad).?(disp)?z|wheeltravel|einfeder",
     ),
 )
-"""Quantity and what names it: English and German; the first that fits. Without a quantity: channels of others."""
+"""Quantity and what names it: English and German; the first that fits. Without a quantity: channels of
+others."""
 _SIDES: Mapping[str, re.Pattern[str]] = {
     "L": re.compile(
         r"(?:^|[^A-Za-z])(?:LH|L|FL|VL|RL|HL|LF|LR|left|links|Left|Links|li)(?=$|[^a-z])|[FR]?LH(?=[a-zA-Z])|Left|Links"

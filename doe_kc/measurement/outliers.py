@@ -13,7 +13,8 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.white_noise import white_sd
 
 MEDIAN_SAMPLES = 7
-"""Of the running median: sees up to three outliers in a row, and follows any monotone curve with its kinks."""
+"""Of the running median: sees up to three outliers in a row, and follows any monotone curve with its
+kinks."""
 OUTLIER_SDS = 12.0
 """Standard deviations of the channel's white noise from which a sample is one: it moves a reduced point, the
 weighted mean of about a dozen samples, by one."""

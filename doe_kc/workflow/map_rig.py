@@ -16,7 +16,7 @@ from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.branches import RunCurves, reduce_case
 from doe_kc.measurement.channel_map import INPUT_UNITS, QUANTITY_UNITS, channel_map
 from doe_kc.measurement.channels import RIG_NAMES, TIME
-from doe_kc.measurement.checks import Finding
+from doe_kc.measurement.checks import RecordFinding
 from doe_kc.measurement.containers import READABLE, read_table, table_parts
 from doe_kc.measurement.manifest import Manifest
 from doe_kc.measurement.map_file import MapEntry, MapFile
@@ -54,13 +54,14 @@ class MapProposal:
     absent: tuple[str, ...]
     ignored: tuple[str, ...]
     open: tuple[str, ...]
-    findings: tuple[Finding, ...]
+    findings: tuple[RecordFinding, ...]
 
 
 def propose_map(folder: Path, axle: Axle | None = None) -> MapProposal:
     """From names, units, ranges and the physics of the data.
 
-    axle: that the records are of, for signs that only a model tells. InputError for a folder without a record.
+    axle: that the records are of, for signs that only a model tells. InputError for a folder without a
+    record.
     """
     tables, unread = _tables(folder)
     guesses = {g.name: g for t in tables for h in t.table.channels if (g := guess_channel(h)) is not None}
@@ -176,7 +177,7 @@ def _case_by_sweep(t: NamedTable, channels: Sequence[ChannelGuess]) -> str | Non
 
 def _findings(
     folder: Path, tables: Sequence[NamedTable], proposal: MapProposal, axle: Axle | None
-) -> tuple[Finding, ...]:
+) -> tuple[RecordFinding, ...]:
     """Of the checks; a record that cannot be read through the map is one too."""
     channels = channel_map(map_file(proposal), folder, str(folder))
     by_name = {t.name: t.table for t in tables}
@@ -187,7 +188,7 @@ def _findings(
             runs[case] = reduce_case([record_from_table(by_name[n], case, channels) for n in names])
         except InputError as error:
             where, _, rest = str(error).partition(": ")
-            refused.append(Finding("record", "error", case, "*", where, rest.rstrip("."), "see above"))
+            refused.append(RecordFinding("record", "error", case, "*", where, rest.rstrip("."), "see above"))
     manifest = Manifest(name=proposal.name, records=dict(proposal.records))
     model = None if axle is None else axle_curves(axle)
     return (*refused, *rig_findings(folder / "test.toml", manifest, runs, model))
@@ -218,7 +219,7 @@ def _settled(proposal: MapProposal) -> tuple[ChannelGuess, ...]:
     return tuple(channels)
 
 
-def _only_case(proposal: MapProposal, finding: Finding) -> bool:
+def _only_case(proposal: MapProposal, finding: RecordFinding) -> bool:
     """Whether the input's sign is wrong in all load cases that have this input."""
     own = [c for c in proposal.records if LOAD_CASES[c].channel == finding.channel]
     wrong = [f.case for f in proposal.findings if f.kind == "input_sign" and f.channel == finding.channel]

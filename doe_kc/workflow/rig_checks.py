@@ -11,7 +11,7 @@ from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import DoeKcError, InputError
 from doe_kc.measurement import Manifest
 from doe_kc.measurement.branches import RunCurves
-from doe_kc.measurement.checks import Finding, RigTest, check_test
+from doe_kc.measurement.checks import RecordFinding, RigTest, check_test
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 
@@ -28,12 +28,12 @@ def axle_curves(axle: Axle) -> CurveSet | None:
 
 def rig_findings(
     source: Path, manifest: Manifest, runs: Mapping[str, tuple[RunCurves, ...]], model: CurveSet | None
-) -> tuple[Finding, ...]:
+) -> tuple[RecordFinding, ...]:
     """Findings on the records of a test, errors first. source: its `test.toml`."""
     return check_test(RigTest(source, manifest, runs, model)) if runs else ()
 
 
-def refuse_faulty(findings: tuple[Finding, ...]) -> None:
+def refuse_faulty(findings: tuple[RecordFinding, ...]) -> None:
     """Warn of what is a warning; InputError for the first error, with the number of others."""
     for finding in findings:
         if finding.severity == "warning":
@@ -42,6 +42,7 @@ def refuse_faulty(findings: tuple[Finding, ...]) -> None:
     if errors:
         more = f" `doe-kc check` tells {len(errors) - 1} more." if len(errors) > 1 else ""
         raise InputError(
-            f"{errors[0].message} Where the record is right all the same, name the finding in [checks] accept "
+            f"{errors[0].message} Where the record is right all the same, name the finding in [checks] "
+            f"accept "
             f"of test.toml.{more}"
         )

@@ -6,12 +6,12 @@ import sys
 from dataclasses import replace
 
 from doe_kc.ground.registry import import_members
-from doe_kc.measurement.checks._base import CHECKS, Finding, RigTest, accepted
+from doe_kc.measurement.checks._base import CHECKS, RecordFinding, RigTest, accepted
 
 import_members(sys.modules[__name__])
 
 
-def check_test(test: RigTest) -> tuple[Finding, ...]:
+def check_test(test: RigTest) -> tuple[RecordFinding, ...]:
     """Findings of all checks, errors first. What the test's `accept` names is a warning at most."""
     globs = test.manifest.checks.accept
     findings = [
@@ -22,13 +22,20 @@ def check_test(test: RigTest) -> tuple[Finding, ...]:
     return tuple(sorted(_first_causes(findings), key=lambda f: f.severity))
 
 
-def _first_causes(findings: list[Finding]) -> list[Finding]:
-    """Without the caster of the bench where a faulty toe or camber channel contradicts it."""
+def _first_causes(findings: list[RecordFinding]) -> list[RecordFinding]:
+    """Without what follows from another finding: the caster of the bench where a faulty toe or camber channel
+    contradicts it, repeats that differ in a hole."""
     faulty = any(
         f.kind in ("sign", "sides", "columns", "unit") and ("toe" in f.channel or "camber" in f.channel)
         for f in findings
     )
-    return [f for f in findings if not (faulty and f.kind == "alignment" and f.channel == "caster")]
+    holes = {f.where for f in findings if f.kind == "gap"}
+    return [
+        f
+        for f in findings
+        if not (faulty and f.ident == "alignment.static.caster")
+        and not (f.kind == "repeat" and f.where in holes)
+    ]
 
 
-__all__ = ["CHECKS", "Finding", "RigTest", "accepted", "check_test"]
+__all__ = ["CHECKS", "RecordFinding", "RigTest", "accepted", "check_test"]

@@ -17,7 +17,7 @@ Severity = Literal["error", "warning"]
 
 
 @dataclass(frozen=True)
-class Finding:
+class RecordFinding:
     """Something that is wrong with a record, or looks so.
 
     kind: of fault, such as `outlier` or `sign`. case: load case, `*` for all. channel: as in the package's
@@ -65,7 +65,7 @@ class RigTest:
         return sensors.tyre_load_N if response == "tyre_load" else sensors.angle_deg
 
 
-Check = Callable[[RigTest], Iterator[Finding]]
+Check = Callable[[RigTest], Iterator[RecordFinding]]
 CHECKS: dict[str, Check] = {}
 """Every check by the name of its module, in the order in which findings are told."""
 
@@ -82,6 +82,6 @@ def channel_name(response: str, side: int | None = None) -> str:
     return name if side is None else f"{name}_{'LR'[side]}"
 
 
-def accepted(finding: Finding, globs: tuple[str, ...]) -> bool:
+def accepted(finding: RecordFinding, globs: tuple[str, ...]) -> bool:
     """Whether the test's `accept` names it."""
     return any(fnmatchcase(finding.ident, glob) for glob in globs)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from doe_kc.curves import SIDE_WORDS, SIDES
-from doe_kc.measurement.checks._base import Finding, RigTest, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
 from doe_kc.measurement.checks.identity.slopes import column, measured_slopes, row
 
 CASTER_OFF = 1.0
@@ -21,7 +21,7 @@ _KEYS = {"toe": "toe_deg", "camber": "camber_deg", "spin": "caster_deg"}
 
 
 @rig_check
-def alignment(test: RigTest) -> Iterator[Finding]:
+def alignment(test: RigTest) -> Iterator[RecordFinding]:
     """Of each angle: against steer, then the other wheel, then the model; the first that fails."""
     if test.manifest.alignment is None:
         return
@@ -34,7 +34,7 @@ def alignment(test: RigTest) -> Iterator[Finding]:
             _against_model(test, response, values) or _against_each_other(response, values)
         )
         if fault is not None:
-            yield Finding(
+            yield RecordFinding(
                 kind="alignment",
                 severity="warning",
                 case="static",
@@ -54,7 +54,8 @@ def stated(test: RigTest, key: str) -> np.ndarray:
 
 
 def steering_casters(test: RigTest) -> np.ndarray:
-    """(2,) caster by the lean of the steering axis: -d camber / d toe = tan(caster), deg; nan without steer."""
+    """(2,) caster by the lean of the steering axis: -d camber / d toe = tan(caster), deg; nan without
+    steer."""
     slope = measured_slopes(test).slope[row("steer")]
     with np.errstate(divide="ignore", invalid="ignore"):
         lean = -slope[column("camber")] / slope[column("toe")]
@@ -64,7 +65,8 @@ def steering_casters(test: RigTest) -> np.ndarray:
 def _against_steer(values: np.ndarray, leaning: np.ndarray) -> str | None:
     for side, (value, lean) in enumerate(zip(values, leaning, strict=True)):
         if math.isfinite(value) and abs(value - lean) > CASTER_OFF:
-            return f"is {value:g} on the {SIDE_WORDS[SIDES[side]]}, the steer records show {lean:.2f} (camber over toe)"
+            where = SIDE_WORDS[SIDES[side]]
+            return f"is {value:g} on the {where}, the steer records show {lean:.2f} (camber over toe)"
     return None
 
 

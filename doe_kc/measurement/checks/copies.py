@@ -7,19 +7,19 @@ from itertools import combinations
 
 import numpy as np
 
-from doe_kc.measurement.checks._base import Finding, RigTest, channel_name, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
 from doe_kc.measurement.records import RigRecord
 
 
 @rig_check
-def copies(test: RigTest) -> Iterator[Finding]:
+def copies(test: RigTest) -> Iterator[RecordFinding]:
     """Within each record, then between the records of different load cases."""
     records = [(case, run.record) for case, runs in test.runs.items() for run in runs]
     for case, record in records:
         yield from _channels(case, record)
     for (case, one), (other_case, other) in combinations(records, 2):
         if case != other_case and _same_file(one, other):
-            yield Finding(
+            yield RecordFinding(
                 kind="load_case",
                 severity="error",
                 case=other_case,
@@ -30,11 +30,11 @@ def copies(test: RigTest) -> Iterator[Finding]:
             )
 
 
-def _channels(case: str, record: RigRecord) -> Iterator[Finding]:
+def _channels(case: str, record: RigRecord) -> Iterator[RecordFinding]:
     names = {channel_name(r, s): v for r, sides in record.channels.items() for s, v in enumerate(sides)}
     for (name, one), (other_name, other) in combinations(names.items(), 2):
         if np.ptp(one) > 0.0 and np.array_equal(one, other):
-            yield Finding(
+            yield RecordFinding(
                 kind="copy",
                 severity="error",
                 case=case,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement.checks._base import Finding, RigTest, channel_name, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
 from doe_kc.measurement.records import RigRecord
 from doe_kc.measurement.white_noise import white_sd
 
@@ -20,7 +20,7 @@ RANGE_SHARE = 0.02
 
 
 @rig_check
-def drift(test: RigTest) -> Iterator[Finding]:
+def drift(test: RigTest) -> Iterator[RecordFinding]:
     """Of each channel of records that begin and end at the same input.
 
     What all runs of a load case show alike is no drift but the wheel's own way.
@@ -35,7 +35,8 @@ def drift(test: RigTest) -> Iterator[Finding]:
 
 
 def _openings(record: RigRecord) -> tuple[FloatArray, FloatArray]:
-    """(k,) end minus beginning at the same input of each channel, and what noise and the coarseness of samples
+    """(k,) end minus beginning at the same input of each channel, and what noise and the coarseness of
+    samples
     allow of it; nan where the record is no closed loop."""
     values = np.concatenate(list(record.channels.values()))
     n, u = END_SAMPLES, record.input
@@ -54,14 +55,15 @@ def _openings(record: RigRecord) -> tuple[FloatArray, FloatArray]:
     return opening, limit
 
 
-def _finding(case: str, record: RigRecord, channel: str, opening: float) -> Finding:
-    return Finding(
+def _finding(case: str, record: RigRecord, channel: str, opening: float) -> RecordFinding:
+    return RecordFinding(
         kind="drift",
         severity="warning",
         case=case,
         channel=channel,
         where=record.label,
         evidence=f"{channel} ends {opening:+.3g} from where it began at the same input",
-        cure="let the rig run warm and settle, then record the loop again; the mean curve is moved by half of "
+        cure="let the rig run warm and settle, then record the loop again; the mean curve is moved by "
+        "half of "
         "it at most",
     )

@@ -8,7 +8,7 @@ import numpy as np
 
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement.checks._base import Finding, RigTest, channel_name, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
 from doe_kc.measurement.records import RigRecord
 from doe_kc.measurement.white_noise import white_sd
 
@@ -19,19 +19,20 @@ USUAL_TIMES = 3.0
 MOVED = 0.03
 """Share of the input's range that passes meanwhile: not a dwell."""
 ALIVE, DEAD_SDS = 18.0, 8.5
-"""Standard deviations of noise that the range of a channel exceeds which shows something, and of one that shows
+"""Standard deviations of noise that the range of a channel exceeds which shows something, and of one that
+shows
 noise alone does not (6.5 expected of 512 samples)."""
 
 
 @rig_check
-def flat(test: RigTest) -> Iterator[Finding]:
+def flat(test: RigTest) -> Iterator[RecordFinding]:
     """Of every channel of every record, the input's too."""
     for runs in test.runs.values():
         for run in runs:
             yield from _record(run.record)
 
 
-def _record(record: RigRecord) -> Iterator[Finding]:
+def _record(record: RigRecord) -> Iterator[RecordFinding]:
     for response, sides in record.channels.items():
         for side, values in enumerate(sides):
             fault = _fault(values, record.input) or _dead(sides, side)
@@ -78,11 +79,12 @@ def _dead(sides: FloatArray, side: int) -> tuple[str, float, int, int] | None:
     return None
 
 
-def _finding(record: RigRecord, channel: str, fault: tuple[str, float, int, int]) -> Finding:
+def _finding(record: RigRecord, channel: str, fault: tuple[str, float, int, int]) -> RecordFinding:
     kind, value, first, length = fault
     words = {
         "dead": f"{channel} stays at {value:g} in the whole record while the rig moves",
-        "stuck": f"{channel} stays at {value:g} for {length} samples from sample {first + 1} on while all moves",
+        "stuck": f"{channel} stays at {value:g} for {length} samples from sample {first + 1} on while "
+        "all moves",
         "clipped": f"{channel} is cut off at {value:g} for {length} samples from sample {first + 1}",
     }
     cures = {
@@ -91,4 +93,4 @@ def _finding(record: RigRecord, channel: str, fault: tuple[str, float, int, int]
         "clipped": "raise the measuring range and record it again",
     }
     severe = "error" if kind == "dead" or length > 0.05 * record.input.size else "warning"
-    return Finding(kind, severe, record.case.id, channel, record.label, words[kind], cures[kind])  # type: ignore[arg-type]
+    return RecordFinding(kind, severe, record.case.id, channel, record.label, words[kind], cures[kind])  # type: ignore[arg-type]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from doe_kc.measurement.checks._base import Finding, RigTest, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
 from doe_kc.measurement.outliers import running_median
 
 LEAP = 4.0
@@ -18,7 +18,7 @@ SERIOUS = 0.15
 
 
 @rig_check
-def gaps(test: RigTest) -> Iterator[Finding]:
+def gaps(test: RigTest) -> Iterator[RecordFinding]:
     """The largest leap of each record."""
     for case, runs in test.runs.items():
         for record in (run.record for run in runs):
@@ -29,13 +29,14 @@ def gaps(test: RigTest) -> Iterator[Finding]:
             usual = float(np.quantile(steps, 0.9))
             if share[at] > MISSED and steps[at] > LEAP * usual:
                 low, high = sorted((record.input[at], record.input[at + 1]))
-                yield Finding(
+                yield RecordFinding(
                     kind="gap",
                     severity="error" if share[at] > SERIOUS else "warning",
                     case=case,
                     channel="*",
                     where=record.label,
-                    evidence=f"{record.case.channel} leaps between {low:g} and {high:g} {record.case.unit} at "
+                    evidence=f"{record.case.channel} leaps between {low:g} and {high:g} "
+                    f"{record.case.unit} at "
                     f"sample {at + 2}: {100 * share[at]:.0f} % of its range are missing",
                     cure="export the whole record or record it again",
                 )

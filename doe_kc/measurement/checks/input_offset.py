@@ -8,20 +8,20 @@ import numpy as np
 
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.measurement.branches import RunCurves, static_index
-from doe_kc.measurement.checks._base import Finding, RigTest, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
 from doe_kc.measurement.checks.repeats import odd_runs, usual_scatter
 
-SHARE = 0.01
+OFFSET_SHARE = 0.01
 """Of the sweep: a smaller offset moves no characteristic by what matters."""
 EXPLAINED = 0.85
 """Share of the channels' squared values at zero input that one offset explains."""
-SIGNIFICANT = 8.0
+OFFSET_SDS = 8.0
 """Standard deviations."""
 SERIOUS_OFFSET = 0.1
 
 
 @rig_check
-def input_offset(test: RigTest) -> Iterator[Finding]:
+def input_offset(test: RigTest) -> Iterator[RecordFinding]:
     """Of each load case; the tyre load's rest is that of the other load cases."""
     usual = usual_scatter(test)
     rest = _rest_loads(test)
@@ -29,8 +29,8 @@ def input_offset(test: RigTest) -> Iterator[Finding]:
         offset, sd, explained = _offset(test, case, usual, rest)
         record = runs[0].record
         share = abs(offset) / record.case.amplitude
-        if share > SHARE and abs(offset) > SIGNIFICANT * sd and explained > EXPLAINED:
-            yield Finding(
+        if share > OFFSET_SHARE and abs(offset) > OFFSET_SDS * sd and explained > EXPLAINED:
+            yield RecordFinding(
                 kind="input_offset",
                 severity="error" if share > SERIOUS_OFFSET else "warning",
                 case=case,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES
-from doe_kc.measurement.checks._base import Finding, RigTest, channel_name, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
 from doe_kc.measurement.white_noise import white_sd
 
 TIMES = 5.0
@@ -17,7 +17,7 @@ STATED_TIMES = 3.0
 
 
 @rig_check
-def noise(test: RigTest) -> Iterator[Finding]:
+def noise(test: RigTest) -> Iterator[RecordFinding]:
     """Of each response over all records."""
     for response in RIG_RESPONSES:
         levels = [
@@ -32,7 +32,7 @@ def noise(test: RigTest) -> Iterator[Finding]:
             slope = test.resolution(response)
             if level > TIMES * usual and level > STATED_TIMES * slope:
                 channel = channel_name(response, side)
-                yield Finding(
+                yield RecordFinding(
                     kind="noise",
                     severity="warning",
                     case=case,

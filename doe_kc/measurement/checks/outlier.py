@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from doe_kc.measurement.channels import RIG_NAMES
-from doe_kc.measurement.checks._base import Finding, RigTest, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
 from doe_kc.measurement.records import RigRecord
 
 MOST = 0.02
@@ -14,7 +14,7 @@ LISTED = 4
 
 
 @rig_check
-def outliers(test: RigTest) -> Iterator[Finding]:
+def outliers(test: RigTest) -> Iterator[RecordFinding]:
     """One finding a channel of a record."""
     for case, runs in test.runs.items():
         for run in runs:
@@ -22,14 +22,14 @@ def outliers(test: RigTest) -> Iterator[Finding]:
                 yield _finding(case, run.record, role)
 
 
-def _finding(case: str, record: RigRecord, role: str) -> Finding:
+def _finding(case: str, record: RigRecord, role: str) -> RecordFinding:
     own = [o for o in record.outliers if o.role == role]
     listed = ", ".join(f"{o.value:g} at sample {o.sample + 1}" for o in own[:LISTED])
     more = f" and {len(own) - LISTED} more" if len(own) > LISTED else ""
     many = len(own) > MOST * record.input.size
     response, _, side = role.rpartition("_")
     channel = record.case.channel if role == "input" else f"{RIG_NAMES.get(response, role)}_{side}"
-    return Finding(
+    return RecordFinding(
         kind="outlier",
         severity="error" if many else "warning",
         case=case,

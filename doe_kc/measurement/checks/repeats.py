@@ -11,7 +11,7 @@ import numpy as np
 from doe_kc.curves import RIG_RESPONSES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.branches import RunCurves, static_index
-from doe_kc.measurement.checks._base import Finding, RigTest, Severity, channel_name, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, Severity, channel_name, rig_check
 from doe_kc.measurement.noise_estimation import SENSOR_KINDS
 
 WARN, REFUSE = 5.0, 15.0
@@ -37,7 +37,7 @@ class Deviation:
 
 
 @rig_check
-def repeats(test: RigTest) -> Iterator[Finding]:
+def repeats(test: RigTest) -> Iterator[RecordFinding]:
     """Of each load case with repeats."""
     usual = usual_scatter(test)
     for case, runs in test.runs.items():
@@ -116,7 +116,9 @@ def _by_run(deviations: Sequence[Deviation]) -> dict[int, list[Deviation]]:
     return out
 
 
-def _findings(case: str, runs: Sequence[RunCurves], k: int, own: Sequence[Deviation]) -> Iterator[Finding]:
+def _findings(
+    case: str, runs: Sequence[RunCurves], k: int, own: Sequence[Deviation]
+) -> Iterator[RecordFinding]:
     if len(runs) == 2 and k == 0:
         return
     label = runs[k].record.label
@@ -125,7 +127,7 @@ def _findings(case: str, runs: Sequence[RunCurves], k: int, own: Sequence[Deviat
     severity: Severity = "error" if strongest.score > REFUSE else "warning"
     channels = 2 * len(runs[k].record.channels)
     if len(own) > MOST_CHANNELS * channels:
-        yield Finding(
+        yield RecordFinding(
             kind="repeat",
             severity=severity,
             case=case,
@@ -137,7 +139,7 @@ def _findings(case: str, runs: Sequence[RunCurves], k: int, own: Sequence[Deviat
         return
     for d in own:
         channel = channel_name(d.response, d.side)
-        yield Finding(
+        yield RecordFinding(
             kind="repeat",
             severity="error" if d.score > REFUSE else "warning",
             case=case,

@@ -6,14 +6,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from doe_kc.measurement.checks._base import Finding, RigTest, rig_check
-from doe_kc.measurement.checks.identity.hypotheses import Hypothesis, hypothesis_set
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
+from doe_kc.measurement.checks.identity.faults import ChannelFault, fault_set
 from doe_kc.measurement.checks.identity.laws import Expectation, misfit
 from doe_kc.measurement.checks.identity.slopes import measured_slopes, model_slopes
 
-TELLING = 14.0
+TOLD_FALL = 14.0
 """Fall of the misfit, about -2 ln likelihood, from which an error is told."""
-CERTAIN = 35.0
+ERROR_FALL = 35.0
 """Fall from which it is an error, not a warning."""
 MOST_ERRORS = 4
 """Independent errors that are looked for, one after another."""
@@ -22,22 +22,22 @@ OPEN = 4.0
 
 
 @rig_check
-def signs(test: RigTest) -> Iterator[Finding]:
+def signs(test: RigTest) -> Iterator[RecordFinding]:
     """Errors in the order in which they explain most."""
     table, expected = measured_slopes(test), expectation(test)
     roll = test.runs.get("roll")
     counter_phase = roll is not None and roll[0].record.case.unit == "mm"
-    candidates = hypothesis_set(tuple(test.runs), counter_phase=counter_phase)
+    candidates = fault_set(tuple(test.runs), counter_phase=counter_phase)
     for _ in range(MOST_ERRORS):
         now = float(misfit(table.batch(), expected)[0])
-        if now < TELLING:
+        if now < TOLD_FALL:
             return
         undone = candidates.undone(table)
         left = misfit(undone, expected, candidates.source) + candidates.price
         ranked = np.argsort(left)
         best = candidates.members[ranked[0]]
         fall = now - float(left[ranked[0]])
-        if fall < TELLING:
+        if fall < TOLD_FALL:
             return
         others = [candidates.members[i] for i in ranked[1:8] if left[i] - left[ranked[0]] < OPEN]
         yield _finding(test, best, fall, [h for h in others if not _alike(best, h)])
@@ -51,19 +51,19 @@ def expectation(test: RigTest) -> Expectation:
     return Expectation(model_slopes(test.model), test.manifest.setup.reference_wheel_load_N)
 
 
-def _alike(one: Hypothesis, other: Hypothesis) -> bool:
+def _alike(one: ChannelFault, other: ChannelFault) -> bool:
     return one.kind == other.kind and one.channel == other.channel
 
 
-def _finding(test: RigTest, best: Hypothesis, fall: float, others: list[Hypothesis]) -> Finding:
+def _finding(test: RigTest, best: ChannelFault, fall: float, others: list[ChannelFault]) -> RecordFinding:
     everywhere = len(best.cases) == len(test.runs)
     case = "*" if everywhere else best.cases[0]
     where = str(test.source) if everywhere else test.runs[best.cases[0]][0].record.label
     rest = "".join(f"; or {h.words}" for h in others[:2])
     evidence = f"{best.words}{rest}: without it the slopes near rest agree with laws and model better by "
-    return Finding(
+    return RecordFinding(
         kind=best.kind,
-        severity="error" if fall > CERTAIN and not others else "warning",
+        severity="error" if fall > ERROR_FALL and not others else "warning",
         case=case,
         channel=best.channel,
         where=where,

@@ -16,6 +16,13 @@ TableReader = Callable[[Path, str | None, str], ChannelTable]
 CONTAINERS: Mapping[str, str] = {
     ".xlsx": "excel:read_sheet_table",
     ".xlsm": "excel:read_sheet_table",
+    ".mat": "matlab:read_mat_table",
+    ".tdms": "tdms:read_tdms_table",
+    ".mf4": "mdf:read_mdf_table",
+    ".mdf": "mdf:read_mdf_table",
+    ".rsp": "rpc:read_rpc_table",
+    ".tim": "rpc:read_rpc_table",
+    ".rpc": "rpc:read_rpc_table",
 }
 """Suffix -> module and function of this folder; text for all others. Imported when a file asks for it."""
 TEXT_READER = "text:read_text_table"

@@ -12,7 +12,7 @@ from doe_kc.ground.typing import FloatArray, IntArray
 from doe_kc.load_cases import CASE_ORDER
 from doe_kc.measurement.checks.identity.slopes import SlopeTable, column, mirror_signs, row
 
-LAWS: Mapping[tuple[str, str], tuple[float, float]] = {
+SLOPE_LAWS: Mapping[tuple[str, str], tuple[float, float]] = {
     ("vertical", "wc_z"): (0.7, 1.0),
     ("vertical", "tyre_load"): (8.0, 80.0),
     ("roll", "wc_z"): (-14.0, -7.0),
@@ -33,7 +33,8 @@ LAWS: Mapping[tuple[str, str], tuple[float, float]] = {
 """(load case, response) -> slopes of the left wheel, response per input unit, of independent axles and beams.
 
 Signs follow from positive work of the force, from the load of the pad that is raised, and from the moment of
-a force at the ground about the ball joints; sizes are those of measured cars and of reference axles (McPherson,
+a force at the ground about the ball joints; sizes are those of measured cars and of reference axles
+(McPherson,
 double wishbone, five-link, semi-trailing, twist beam, rigid), widened.
 """
 CAP = 25.0
@@ -54,7 +55,8 @@ _SCALES: Mapping[str, tuple[float, float, float]] = {
 CASTER_TANGENT = 0.087
 """Of 5 deg, the caster of a steered axle; 0.04 is granted either way."""
 INDEPENDENT = 5e-3
-"""Camber over wheel travel, deg/mm, below which vertical motion and roll have nothing in common: beam axles."""
+"""Camber over wheel travel, deg/mm, below which vertical motion and roll have nothing in common: beam
+axles."""
 _USUAL_NOISE = np.array(
     [4.0 if r == "tyre_load" else 0.02 if r in WHEEL_CENTRE else 3e-3 for r in RIG_RESPONSES]
 )
@@ -86,14 +88,15 @@ _SCALE = scales()
 _MIRROR = mirror_signs()
 _LOW = np.full(_SCALE.shape, np.nan)
 _HIGH = np.full(_SCALE.shape, np.nan)
-for (_case, _response), (_a, _b) in LAWS.items():
+for (_case, _response), (_a, _b) in SLOPE_LAWS.items():
     _LOW[row(_case), column(_response)], _HIGH[row(_case), column(_response)] = _a, _b
 
 
 def misfit(table: SlopeTable, expected: Expectation, source: IntArray | None = None) -> FloatArray:
     """(h,) about -2 ln likelihood of h tables: laws, model, mirror, load at rest, noise, relations.
 
-    table: arrays with a leading axis of h. source: (h, 8) row whose expectations hold for each row, by default
+    table: arrays with a leading axis of h. source: (h, 8) row whose expectations hold for each row, by
+    default
     its own.
     """
     rows = np.arange(len(CASE_ORDER))[None] if source is None else source
@@ -155,7 +158,8 @@ def _noise_misfit(noise: FloatArray) -> FloatArray:
 
 
 def _relation_misfit(slope: FloatArray) -> FloatArray:
-    """Of angles over wheel travel, alike in vertical motion and roll of independent wheels, and of camber over
+    """Of angles over wheel travel, alike in vertical motion and roll of independent wheels, and of camber
+    over
     toe in steer, -tan(caster)."""
     vertical, roll, steer = (slope[:, row(c)] for c in ("vertical", "roll", "steer"))
     travel, camber = column("wc_z"), column("camber")

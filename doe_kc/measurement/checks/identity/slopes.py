@@ -21,7 +21,8 @@ MIRRORED = ("vertical", "lateral_opposite", "drive", "brake")
 _ROW = {case: i for i, case in enumerate(CASE_ORDER)}
 _COLUMN = {response: i for i, response in enumerate(RIG_RESPONSES)}
 COUNTER_PHASE_DEG = 13.8
-"""Pad travel in mm of a counter-phase roll that rolls the wheels like 1 deg of the body, half track 790 mm."""
+"""Pad travel in mm of a counter-phase roll that rolls the wheels like 1 deg of the body, half track 790
+mm."""
 
 
 @dataclass(frozen=True)

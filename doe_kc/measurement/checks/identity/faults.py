@@ -16,8 +16,8 @@ from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.checks._base import channel_name
 from doe_kc.measurement.checks.identity.slopes import SlopeTable, column, row
 
-DEG = 180.0 / math.pi
-ANGLE_FACTORS: Mapping[float, str] = {1.0 / DEG: "rad", 60.0: "arcmin", 1000.0 / DEG: "mrad"}
+DEG_PER_RAD = 180.0 / math.pi
+ANGLE_FACTORS: Mapping[float, str] = {1.0 / DEG_PER_RAD: "rad", 60.0: "arcmin", 1000.0 / DEG_PER_RAD: "mrad"}
 TOE_FACTORS: Mapping[float, str] = {**ANGLE_FACTORS, 2.0: "the total of both wheels"}
 LENGTH_FACTORS: Mapping[float, str] = {1e-3: "m", 0.1: "cm", 1.0 / 25.4: "in"}
 LOAD_FACTORS: Mapping[float, str] = {1e-3: "kN", 1.0 / 9.80665: "kg", 1.0 / 4.4482216: "lbf", 0.1: "daN"}
@@ -27,7 +27,7 @@ SAME_INPUT = (("lateral", "lateral_opposite", "lateral_offset"), ("drive", "brak
 
 
 @dataclass(frozen=True)
-class Hypothesis:
+class ChannelFault:
     """One error. kind: of finding. cases, channel: where, as findings name it. price: added to its misfit,
     the more the more special it is. words: what is wrong. cure: how it is mended.
 
@@ -50,10 +50,10 @@ class Hypothesis:
 
 
 @dataclass(frozen=True)
-class HypothesisSet:
-    """All hypotheses of a test, stacked (h, ...) as in `Hypothesis`."""
+class FaultSet:
+    """All faults looked for in a test, stacked (h, ...) as in `ChannelFault`."""
 
-    members: tuple[Hypothesis, ...]
+    members: tuple[ChannelFault, ...]
     price: FloatArray
     slope: FloatArray
     rest: FloatArray
@@ -76,11 +76,11 @@ _ROWS = np.arange(_SHAPE[0])[None, :, None]
 
 
 @cache
-def hypothesis_set(cases: tuple[str, ...], *, counter_phase: bool) -> HypothesisSet:
+def fault_set(cases: tuple[str, ...], *, counter_phase: bool) -> FaultSet:
     """Every error that is looked for in a test with records of `cases`."""
-    members = tuple(hypotheses(cases, counter_phase=counter_phase))
+    members = tuple(channel_faults(cases, counter_phase=counter_phase))
     ones, places = np.ones(_SHAPE), np.arange(np.prod(_SHAPE))
-    return HypothesisSet(
+    return FaultSet(
         members,
         np.array([h.price for h in members]),
         np.stack([ones if h.slope is None else h.slope for h in members]),
@@ -90,7 +90,7 @@ def hypothesis_set(cases: tuple[str, ...], *, counter_phase: bool) -> Hypothesis
     )
 
 
-def hypotheses(cases: Sequence[str], *, counter_phase: bool = False) -> Iterator[Hypothesis]:
+def channel_faults(cases: Sequence[str], *, counter_phase: bool = False) -> Iterator[ChannelFault]:
     """Every error that is looked for in a test with records of `cases`."""
     yield from _scaled_channels(cases)
     yield from _scaled_inputs(cases)
@@ -118,7 +118,7 @@ def _factors(response: str) -> Mapping[float, str]:
     return LENGTH_FACTORS if response.startswith("wc") else ANGLE_FACTORS
 
 
-def _scaled_channels(cases: Sequence[str]) -> Iterator[Hypothesis]:
+def _scaled_channels(cases: Sequence[str]) -> Iterator[ChannelFault]:
     groups: list[tuple[str, ...]] = [(r,) for r in RIG_RESPONSES]
     groups += [("toe", "camber", "spin"), ("wc_x", "wc_y"), ("wc_x", "wc_y", "wc_z")]
     for some, price in _places(cases):
@@ -139,7 +139,7 @@ def _scaled(
     factor: float,
     unit: str,
     price: float,
-) -> Hypothesis:
+) -> ChannelFault:
     names = [channel_name(r, sides[0] if len(sides) == 1 else None) for r in group]
     slope, rest = _ones()
     rows = [row(c) for c in some]
@@ -165,7 +165,7 @@ def _scaled(
         words, kind = f"{what} {are} in {unit} {where}", "unit"
         cure = "give its unit in the channel map or the heading"
         price += 1.0
-    return Hypothesis(
+    return ChannelFault(
         kind=kind,
         cases=some,
         channel="/".join(names),
@@ -182,7 +182,7 @@ def _ones() -> tuple[FloatArray, FloatArray]:
     return np.ones((len(CASE_ORDER), len(RIG_RESPONSES), 2)), np.ones((len(CASE_ORDER), 2))
 
 
-def _scaled_inputs(cases: Sequence[str]) -> Iterator[Hypothesis]:
+def _scaled_inputs(cases: Sequence[str]) -> Iterator[ChannelFault]:
     by_channel: dict[str, list[str]] = {}
     for case in cases:
         by_channel.setdefault(LOAD_CASES[case].channel, []).append(case)
@@ -191,7 +191,7 @@ def _scaled_inputs(cases: Sequence[str]) -> Iterator[Hypothesis]:
         for some in sets:
             slope, _ = _ones()
             slope[[row(c) for c in some]] = -1.0
-            yield Hypothesis(
+            yield ChannelFault(
                 kind="input_sign",
                 cases=some,
                 channel=channel,
@@ -202,7 +202,7 @@ def _scaled_inputs(cases: Sequence[str]) -> Iterator[Hypothesis]:
             )
 
 
-def _axes(cases: Sequence[str]) -> Iterator[Hypothesis]:
+def _axes(cases: Sequence[str]) -> Iterator[ChannelFault]:
     """Displacements and forces along one axis reversed together: another frame."""
     for axis, response, channel in (("X", "wc_x", "force_x"), ("Y", "wc_y", "force_y")):
         own = [c for c in cases if LOAD_CASES[c].channel == channel]
@@ -211,7 +211,7 @@ def _axes(cases: Sequence[str]) -> Iterator[Hypothesis]:
         slope, _ = _ones()
         slope[:, column(response)] *= -1.0
         slope[[row(c) for c in own]] *= -1.0
-        yield Hypothesis(
+        yield ChannelFault(
             kind="sign",
             cases=tuple(cases),
             channel=channel_name(response),
@@ -222,7 +222,7 @@ def _axes(cases: Sequence[str]) -> Iterator[Hypothesis]:
         )
 
 
-def _exchanged_sides(cases: Sequence[str]) -> Iterator[Hypothesis]:
+def _exchanged_sides(cases: Sequence[str]) -> Iterator[ChannelFault]:
     for some, price in _places(cases):
         for group in (tuple(RIG_RESPONSES), *((r,) for r in RIG_RESPONSES)):
             order = _order()
@@ -233,7 +233,7 @@ def _exchanged_sides(cases: Sequence[str]) -> Iterator[Hypothesis]:
             whole = len(group) > 1
             name = "*" if whole else channel_name(group[0])
             what = "left and right are" if whole else f"left and right {name} are"
-            yield Hypothesis(
+            yield ChannelFault(
                 kind="sides",
                 cases=some,
                 channel=name,
@@ -244,7 +244,7 @@ def _exchanged_sides(cases: Sequence[str]) -> Iterator[Hypothesis]:
             )
 
 
-def _exchanged_columns(cases: Sequence[str]) -> Iterator[Hypothesis]:
+def _exchanged_columns(cases: Sequence[str]) -> Iterator[ChannelFault]:
     for some, price in _places(cases):
         for one, other in combinations(RIG_RESPONSES, 2):
             for sides in ((0, 1), (0,), (1,)):
@@ -255,7 +255,7 @@ def _exchanged_columns(cases: Sequence[str]) -> Iterator[Hypothesis]:
                         order[a][side], order[b][side] = order[b][side].copy(), order[a][side].copy()
                 side_name = sides[0] if len(sides) == 1 else None
                 names = channel_name(one, side_name), channel_name(other, side_name)
-                yield Hypothesis(
+                yield ChannelFault(
                     kind="columns",
                     cases=some,
                     channel=f"{names[0]}/{names[1]}",
@@ -266,7 +266,7 @@ def _exchanged_columns(cases: Sequence[str]) -> Iterator[Hypothesis]:
                 )
 
 
-def _exchanged_cases(cases: Sequence[str], counter_phase: bool) -> Iterator[Hypothesis]:
+def _exchanged_cases(cases: Sequence[str], counter_phase: bool) -> Iterator[ChannelFault]:
     """Two files exchanged, or one given for another's load case."""
     groups = (*SAME_INPUT, ("vertical", "roll")) if counter_phase else SAME_INPUT
     for group in groups:
@@ -282,7 +282,7 @@ def _exchanged_cases(cases: Sequence[str], counter_phase: bool) -> Iterator[Hypo
                 words = f"the records of {one} and {other} are exchanged"
                 if len(replaced) == 1:
                     words = f"the record of {case} is one of {really}"
-                yield Hypothesis(
+                yield ChannelFault(
                     kind="load_case",
                     cases=tuple(replaced),
                     channel="*",
