@@ -34,6 +34,16 @@ class Loop:
     load: IndexArray
 
 
+def single_branch(values: FloatArray) -> IndexArray | None:
+    """Samples of a record that runs through the range once, in one way; None for any other."""
+    span = float(np.ptp(values))
+    points = turning_points(values, REVERSAL * span)
+    ends = [min(points), max(points)] if len(points) == 2 else []
+    if not ends or abs(values[ends[1]] - values[ends[0]]) < (1.0 - BRANCH_GAP) * span:
+        return None
+    return np.arange(ends[0], ends[1] + 1)
+
+
 def split_loop(values: FloatArray, *, label: str) -> Loop:
     """Branches of the last full cycle of an input (n,), in any phase; InputError when there is none.
 

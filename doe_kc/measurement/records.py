@@ -9,18 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
-from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
 from doe_kc.measurement.channel_map import INPUT_ROLE, ChannelMap, ColumnTerm, named_map
 from doe_kc.measurement.channels import TIME
 from doe_kc.measurement.containers import read_table
+from doe_kc.measurement.one_wheel import with_mirror_image
 from doe_kc.measurement.outliers import Outlier, without_outliers
 from doe_kc.measurement.tables import ChannelTable
 
-MIN_SAMPLES = 64
-"""Fewer samples per loop leave under 32 points a branch: gradients in the fit window become guesses."""
+MIN_SAMPLES = 24
+"""Of a loop: fewer leave under a dozen points a branch, of which two or three are in the fit window."""
 OWN_NAMES = "doe_kc"
 """Preset of the package's own channel names."""
 
@@ -33,8 +33,9 @@ class RigRecord:
     time: (n,) s, strictly increasing; the samples' numbers where no time was recorded.
     input: (n,) in `case.unit`.
     channels: response (`RIG_RESPONSES`) -> (2, n), left and right; deg, mm, N; changes from static
-        for angles and wheel centre, tyre load absolute.
+        for angles and wheel centre, tyre load absolute. A response of neither wheel is left out.
     ignored: headings of columns that nothing is read from. outliers: samples replaced by their neighbours.
+    mirrored: channels (`toe_R`) that were not measured and are the other wheel's mirror image.
     """
 
     label: str
@@ -44,6 +45,7 @@ class RigRecord:
     channels: Mapping[str, FloatArray]
     ignored: tuple[str, ...] = ()
     outliers: tuple[Outlier, ...] = ()
+    mirrored: tuple[str, ...] = ()
 
 
 def read_record(
@@ -78,8 +80,10 @@ def record_from_table(table: ChannelTable, load_case: str, channels: ChannelMap)
     _check_time(table, time)
     values, outliers = without_outliers(raw, INPUT_ROLE)
     _check_sweep(table.label, case, values[INPUT_ROLE])
-    responses = {r: np.stack([values[f"{r}_{s}"] for s in SIDES]) for r in RIG_RESPONSES}
-    return RigRecord(table.label, case, time, values[INPUT_ROLE], responses, columns.ignored, outliers)
+    responses, mirrored = with_mirror_image(table.label, case, values, values[INPUT_ROLE])
+    return RigRecord(
+        table.label, case, time, values[INPUT_ROLE], responses, columns.ignored, outliers, mirrored
+    )
 
 
 def _combined(table: ChannelTable, terms: Sequence[ColumnTerm]) -> FloatArray:

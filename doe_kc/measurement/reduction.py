@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from doe_kc.curves import RIG_RESPONSES, CurveSet
+from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
@@ -143,6 +143,11 @@ def case_records(path: Path, manifest: Manifest, load_case: str) -> list[RigReco
     records = [_read(path.parent, entry, load_case, channels) for entry in manifest.records[load_case]]
     main = records[0]
     for record in records[1:]:
+        if record.channels.keys() != main.channels.keys():
+            raise InputError(
+                f"{record.label}: does not have the same channels as {main.label}; expected repeats of one "
+                "test with the same sensors, list them apart or export the missing ones."
+            )
         if type(record.case) is not type(main.case):
             raise InputError(
                 f"{record.label}: its input is {record.case.channel}, that of {main.label} "
@@ -155,7 +160,7 @@ def case_records(path: Path, manifest: Manifest, load_case: str) -> list[RigReco
 def _refuse_copy(main: RigRecord, record: RigRecord) -> None:
     """A copy would pass for perfect repeatability."""
     same = main.input.shape == record.input.shape and np.array_equal(main.input, record.input)
-    if same and all(np.array_equal(main.channels[r], record.channels[r]) for r in RIG_RESPONSES):
+    if same and all(np.array_equal(c, record.channels[r]) for r, c in main.channels.items()):
         raise InputError(
             f"{record.label}: holds the same samples as {main.label}; expected a repeat run, "
             "list the right file or drop it."
@@ -179,9 +184,9 @@ def _trends(runs: tuple[RunCurves, ...]) -> dict[str, tuple[PolynomialTrend, ...
     for run in runs:
         at = np.concatenate([run.loop.unload, run.loop.load])
         inputs.append(run.record.input[at])
-        values.append(np.concatenate([_referred(run, r, grid)[:, at] for r in RIG_RESPONSES]))
+        values.append(np.concatenate([_referred(run, r, grid)[:, at] for r in run.record.channels]))
     fits = fit_trends(np.concatenate(inputs), np.concatenate(values, axis=1))
-    return {r: fits[2 * k : 2 * k + 2] for k, r in enumerate(RIG_RESPONSES)}
+    return {r: fits[2 * k : 2 * k + 2] for k, r in enumerate(runs[0].record.channels)}
 
 
 def _referred(run: RunCurves, response: str, grid: FloatArray) -> FloatArray:

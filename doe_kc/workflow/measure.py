@@ -63,7 +63,8 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
     model = curve_set(solution)
     measurement = study_measurement(study, model)
     height = None
-    if "vertical" in measurement.curves.cases and "vertical" in solution.cases:
+    vertical = measurement.curves.cases.get("vertical")
+    if vertical is not None and {"wc_z", "tyre_load"} <= set(vertical.mean) and "vertical" in solution.cases:
         height = infer_ride_height(
             measurement.curves,
             model,

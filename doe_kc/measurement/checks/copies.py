@@ -31,7 +31,12 @@ def copies(test: RigTest) -> Iterator[RecordFinding]:
 
 
 def _channels(case: str, record: RigRecord) -> Iterator[RecordFinding]:
-    names = {channel_name(r, s): v for r, sides in record.channels.items() for s, v in enumerate(sides)}
+    names = {
+        channel_name(r, s): v
+        for r, sides in record.channels.items()
+        for s, v in enumerate(sides)
+        if f"{r}_{'LR'[s]}" not in record.mirrored
+    }
     for (name, one), (other_name, other) in combinations(names.items(), 2):
         if np.ptp(one) > 0.0 and np.array_equal(one, other):
             yield RecordFinding(
