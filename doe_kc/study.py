@@ -172,12 +172,14 @@ def read_study(
 
 def _check_out(out: Path, folder: Path, axle: Path, measurement: Path | None, source: str) -> None:
     """Results are not written over the axle file or among the records."""
+    if "\0" in str(out):  # refused where it is written
+        return
     place = out.resolve()
     if place in (axle.resolve(), Path(source).resolve()):
         raise InputError(f"{source}: out is {out}, a file of the study; name a folder of its own.")
     if measurement is None:
         return
-    records = (measurement if measurement.is_dir() else measurement.parent).resolve()
+    records = (measurement.parent if measurement.is_file() else measurement).resolve()
     if place.is_relative_to(records) and not folder.resolve().is_relative_to(records):
         raise InputError(f"{source}: out is {out}, inside the records' folder; name a folder beside it.")
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
 
-FEW = 40
+FEW_SAMPLES = 40
 """Samples a branch below which the gradients rest on a handful of points."""
 
 
@@ -27,7 +27,7 @@ def branches(test: RigTest) -> Iterator[RecordFinding]:
                 "hysteresis cannot be tested, and the curve is off by half of it",
                 cure="record the whole loop where these matter",
             )
-        elif min(runs[0].loop.unload.size, runs[0].loop.load.size) < FEW:
+        elif min(runs[0].loop.unload.size, runs[0].loop.load.size) < FEW_SAMPLES:
             yield RecordFinding(
                 kind="few_samples",
                 severity="warning",
