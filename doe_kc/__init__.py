@@ -6,7 +6,9 @@ The Python API is what this module exports, under the names of the commands: `im
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
+from types import ModuleType
 
 __version__ = "0.1.0"
 
@@ -15,23 +17,27 @@ TYPE_CHECKING = False
 
 if TYPE_CHECKING:
     from doe_kc.api.axle import parameters, read_axle, with_effects, with_values
+    from doe_kc.api.check import CheckResult, check
     from doe_kc.api.comparison import ComparisonResult, compare
     from doe_kc.api.correlation import CorrelationResult, correlate
     from doe_kc.api.discovery import DiscoveryResult, discover
     from doe_kc.api.influence import InfluenceResult, influence
     from doe_kc.api.measurement import ReductionResult, reduce
+    from doe_kc.api.report import ReportResult, report
     from doe_kc.api.run import RunResult, run
     from doe_kc.api.samples import SamplingResult, sample
     from doe_kc.api.sensitivity import SensitivityResult, sensitivities
     from doe_kc.api.simulation import SimulationResult, simulate
-    from doe_kc.api.studies import read_study
+    from doe_kc.api.studies import init, read_study
     from doe_kc.api.surrogate import Surrogate
+    from doe_kc.api.surrogates import SurrogatesResult, surrogates
     from doe_kc.axle.model import Axle
     from doe_kc.ground.errors import DoeKcError, InputError, RunError
     from doe_kc.study import Study
 
 _HOMES = {
     "Axle": "doe_kc.axle.model",
+    "CheckResult": "doe_kc.api.check",
     "ComparisonResult": "doe_kc.api.comparison",
     "CorrelationResult": "doe_kc.api.correlation",
     "DiscoveryResult": "doe_kc.api.discovery",
@@ -39,6 +45,7 @@ _HOMES = {
     "InfluenceResult": "doe_kc.api.influence",
     "InputError": "doe_kc.ground.errors",
     "ReductionResult": "doe_kc.api.measurement",
+    "ReportResult": "doe_kc.api.report",
     "RunError": "doe_kc.ground.errors",
     "RunResult": "doe_kc.api.run",
     "SamplingResult": "doe_kc.api.samples",
@@ -46,18 +53,23 @@ _HOMES = {
     "SimulationResult": "doe_kc.api.simulation",
     "Study": "doe_kc.study",
     "Surrogate": "doe_kc.api.surrogate",
+    "SurrogatesResult": "doe_kc.api.surrogates",
+    "check": "doe_kc.api.check",
     "compare": "doe_kc.api.comparison",
     "correlate": "doe_kc.api.correlation",
     "discover": "doe_kc.api.discovery",
     "influence": "doe_kc.api.influence",
+    "init": "doe_kc.api.studies",
     "parameters": "doe_kc.api.axle",
     "read_axle": "doe_kc.api.axle",
     "read_study": "doe_kc.api.studies",
     "reduce": "doe_kc.api.measurement",
+    "report": "doe_kc.api.report",
     "run": "doe_kc.api.run",
     "sample": "doe_kc.api.samples",
     "sensitivities": "doe_kc.api.sensitivity",
     "simulate": "doe_kc.api.simulation",
+    "surrogates": "doe_kc.api.surrogates",
     "with_effects": "doe_kc.api.axle",
     "with_values": "doe_kc.api.axle",
 }
@@ -65,6 +77,7 @@ _HOMES = {
 
 __all__ = [
     "Axle",
+    "CheckResult",
     "ComparisonResult",
     "CorrelationResult",
     "DiscoveryResult",
@@ -72,6 +85,7 @@ __all__ = [
     "InfluenceResult",
     "InputError",
     "ReductionResult",
+    "ReportResult",
     "RunError",
     "RunResult",
     "SamplingResult",
@@ -79,19 +93,24 @@ __all__ = [
     "SimulationResult",
     "Study",
     "Surrogate",
+    "SurrogatesResult",
     "__version__",
+    "check",
     "compare",
     "correlate",
     "discover",
     "influence",
+    "init",
     "parameters",
     "read_axle",
     "read_study",
     "reduce",
+    "report",
     "run",
     "sample",
     "sensitivities",
     "simulate",
+    "surrogates",
     "with_effects",
     "with_values",
 ]
@@ -106,3 +125,16 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+class _Package(ModuleType):
+    """`doe_kc`, whose `report` and `surrogates` are functions although folders of it are called so too: the
+    import of such a folder sets the package's attribute to the folder, which is not done here. Modules of the
+    package import from folders by their full names, which need no attribute."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not (name in _HOMES and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package

@@ -22,8 +22,7 @@ from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.sampling.options import SamplingOptions
 from doe_kc.surrogates.options import SurrogateOptions
-from doe_kc.targets.names import check_names
-from doe_kc.targets.options import CharacteristicOptions, CurveOptions
+from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.variables import Space, VariableOptions, build_space
 

@@ -22,7 +22,7 @@ from doe_kc.ground.numbers import with_sd
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
 from doe_kc.workflow.answer import Answer
-from doe_kc.workflow.chain import Steps, follow_chain
+from doe_kc.workflow.chain import follow_chain
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.discover import discover_study
 from doe_kc.workflow.measure import reduce_records
@@ -75,7 +75,7 @@ def answered(folder: Path, work: Path) -> Answer:
     file.write_text(f"axle = {str(EXAMPLE / 'axle.toml')!r}\nmeasurement = {str(folder.resolve())!r}\n")
     study = read_study(file)
     reduced = reduce_records(study, solve(study.axle))
-    return follow_chain(study, reduced, Steps(discover_study, _correlated))
+    return follow_chain(study, reduced, discover_study, _correlated)
 
 
 def _correlated(study, reduced, adoption):  # type: ignore[no-untyped-def]

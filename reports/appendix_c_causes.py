@@ -10,8 +10,7 @@ import pandas as pd
 from doe_kc.axle import Axle, with_values
 from doe_kc.axle.parameters import design_parameters
 from doe_kc.characteristics import Characteristic
-from doe_kc.parameter_influence.result import percent_of_column
-from doe_kc.parameter_influence.study import influence_study
+from doe_kc.parameter_influence.study import influence_study, percent_of_column
 
 DIGIT = {
     "roll.camber_change": 5,

@@ -14,8 +14,7 @@ from doe_kc.study import Study, read_study
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.variables import Change, Space, VariableOptions, build_space
 from doe_kc.variables.variable import Variable
-from doe_kc.workflow.correlation_problem import study_problem
-from doe_kc.workflow.correlation_space import study_space
+from doe_kc.workflow.correlation_problem import study_problem, study_space
 from doe_kc.workflow.influence import study_influence
 from doe_kc.workflow.measure import Reduced, study_records
 

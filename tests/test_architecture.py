@@ -14,6 +14,7 @@ FLOORS = [
     "load_cases",
     "curves",
     "axle",
+    "axle_types",
     "effects",
     "axle_file",
     "characteristics",
@@ -135,3 +136,14 @@ def test_no_parameter_is_named_after_a_participle() -> None:
         if argument.arg in participles
     ]
     assert not named
+
+
+def test_no_variable_is_named_found() -> None:
+    """A name says what is held: the field's noun."""
+    places = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for path, tree in TREES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Name) and node.id == "found"
+    ]
+    assert not places

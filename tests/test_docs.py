@@ -17,6 +17,7 @@ from doe_kc.effects import EFFECTS
 from doe_kc.study import read_study
 from doe_kc.targets import CharacteristicOptions
 from doe_kc.variables import Change
+from tests.axle_type_reference import nominal as nominal_of
 from tests.reference import EXAMPLE, nominal
 
 ROOT = Path(__file__).parents[1]
@@ -56,7 +57,8 @@ def test_the_keys_on_the_page_are_taken() -> None:
     for ident, row in table_rows("effects.md").items():
         options = tomllib.loads("\n".join(re.findall(r"`([\w]+ = [^`]+)`", row)))
         assert options or "=" not in row.split("|")[3], ident
-        EFFECTS[ident].apply(nominal(), options, "page")
+        axle = nominal_of("five_link_rear") if EFFECTS[ident].part == "balls" else nominal()
+        EFFECTS[ident].apply(axle, options, "page")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
@@ -89,7 +91,7 @@ def known_commands() -> dict[str, set[str]]:
 def test_the_commands_named_exist_with_their_options() -> None:
     known = known_commands()
     assert set(known) == {
-        *("init", "check", "map", "simulate", "reduce", "influence", "sample"),
+        *("init", "types", "check", "map", "predict", "simulate", "reduce", "influence", "sample"),
         *("surrogates", "correlate", "discover", "report", "run"),
     }
     named = set()

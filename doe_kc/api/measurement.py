@@ -10,7 +10,13 @@ from typing import TYPE_CHECKING
 
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import as_study
-from doe_kc.measurement import MeasurementFrames, measurement_to_frames
+from doe_kc.report.measurement_tables import (
+    gradient_table,
+    measured_characteristic_table,
+    measured_curve_frame,
+    noise_table,
+)
+from doe_kc.report.render.csv import table_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
@@ -33,32 +39,28 @@ class ReductionResult(FrameResult):
     solution: Solution
 
     @cached_property
-    def _frames(self) -> MeasurementFrames:
-        return measurement_to_frames(self.reduced.measurement)
-
-    @property
     def characteristics(self) -> pd.DataFrame:
         """One row a characteristic, its id as index: load_case, response, unit, value, sd (standard error);
         nan where the records do not show it."""
-        return self._frames.characteristics.set_index("name")
+        return table_frame(measured_characteristic_table(self.reduced.measurement)).set_index("name")
 
-    @property
+    @cached_property
     def curves(self) -> pd.DataFrame:
         """One row a point: load_case, input, input_unit, side, response, unit, mean, half_width, sd.
 
         mean: of both branches, change from static but for the tyre load; half_width: half the hysteresis.
         """
-        return self._frames.curves
+        return measured_curve_frame(self.reduced.measurement)
 
     @property
     def gradients(self) -> pd.DataFrame:
         """One row a curve: load_case, response, side, unit, value, sd, window, input_unit."""
-        return self._frames.gradients
+        return table_frame(gradient_table(self.reduced.measurement))
 
     @property
     def noise(self) -> pd.DataFrame:
         """One row a curve: standard deviations of its error's components."""
-        return self._frames.noise
+        return table_frame(noise_table(self.reduced.measurement))
 
     @property
     def ride_height(self) -> tuple[float, float] | None:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +14,7 @@ from doe_kc.api.discovery import DiscoveryResult, discovery_of
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.influence import InfluenceResult, influence_of
 from doe_kc.api.measurement import ReductionResult
-from doe_kc.api.simulation import SimulationResult, simulate
+from doe_kc.api.simulation import SimulationResult
 from doe_kc.api.studies import Progress, as_study, stored
 from doe_kc.axle import Axle
 from doe_kc.correlation.answer_record import AnswerRecord
@@ -22,14 +22,14 @@ from doe_kc.correlation.assessment import Status
 from doe_kc.correlation.result import Correlation
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
+from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
-from doe_kc.workflow.answer import Answer, answer_lines, answer_record
-from doe_kc.workflow.chain import Steps, follow_chain
-from doe_kc.workflow.compare import compare_model
-from doe_kc.workflow.measure import Reduced, reduce_records
-from doe_kc.workflow.reload_correlation import write_chain
-from doe_kc.workflow.write_answer import write_answer
+from doe_kc.workflow.answer import Answer, answer_lines
+from doe_kc.workflow.chain import Chain, Steps, run_chain, write_chain_files
+from doe_kc.workflow.influence import StudyInfluence
+from doe_kc.workflow.measure import Reduced
+from doe_kc.workflow.run_files import RunFiles
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,20 +38,55 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False, eq=False)
 class RunResult(FrameResult):
-    """What `doe-kc run` finds. simulation: of the axle as handed in; reduction: the rig records; influence:
-    one at a time; discovery: what the axle lacked, None where it was not looked for (an outside solver of
-    another car); correlation: of the axle with the effects adopted; comparison: of the correlated axle.
-    answer, record: the chain's own data."""
+    """What `doe-kc run` finds. chain: the data of every step."""
 
     study: Study
-    simulation: SimulationResult
-    reduction: ReductionResult
-    influence: InfluenceResult
-    discovery: DiscoveryResult | None
-    correlation: CorrelationResult
-    comparison: ComparisonResult
-    answer: Answer
-    record: AnswerRecord
+    chain: Chain
+
+    @cached_property
+    def simulation(self) -> SimulationResult:
+        """Of the axle as handed in."""
+        return SimulationResult(self.study.axle, self.chain.solution, self.chain.solving_seconds)
+
+    @cached_property
+    def reduction(self) -> ReductionResult:
+        """Of the rig records."""
+        return ReductionResult(self.study, self.chain.reduced, self.chain.solution)
+
+    @cached_property
+    def influence(self) -> InfluenceResult:
+        """One at a time, of the axle as handed in."""
+        return InfluenceResult(self.study, self.chain.influence)
+
+    @cached_property
+    def discovery(self) -> DiscoveryResult | None:
+        """What the axle lacked; None where it was not looked for (an outside solver of another car)."""
+        discovery = self.chain.answer.discovery
+        if discovery is None:
+            return None
+        return DiscoveryResult(self.study, discovery, self.chain.reduced.measurement)
+
+    @cached_property
+    def correlation(self) -> CorrelationResult:
+        """Of the axle with the effects adopted."""
+        answer = self.chain.answer
+        records = self.chain.reduced.measurement
+        return CorrelationResult(self.study, answer.correlation, answer.assessment, records)
+
+    @cached_property
+    def comparison(self) -> ComparisonResult:
+        """Of the correlated axle."""
+        return ComparisonResult(self.study, self.chain.comparison)
+
+    @property
+    def answer(self) -> Answer:
+        """Correlation, discovery and adoption as the chain left them."""
+        return self.chain.answer
+
+    @property
+    def record(self) -> AnswerRecord:
+        """What is kept of the answer: verdict, effects, gap, seconds."""
+        return self.chain.record
 
     @property
     def status(self) -> Status:
@@ -94,18 +129,9 @@ class RunResult(FrameResult):
     def write(self, out: str | PathLike[str], *, workers: int | None = None) -> list[Path]:
         """What `doe-kc run` writes in `out`: the answer (axle.toml, summary.json, index.html) and a folder a
         step; returns the paths. `doe-kc report` needs the store beside, which `run(out=...)` keeps."""
-        folder, study = Path(out), replace(self.study, out=Path(out))
-        written = self.simulation.write(folder / "simulate")
-        written += self.reduction.write(folder, workers=workers)
-        written += self.influence.write(folder, workers=workers)
-        if self.discovery is not None:
-            written += self.discovery.write(folder, workers=workers)
-        written += self.correlation.write(folder, workers=workers)
-        written += self.comparison.write(folder, workers=workers)
-        measurement = self.reduction.reduced.measurement
-        correlation, assessment = self.correlation.correlation, self.answer.assessment
-        written += write_answer(study, correlation, assessment, self.record, measurement)
-        return written
+        files = RunFiles(replace(self.study, out=Path(out)), workers=workers)
+        write_chain_files(self.chain, files)
+        return files.paths
 
 
 def run(
@@ -118,8 +144,9 @@ def run(
 ) -> RunResult:
     """The whole chain: reduce, influence, discover, add what is missing, correlate; one axle and its status.
 
-    out: folder for what `doe-kc run --out` writes, its store among it, from which the same call goes on; by
-    default nothing is written (but an outside solver's answers always go to the study's store). workers:
+    out: folder for what `doe-kc run --out` writes, each step's files when it is done, and of the store from
+    which the same call goes on after an interruption; by default nothing is written (but an outside solver's
+    answers always go to the study's store). workers:
     processes, one per core by default. scheduler: address of a Dask scheduler, for the correlation. progress:
     called with (what, steps done, of how many about).
 
@@ -132,45 +159,28 @@ def run(
     >>> result.axle
     Axle('Front axle, McPherson', effects: hub_compliance)
     """
-    started = time.perf_counter()
     chosen = as_study(study)
-    chosen.measured()
-    simulation = simulate(chosen.axle)
-    reduced = reduce_records(chosen, simulation.solution)
-    influence = influence_of(chosen, reduced.measurement, workers=workers, progress=progress)
 
-    def discovered(of: Study, measurement: Measurement) -> Discovery:
+    def influence(of: Study, measurement: Measurement) -> StudyInfluence:
+        return influence_of(of, measurement, workers=workers, progress=progress).influence
+
+    def discover(of: Study, measurement: Measurement) -> Discovery:
         return discovery_of(of, measurement, workers=workers, progress=progress).discovery
 
-    def correlated(of: Study, records: Reduced, adoption: Adoption | None) -> Correlation:
+    def correlate(
+        of: Study, reduced: Reduced, adoption: Adoption | None, selection: Selection | None
+    ) -> Correlation:
         return correlation_of(
             of,
-            records,
+            reduced,
             adoption=adoption,
-            selection=influence.influence.selection,
+            selection=selection,
             workers=workers,
             scheduler=scheduler,
             progress=progress,
         ).correlation
 
     with stored(chosen, out) as kept:
-        answer = follow_chain(kept, reduced, Steps(discover=discovered, correlate=correlated))
-    measurement = reduced.measurement
-    curves = answer.correlation.best.outcome.curves or simulation.curve_set
-    result = RunResult(
-        study=chosen,
-        simulation=simulation,
-        reduction=ReductionResult(chosen, reduced, simulation.solution),
-        influence=influence,
-        discovery=None
-        if answer.discovery is None
-        else DiscoveryResult(chosen, answer.discovery, measurement),
-        correlation=CorrelationResult(chosen, answer.correlation, answer.assessment, measurement),
-        comparison=ComparisonResult(chosen, compare_model(chosen, curves, measurement)),
-        answer=answer,
-        record=answer_record(answer, time.perf_counter() - started),
-    )
-    if out is not None:
-        write_chain(answer, result.record, Path(out) / "correlate")
-        result.write(out, workers=workers)
-    return result
+        files = RunFiles(kept, enabled=out is not None, workers=workers)
+        chain = run_chain(kept, Steps(influence, discover, correlate), files)
+    return RunResult(chosen, chain)

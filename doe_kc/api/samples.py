@@ -74,10 +74,7 @@ class SamplingResult(FrameResult):
         """Method, counts, and why designs failed."""
         done = self.sampled
         head = f"{len(done.outcomes)} designs ({done.design.method}) of {self.space.dimension} variables"
-        counts = (
-            f"{done.runs} run, {done.kept} already there, {len(done.failed)} failed; {done.seconds:.1f} s"
-        )
-        return [head, counts, *(f"{count} x {reason}" for count, reason in reasons(done.failed)[:3])]
+        return [head, done.counts, *(f"{count} x {reason}" for count, reason in reasons(done.failed)[:3])]
 
     def plot(self, parameter: str, characteristic: str, ax: Axes | None = None) -> Axes:
         """A characteristic over a variable, one point a design; InputError for an unknown name."""

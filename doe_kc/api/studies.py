@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from doe_kc import study as study_file
+from doe_kc.examples import copy_example
 from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.study import Study
 
@@ -42,6 +43,21 @@ def read_study(
         seed=seed,
         pictures=pictures,
     )
+
+
+def init(folder: str | PathLike[str]) -> Study:
+    """Write the example study (axle, rig records, study file) to edit, and read it.
+
+    folder: new or empty.
+
+    Raises InputError for a folder that holds something, RunError where it cannot be written.
+
+    >>> study = kc.init("my_study")
+    >>> study.axle, study.source.name
+    (Axle('Front axle, McPherson', effects: none), 'study.toml')
+    """
+    copy_example(Path(folder))
+    return read_study(folder)
 
 
 def as_study(study: Study | str | PathLike[str]) -> Study:

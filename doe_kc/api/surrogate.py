@@ -14,7 +14,7 @@ from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.report.style import PALETTE
 from doe_kc.surrogates.models import make
-from doe_kc.surrogates.study import fit_study
+from doe_kc.surrogates.study import SurrogateStudy, fit_study
 from doe_kc.variables import Space
 
 if TYPE_CHECKING:
@@ -26,11 +26,12 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
     """Surrogates of every output, cross-validated, the best kind chosen for each; an estimator of
     scikit-learn (`clone`, `cross_val_score`, `Pipeline`).
 
-    models: ids of the kinds to choose from ("linear", "quadratic", "rbf", "gp", "kpls", "kriging",
-    "gp_ard"), by default those that suit the number of designs. space: of a study (`study.space`,
+    models: ids of the kinds to choose from ("linear", "quadratic", "rbf", "gp", "gp_ard", "kpls",
+    "kriging"), by default those that suit the number of designs. space: of a study (`study.space`,
     `sampling.space`), whose bounds and logarithmic scales map each variable to [0, 1]; by default the
     smallest and largest value of each column. folds: of the cross-validation of kinds that learn many
-    hyper-parameters. seed: of the kinds that use chance. workers: processes of the fit.
+    hyper-parameters, by default ten, five from 150 designs on. seed: of the kinds that use chance. workers:
+    processes of the fit.
 
     After `fit`: study_, every kind with its cross-validation; feature_names_in_, the columns of X;
     output_names_, those of y; lower_, upper_, (d,) in real units, beyond which a prediction extrapolates.
@@ -48,7 +49,7 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
         models: Sequence[str] = (),
         *,
         space: Space | None = None,
-        folds: int = 10,
+        folds: int | None = None,
         seed: int = 0,
         workers: int | None = 1,
     ) -> None:
@@ -77,9 +78,7 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
             )
         _check_finite(points, names, "X")
         self._set_bounds(points, names)
-        self.feature_names_in_, self.n_features_in_ = np.array(names, dtype=object), len(names)
-        self.output_names_, self._form = outputs, form
-        self.study_ = fit_study(
+        study = fit_study(
             self._unit(points),
             values,
             models=self.models,
@@ -87,7 +86,12 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
             seed=self.seed,
             workers=self.workers,
         )
-        self._model = self.study_.model
+        return self._fitted(names, outputs, form, study)
+
+    def _fitted(self, names: list[str], outputs: list[Any], form: str, study: SurrogateStudy) -> Surrogate:
+        self.feature_names_in_, self.n_features_in_ = np.array(names, dtype=object), len(names)
+        self.output_names_, self._form = outputs, form
+        self.study_, self._model = study, study.model
         return self
 
     def predict(self, X: Any, return_std: bool = False) -> Any:
@@ -221,6 +225,17 @@ class Surrogate(RegressorMixin, BaseEstimator):  # type: ignore[misc] # scikit-l
         if self._form == "series":
             return pd.Series(values[:, 0], index=index, name=self.output_names_[0])
         return pd.DataFrame(values, index=index, columns=self.output_names_)
+
+
+def fitted_surrogate(surrogate: Surrogate, outputs: list[str], study: SurrogateStudy) -> Surrogate:
+    """The estimator, which has a space, with fits of that space's unit cube that were made before.
+
+    outputs: names of the (n, m) outputs; predictions come as DataFrames.
+    """
+    assert surrogate.space is not None
+    names = list(surrogate.space.paths)
+    surrogate._set_bounds(study.x, names)
+    return surrogate._fitted(names, outputs, "frame", study)
 
 
 def _matrix(a: Any, what: str) -> FloatArray:

@@ -52,7 +52,8 @@ class Axle:
     """values: internal name -> number; `@L`/`@R` marks a side's own value, the right side's given as its
         mirror image, so that a symmetric axle has equal pairs. Units: mm, N, N/mm, Nm/deg, deg, factors.
     topology: which bodies and laws there are. follow: hardpoint -> hardpoint that it moves with.
-    effects: id -> options of the optional effects that are in.
+    effects: id -> options of the optional effects that are in. labels: of points and elements by name, of an
+        axle whose type is data.
     """
 
     name: str
@@ -61,6 +62,7 @@ class Axle:
     follow: Mapping[str, str]
     load_cases: Mapping[str, LoadCase]
     effects: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    labels: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"Axle({self.name!r}, effects: {', '.join(self.effects) or 'none'})"
@@ -86,8 +88,8 @@ class Axle:
 
     @property
     def rack_mm_per_rev(self) -> float:
-        """Rack travel per steering-wheel turn, mm."""
-        return self.values["steering.rack_mm_per_rev"]
+        """Rack travel per steering-wheel turn, mm; 0 without a rack."""
+        return self.values.get("steering.rack_mm_per_rev", 0.0)
 
 
 CLAMP_HEIGHT = 0.25

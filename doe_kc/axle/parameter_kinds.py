@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import Literal
 
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS
+from doe_kc.axle.sliders import BACKBONE_YIELDS
 
 Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
 Quantity = Literal[
@@ -15,6 +16,7 @@ Quantity = Literal[
 ]
 """What a parameter measures: a stiffness is the factor of a bushing; "value" is one that is not declared."""
 Bounds = Literal["offset", "factor", "absolute"]
+COORDINATES = ("x", "y", "z")
 SIDE_PREFIXES = {"left": "L", "right": "R"}
 
 PRODUCTION_SD: Mapping[Quantity, float] = {"coordinate": 1.0, "angle": 0.1}
@@ -55,13 +57,10 @@ def _kinds() -> dict[str, ParameterKind]:
     out: dict[str, ParameterKind] = {}
     for name, label in HARDPOINTS.items():
         for axis in "xyz":
-            out[f"{name}.{axis}"] = ParameterKind(
-                f"{label}, {axis}", "HARDPOINTS", "coordinate", "mm", (-3.0, 3.0), 1.0
-            )
+            out[f"{name}.{axis}"] = point_kind(label, axis)
     for name, label in BUSHINGS.items():
         for axis in BUSHING_AXES:
-            what = "stiffness" if axis.startswith("F") else "rotational stiffness"
-            out[f"{name}.{axis}"] = _bush(f"{label} bush, {what} {axis[1]}")
+            out[f"{name}.{axis}"] = bushing_kind(label, axis)
     out["scb.Tz"] = _bush("Steering column bush, Tz")
     out["strut.flexibility"] = ParameterKind(
         "Strut flexibility ratio", "OTHER", "flexibility", "-", (0.0, 2.0), 0.1, "absolute", "strut_bending"
@@ -77,6 +76,17 @@ def _kinds() -> dict[str, ParameterKind]:
         "static.camber": _other("Static camber", "angle", "deg", 0.5, 0.1),
         "ride_height": _other("Ride height offset (pads up +)", "height", "mm", 10.0, 1.0),
     }
+
+
+def point_kind(label: str, axis: str) -> ParameterKind:
+    """Of a hardpoint's coordinate x, y or z."""
+    return ParameterKind(f"{label}, {axis}", "HARDPOINTS", "coordinate", "mm", (-3.0, 3.0), 1.0)
+
+
+def bushing_kind(label: str, axis: str) -> ParameterKind:
+    """Of a bushing's stiffness along or about an axis, Fx to Tz."""
+    what = "stiffness" if axis.startswith("F") else "rotational stiffness"
+    return _bush(f"{label} bush, {what} {axis[1]}")
 
 
 def _bush(label: str) -> ParameterKind:
@@ -106,8 +116,17 @@ def side_prefix(path: str) -> str:
 
 
 def kind_of(path: str) -> ParameterKind | None:
-    """The declaration of a path, with or without a side; None for a value that is no design parameter."""
-    return KINDS.get(path.removeprefix(side_prefix(path)))
+    """The declaration of a path, with or without a side; None for a value that is no design parameter.
+
+    Points and bushings of an axle whose type is data are declared by the form of their path.
+    """
+    name = path.removeprefix(side_prefix(path))
+    head, _, rest = name.partition(".")
+    if name not in KINDS and rest in COORDINATES and head not in EXTRA_HARDPOINTS:
+        return point_kind(head, rest)
+    if name not in KINDS and rest in BUSHING_AXES:
+        return bushing_kind(head, rest)
+    return KINDS.get(name)
 
 
 @lru_cache(maxsize=PATHS)
@@ -116,8 +135,8 @@ def quantity_of(path: str) -> Quantity:
     kind = kind_of(path)
     if kind is not None:
         return kind.quantity
-    head, _, rest = path.removeprefix(side_prefix(path)).partition(".")
-    if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
+    rest = path.removeprefix(side_prefix(path)).partition(".")[2]
+    if rest in COORDINATES:
         return "coordinate"
     if rest.endswith("clearance"):
         return "clearance"
@@ -128,7 +147,8 @@ POSITIVE_PARAMETERS = {
     *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
     *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
-    *("gap", "contact", "reference"),
+    *("gap", "contact", "reference", "spread", "exponent"),
+    *(f"share{i}" for i in range(len(BACKBONE_YIELDS))),
 }
 NOT_BELOW_ZERO = {
     *(path for path, kind in KINDS.items() if kind.quantity == "flexibility"),
@@ -145,19 +165,15 @@ def not_below_zero(name: str) -> bool:
 @lru_cache(maxsize=PATHS)
 def must_be_positive(name: str) -> bool:
     """Whether a value of that name is one of size: a stiffness, load or radius."""
-    head, _, rest = name.partition(".")
-    if head in BUSHINGS:
-        return rest in BUSHING_AXES or rest.startswith("stiffness.")
-    if head in HARDPOINTS or head in EXTRA_HARDPOINTS or not_below_zero(name):
+    rest = name.partition(".")[2]
+    if rest in BUSHING_AXES or rest.startswith(("stiffness.", "rubber.")):
+        return True
+    if rest in COORDINATES or not_below_zero(name):
         return False
-    return (
-        name in {"scb.Tz", "hub.camber", "hub.toe", "strut.bending", "strut.torsion"}
-        or rest in POSITIVE_PARAMETERS
-    )
+    return name in {"hub.camber", "hub.toe", "strut.bending", "strut.torsion"} or rest in POSITIVE_PARAMETERS
 
 
 @lru_cache(maxsize=PATHS)
 def is_lateral(name: str) -> bool:
     """Whether the right side has the opposite sign: y of a point."""
-    point, _, axis = name.partition(".")
-    return axis == "y" and (point in HARDPOINTS or point in EXTRA_HARDPOINTS)
+    return name.partition(".")[2] == "y"

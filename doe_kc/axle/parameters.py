@@ -30,6 +30,7 @@ from doe_kc.axle.parameter_kinds import (
     quantity_of,
     side_prefix,
 )
+from doe_kc.axle.structure_parameters import structure_kinds
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
 
@@ -85,8 +86,10 @@ class Parameter:
 
 def design_parameters(axle: Axle) -> list[Parameter]:
     """Every design variable of Table 1 and Appendix A, in their order; followers only when freed."""
+    structure = axle.topology.structure
+    kinds = KINDS if structure is None else structure_kinds(structure, axle.labels)
     return [
-        _parameter(axle, path, kind) for path, kind in KINDS.items() if path.split(".")[0] not in axle.follow
+        _parameter(axle, path, kind) for path, kind in kinds.items() if path.split(".")[0] not in axle.follow
     ]
 
 
@@ -123,7 +126,7 @@ def is_active(axle: Axle, path: str) -> bool:
 
 def settable_paths(axle: Axle) -> list[str]:
     """Every path that `with_values` takes on this axle, without the side prefixes."""
-    return sorted({name.split("@")[0] for name in axle.values if ".table." not in name})
+    return sorted({n.split("@")[0] for n in axle.values if ".table." not in n and ".axes." not in n})
 
 
 def parameter_value(axle: Axle, path: str, *, source: str = "parameter") -> float:
@@ -155,6 +158,8 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
 
 def _with_matching_topology(axle: Axle) -> Axle:
     """A strut bends once its flexibility is above zero, and is rigid at zero."""
+    if axle.topology.structure is not None:
+        return axle
     for path, flag in SWITCHES.items():
         there = max(axle.values[f"{path}@L"], axle.values[f"{path}@R"]) > 0
         if there != getattr(axle.topology, flag):
@@ -191,18 +196,22 @@ def internal_gradient(axle: Axle, path: str, *, source: str = "parameter") -> di
 
 def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[str, float]]:
     name, side = _split(axle, path, source)
-    change = _to_left(name, side, value) - axle.values[_internal(axle, name, side or "L")]
-    reference = axle.values[_internal(axle, name, side or "L")]
-    for each in (side,) if side else ("L", "R"):
-        internal = _internal(axle, name, each)
-        scales = must_be_positive(name) and reference != 0
-        yield internal, change * (axle.values[internal] / reference if scales else 1.0)
-        if "@" not in internal:
-            return
+    known, sides = axle.values, (side,) if side else ("L", "R")
+    reference = known[_internal(axle, name, sides[0])]
+    change = _to_left(name, side, value) - reference
+    scales = reference != 0 and must_be_positive(name)
+    if f"{name}@{sides[0]}" not in known:
+        yield name, change * (known[name] / reference if scales else 1.0)
+        return
+    for each in sides:
+        internal = f"{name}@{each}"
+        yield internal, change * (known[internal] / reference if scales else 1.0)
     point, _, axis = name.partition(".")
+    if axis not in "xyz":
+        return
     for follower, leader in axle.follow.items():
-        if leader == point and axis in "xyz":
-            for each in (side,) if side else ("L", "R"):
+        if leader == point:
+            for each in sides:
                 yield f"{follower}.{axis}@{each}", change
 
 
@@ -224,7 +233,7 @@ def _split(axle: Axle, path: str, source: str) -> tuple[str, str | None]:
     head, _, rest = path.partition(".")
     side = SIDE_PREFIXES.get(head)
     name = rest if side else path
-    internal = "@" in name or ".table." in name
+    internal = "@" in name or ".table." in name or ".axes." in name
     if not internal and (f"{name}@L" in axle.values or (name in axle.values and side is None)):
         return name, side
     known = settable_paths(axle)

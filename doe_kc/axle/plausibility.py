@@ -14,7 +14,10 @@ from doe_kc.curves import SIDE_WORDS
 
 @dataclass(frozen=True)
 class Range:
-    """A quantity that passenger cars keep within [lower, upper] `unit`; reason: why, in a clause."""
+    """A quantity that passenger cars keep within [lower, upper] `unit`; reason: why, in a clause.
+
+    needs: points or values without which an axle does not have it.
+    """
 
     name: str
     unit: str
@@ -22,6 +25,11 @@ class Range:
     upper: float
     reason: str
     value: Callable[[Axle, str], float]
+    needs: tuple[str, ...] = ()
+
+    def applies(self, axle: Axle) -> bool:
+        """Whether the axle has the quantity."""
+        return all(any(n in axle.values for n in (name, f"{name}@L", f"{name}.x@L")) for name in self.needs)
 
     def warning(self, axle: Axle, side: str) -> str:
         """A sentence when the axle is outside; else empty. side: "L" or "R"."""
@@ -74,6 +82,7 @@ RANGES = (
         700,
         "it has to leave room for the engine and the wheel",
         _arm,
+        ("LLF", "LLR", "LWB"),
     ),
     Range(
         "lower arm, LLF to LLR",
@@ -82,9 +91,16 @@ RANGES = (
         700,
         "its bushings take brake forces as a couple",
         _length("LLF", "LLR"),
+        ("LLF", "LLR", "LWB"),
     ),
     Range(
-        "tie rod, RIB to ROB", "mm", 150, 700, "it is about as long as the lower arm", _length("RIB", "ROB")
+        "tie rod, RIB to ROB",
+        "mm",
+        150,
+        700,
+        "it is about as long as the lower arm",
+        _length("RIB", "ROB"),
+        ("RIB", "ROB"),
     ),
     Range(
         "steer arm, ROB to the kingpin axis",
@@ -93,13 +109,30 @@ RANGES = (
         250,
         "30 to 50 deg of wheel angle for 60 to 90 mm of rack",
         _steer_lever,
+        ("LWB", "UPB", "ROB"),
     ),
-    Range("strut, LWD to UPB", "mm", 200, 900, "it holds spring and damper", _length("LWD", "UPB")),
+    Range(
+        "strut, LWD to UPB",
+        "mm",
+        200,
+        900,
+        "it holds spring and damper",
+        _length("LWD", "UPB"),
+        ("LWD", "UPB"),
+    ),
     Range("static.toe", "deg", -2, 2, "more wears tyres off", _of("static.toe")),
     Range("static.camber", "deg", -6, 4, "more wears tyres off", _of("static.camber")),
     Range("tyre.rate", "N/mm", 80, 800, "passenger-car tyres have 150 to 350 N/mm", _of("tyre.rate")),
     Range("tyre.static_load", "N", 1000, 15000, "100 to 1500 kg a wheel", _of("tyre.static_load")),
-    Range("spring.rate", "N/mm", 5, 300, "ride frequencies lie between 0.8 and 4 Hz", _of("spring.rate")),
+    Range(
+        "spring.rate",
+        "N/mm",
+        5,
+        300,
+        "ride frequencies lie between 0.8 and 4 Hz",
+        _of("spring.rate"),
+        ("spring.rate",),
+    ),
     Range(
         "steering.rack_mm_per_rev",
         "mm",
@@ -107,6 +140,7 @@ RANGES = (
         150,
         "locks are one to five turns apart",
         _of("steering.rack_mm_per_rev"),
+        ("steering.rack_mm_per_rev",),
     ),
     Range("ride_height", "mm", -120, 120, "that is the whole travel of a wheel", _of("ride_height")),
 )
@@ -151,9 +185,12 @@ def _sides(axle: Axle) -> tuple[str, ...]:
 def _hardpoints(axle: Axle) -> Iterator[str]:
     for side in _sides(axle):
         centre = point(axle, "WLC", side)
-        for name in (*HARDPOINTS, *EXTRA_HARDPOINTS):
+        structure = axle.topology.structure
+        for name in structure.points if structure is not None else (*HARDPOINTS, *EXTRA_HARDPOINTS):
             at = point(axle, name, side)
             where = f"hardpoint {name} ({SIDE_WORDS[side]}) at ({', '.join(f'{v:g}' for v in at)}) mm"
+            if at[1] == 0.0 and structure is not None:
+                continue  # a point that both sides share
             if -at[1] < MIDDLE:
                 yield (
                     f"{where} is within {MIDDLE:g} mm of the car's middle, where no part of one wheel's "
@@ -169,7 +206,7 @@ def _hardpoints(axle: Axle) -> Iterator[str]:
 def _ranges(axle: Axle) -> Iterator[str]:
     for side in _sides(axle):
         for entry in RANGES:
-            if sentence := entry.warning(axle, side):
+            if entry.applies(axle) and (sentence := entry.warning(axle, side)):
                 yield sentence
 
 
@@ -177,7 +214,9 @@ def _bushings(axle: Axle) -> Iterator[str]:
     lower, upper = BUSHING_STIFFNESS
     tables = {(name, axis) for name, axis, _ in axle.topology.tables}
     for side in _sides(axle):
-        for name in BUSHINGS:
+        structure = axle.topology.structure
+        names = [b.name for b in structure.bushings if not b.single] if structure is not None else BUSHINGS
+        for name in names:
             for axis in BUSHING_AXES[:3]:
                 rate = axle.values[f"{name}.{axis}@{side}"] * axle.values[f"{name}.stiffness.{axis}@{side}"]
                 if (name, axis) not in tables and not lower <= rate <= upper:

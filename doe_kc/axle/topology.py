@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-FrictionLaw = Literal["none", "dahl", "iwan"]
+from doe_kc.axle.structure import Structure
+
+FrictionLaw = Literal["none", "dahl", "iwan", "duhem", "lognormal", "backbone"]
 
 TOPOLOGY_CACHE = 64
 """Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""
@@ -17,8 +19,14 @@ class Topology:
 
     bump_points, rebound_points: number of points of the stop curves.
     tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
+    rubber: bushings whose translational axes have friction beside their elastic law.
     probes: whether zero-valued dislocations and force pairs are in, for derivatives to them alone.
+    structure: bodies and connections of the axle's type; None: the McPherson axle's.
+    elastic_balls, play_balls: ball joints that are springs, or have free play, by name of either side:
+        `tlo@L`; a structure's only.
     """
+
+    structure: Structure | None = None
 
     hub: bool = False
     strut_bending: bool = False
@@ -32,12 +40,15 @@ class Topology:
     free_play_right: bool = False
     steering_friction: FrictionLaw = "none"
     strut_friction: FrictionLaw = "none"
+    rubber: tuple[str, ...] = ()
     bump_points: int = 7
     rebound_points: int = 5
     tables: tuple[tuple[str, str, int], ...] = ()
     probes: bool = False
+    elastic_balls: tuple[str, ...] = ()
+    play_balls: tuple[str, ...] = ()
 
     @property
     def frictional(self) -> bool:
         """True when the path matters, so that load cases run as loops."""
-        return self.steering_friction != "none" or self.strut_friction != "none"
+        return self.steering_friction != "none" or self.strut_friction != "none" or bool(self.rubber)

@@ -7,10 +7,13 @@ from typing import Any
 
 import tomlkit
 
-from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS, strut_clamp
+from doe_kc.axle.model import BUSHING_AXES, strut_clamp
+from doe_kc.axle.parameter_kinds import COORDINATES
 from doe_kc.axle_file.schema import AxleFile
 from doe_kc.effects import EFFECTS
 
+OF_BUSHINGS = ("stiffness", "cubic", "preload")
+"""Tables that a bushing has in the file."""
 Place = tuple[str | int, ...]
 """Keys and indices from the top of the file to one number."""
 
@@ -26,10 +29,12 @@ def own_place(name: str) -> Place:
     head, _, rest = path.partition(".")
     if name.endswith("@R"):
         return ("right", path)
-    if head in HARDPOINTS or head in EXTRA_HARDPOINTS:
-        return ("hardpoints", head, "xyz".index(rest))
-    if head in BUSHINGS:
-        return ("bushings", head, *(["factor", rest] if rest in BUSHING_AXES else rest.split(".")))
+    if rest in COORDINATES:
+        return ("hardpoints", head, COORDINATES.index(rest))
+    if rest in BUSHING_AXES and head != "scb":
+        return ("bushings", head, "factor", rest)
+    if rest.split(".")[0] in OF_BUSHINGS:
+        return ("bushings", head, *rest.split("."))
     return (head, rest) if rest in _keys(head) else (head,) if path in AxleFile.model_fields else ()
 
 

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import os
+from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
 import tomlkit
+from tomlkit.items import Table
 
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import parameter_value
-from doe_kc.axle_file.effect_tables import set_effects
-from doe_kc.axle_file.load_case_tables import set_conditioning
+from doe_kc.axle.places import Places, places_of
 from doe_kc.axle_file.places import (
     Place,
+    effect_id,
     entry,
     option_places,
     own_place,
@@ -24,9 +27,84 @@ from doe_kc.axle_file.places import (
     restore_entry,
 )
 from doe_kc.axle_file.read import axle_from_document
+from doe_kc.effects import EFFECTS
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.files import read_bytes, read_toml
 from doe_kc.ground.output import write_whole
+
+COMMENT_LENGTH = 100
+"""Characters of a line of comment."""
+NO_UNIT = ("", "-")
+
+
+def set_effects(document: tomlkit.TOMLDocument, axle: Axle) -> None:
+    """The axle's effects in the document, no others; tables that say the same already stay as they are.
+
+    Faults of the measurement are left out: an axle file does not hold them.
+    """
+    tables = document.get("effects", {})
+    for key in list(tables):
+        if effect_id(key) not in axle.effects:
+            del tables[key]
+    present = {effect_id(key): key for key in tables}
+    for ident, options in axle.effects.items():
+        if ident in present:
+            _change(tables[present[ident]], ident, options, places_of(axle))
+        elif not EFFECTS[ident].on_rig:
+            if "effects" not in document:
+                document["effects"] = tomlkit.table(is_super_table=True)
+            document["effects"][ident] = effect_table(ident, options)
+
+
+def effect_table(ident: str, options: Mapping[str, Any]) -> Table:
+    """A table with the effect's name and physics as comments; numbers as short as they read back exactly."""
+    effect, table = EFFECTS[ident], tomlkit.table()
+    table.comment(effect.label)
+    for line in wrap(effect.physics, COMMENT_LENGTH):
+        table.add(tomlkit.comment(line))
+    for key, value in options.items():
+        table[key] = list(value) if isinstance(value, tuple) else value
+        if unit := unit_beside(ident, key):
+            table[key].comment(unit)
+    return table
+
+
+def unit_beside(ident: str, key: str) -> str:
+    """Unit of an option whose name does not say it, such as a bushing's; empty otherwise."""
+    units = {s.key: s.unit for h in EFFECTS[ident].hypotheses() for s in h.sizes}
+    unit = units.get(key, "")
+    said = "_" + unit.replace("/", "_")
+    return "" if unit in NO_UNIT or key.endswith(said) else unit
+
+
+def _change(table: MutableMapping[str, Any], ident: str, options: Mapping[str, Any], places: Places) -> None:
+    """Bring a table that the file has to other options, key by key."""
+    effect = EFFECTS[ident]
+    if effect.read(dict(table), "axle", places) == effect.read(options, "axle", places):
+        return
+    for key in list(table):
+        if key not in options:
+            del table[key]
+    for key, value in options.items():
+        if table.get(key) != value:
+            table[key] = value
+
+
+CONDITIONING = "conditioning"
+
+
+def set_conditioning(document: tomlkit.TOMLDocument, axle: Axle) -> None:
+    """The axle's conditioning loops in the document, where they are not what it says already."""
+    tables = document.get("load_cases", {})
+    for ident, case in axle.load_cases.items():
+        if tables.get(ident, {}).get(CONDITIONING, 0) == case.conditioning:
+            continue
+        if "load_cases" not in document:
+            document["load_cases"] = tomlkit.table(is_super_table=True)
+        if ident not in document["load_cases"]:
+            document["load_cases"][ident] = tomlkit.table()
+        document["load_cases"][ident][CONDITIONING] = case.conditioning
+
 
 AXLE_HEADER = "# Written by doe_kc"
 WRITE_CORRECTIONS = 4
@@ -47,10 +125,15 @@ def write_axle(axle: Axle, original: Path, path: Path, *, note: str = "") -> Pat
     read_toml(original)  # its messages name line and remedy
     text = read_bytes(original, "TOML file").decode("utf-8")
     document = tomlkit.parse(text)
+    own_type = str(document.get("type", "")).endswith(".toml")
+    if own_type:
+        document["type"] = str((original.parent / str(document["type"])).resolve())
     set_effects(document, axle)
     set_conditioning(document, axle)
     if not _fit(document, axle):
         _fit_without_an_effect(document, axle, str(path))
+    if own_type:
+        document["type"] = os.path.relpath(str(document["type"]), path.parent.resolve())
     content = _with_header(tomlkit.dumps(document), original, note)
     return write_whole(path, lambda p: p.write_bytes(content.encode("utf-8")))
 

@@ -69,10 +69,10 @@ def outcome_of(record: StoredEvaluation, windows: Mapping[str, float], *, curves
     if packed.reason:
         return Outcome(None, values * math.nan, packed.reason, packed.seconds)
     again = dict(record.windows) != dict(windows) or set(packed.characteristics) != set(CHARACTERISTICS)
-    found = unpack(packed.curves) if packed.curves is not None and (curves or again) else None
-    if found is not None and again:
-        values = _reduced_again(found, windows, values)
-    return Outcome(found if curves else None, values, "", packed.seconds)
+    stored_curves = unpack(packed.curves) if packed.curves is not None and (curves or again) else None
+    if stored_curves is not None and again:
+        values = _reduced_again(stored_curves, windows, values)
+    return Outcome(stored_curves if curves else None, values, "", packed.seconds)
 
 
 def _reduced_again(curves: CurveSet, windows: Mapping[str, float], stored: FloatArray) -> FloatArray:

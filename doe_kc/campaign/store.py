@@ -62,10 +62,8 @@ class Store:
     def status(self, key: str) -> str | None:
         """ok, failed, or None for a design that has not been evaluated."""
         with in_words(self._where):
-            found = self._connection.execute(
-                "SELECT status FROM evaluations WHERE key = ?", (key,)
-            ).fetchone()
-        return None if found is None else str(found[0])
+            row = self._connection.execute("SELECT status FROM evaluations WHERE key = ?", (key,)).fetchone()
+        return None if row is None else str(row[0])
 
     def outcome(self, key: str, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
         """What was stored, its characteristics reduced with `windows`; KeyError for a design not there.

@@ -1,12 +1,16 @@
-"""Progress on stderr: a bar with rate and time left in a terminal, lines elsewhere."""
+"""Progress on stderr: a bar with rate and time left in a terminal, lines elsewhere; of a correlation with the
+best merit so far."""
 
 from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import TextIO
+
+from doe_kc.correlation.problem import Evaluated
 
 INTERVAL = 10.0
 """Seconds between two lines at least; the first and the last are always written."""
@@ -17,6 +21,25 @@ def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
     """A function that advances by so many steps."""
     with described_bar(what, total) as advance:
         yield lambda steps: advance(steps, what)
+
+
+@contextmanager
+def correlation_bar(budget: int) -> Iterator[Callable[[Sequence[Evaluated]], None]]:
+    """A function that takes each round of evaluations, of `budget` at most."""
+    best: list[Evaluated] = []
+
+    def watch(advance: Callable[[int, str], None], new: Sequence[Evaluated]) -> None:
+        solved = [e for e in [*best, *new] if e.rating is not None]
+        if solved:
+            best[:] = [max(solved, key=lambda e: e.merit)]
+        advance(len(new), _merit_words(best[0]) if best else "correlating")
+
+    with described_bar("correlating", budget) as advance:
+        yield partial(watch, advance)
+
+
+def _merit_words(best: Evaluated) -> str:
+    return f"merit {best.merit:.4g} ({'feasible' if best.feasible else 'not feasible'})"
 
 
 @contextmanager

@@ -32,11 +32,11 @@ def conflict_sentences(problem: Problem, best: Evaluated, expansion: Linearizati
     if best.score is None or best.rating is None or best.rating.feasible:
         return []
     slopes = expansion.characteristics[problem.targets.rows]
-    found = conflict(problem.targets.characteristics, best.score.values, slopes, best.point)
-    if found is None:
+    trade_off = conflict(problem.targets.characteristics, best.score.values, slopes, best.point)
+    if trade_off is None:
         return []
-    names = ", ".join(t.entry.id for t in found.violated)
-    against = ", ".join(t.entry.id for t in found.against)
+    names = ", ".join(t.entry.id for t in trade_off.violated)
+    against = ", ".join(t.entry.id for t in trade_off.against)
     clause = f" together with {against}" if against else ""
     return [
         f"No design within the bounds meets {names}{clause}, to first order: widen bounds, weight what "

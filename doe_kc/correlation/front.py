@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from doe_kc.correlation.objectives import Objectives, objectives, relative_violation
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Targets
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 VIOLATION = "constraint violation"
 LOSS_LIMIT = 3.0
@@ -35,12 +38,20 @@ class Front:
     feasible: bool
     knee: int
 
+    def columns(self) -> dict[str, NDArray[Any]]:
+        """One row a design: its evaluation, from 1, objectives, rating, whether it is the knee."""
+        return {
+            "evaluation": np.add(self.indices, 1),
+            **dict(zip(self.names, self.values.T, strict=True)),
+            "rating": self.ratings,
+            "knee": np.arange(len(self.indices)) == self.knee,
+        }
+
     def to_frame(self) -> pd.DataFrame:
-        """One row a design: objectives, rating, whether it is the knee; index: its evaluation, from 1."""
-        frame = pd.DataFrame(
-            self.values, columns=list(self.names), index=pd.Index(np.add(self.indices, 1), name="evaluation")
-        )
-        return frame.assign(rating=self.ratings, knee=np.arange(len(frame)) == self.knee)
+        """`columns` as a data frame; index: the evaluation."""
+        import pandas as pd
+
+        return pd.DataFrame(self.columns()).set_index("evaluation")
 
 
 def front_of(targets: Targets, history: Sequence[Evaluated], *, chosen: Objectives | None = None) -> Front:

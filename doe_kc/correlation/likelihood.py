@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -102,9 +102,29 @@ class Likelihood:
         """(M,) whitened residual of a model; KeyError for a load case that it lacks."""
         if curves is None and self.size > sum(f.row >= 0 for f in self.figures):
             raise ValueError("the model gives no curves to compare with the measured ones")
-        parts = [c.whitened(_model(c, curves) - c.value) for c in self.curves if curves is not None]
+        models = self._models(curves) if curves is not None else []
+        parts = [c.whitened(model - c.value) for c, model in zip(self.curves, models, strict=False)]
         scalars = [(_scalar(f, curves, characteristics) - f.value) / f.sd for f in self.figures]
         return np.concatenate([*parts, np.array(scalars)])
+
+    def _models(self, curves: CurveSet) -> list[FloatArray]:
+        """The model's values of each curve, (n,), interpolated for all curves of the same inputs at once."""
+        out: list[FloatArray] = [np.zeros(0)] * len(self.curves)
+        for places in self._same_inputs:
+            data = [self.curves[i] for i in places]
+            case = curves.cases[data[0].load_case]
+            values = np.array([_branch_curves(c, curves)[c.response][c.side] for c in data])
+            for i, model in zip(places, _interpolated_rows(data[0].input, case.input, values), strict=True):
+                out[i] = model
+        return out
+
+    @cached_property
+    def _same_inputs(self) -> list[list[int]]:
+        """Places of the curves, those of a load case with the same inputs together."""
+        places: dict[tuple[str, bytes], list[int]] = {}
+        for i, curve in enumerate(self.curves):
+            places.setdefault((curve.load_case, curve.input.tobytes()), []).append(i)
+        return list(places.values())
 
     def jacobian(self, gradients: CurveGradients, characteristics: FloatArray) -> FloatArray:
         """(M, p) derivative of the residual. characteristics: (all registered, p) their gradients."""
@@ -259,17 +279,26 @@ def _static(measurement: Measurement) -> Iterator[Figure]:
                 yield Figure(f"static.{response}", response, side, -1, float(value), sd[response])
 
 
-def _model(data: CurveData, curves: CurveSet) -> FloatArray:
+def _branch_curves(data: CurveData, curves: CurveSet) -> Mapping[str, FloatArray]:
     case = curves.cases[data.load_case]
-    found = case.mean if data.branches == "mean" else case.half_width
-    return np.asarray(np.interp(data.input, case.input, found[data.response][data.side]))
+    return case.mean if data.branches == "mean" else case.half_width
+
+
+def _interpolated_rows(at: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:
+    """(k, m) rows, (k, n) on a rising grid, at `at`, (m,): each as `np.interp`, to the last bit."""
+    cell = np.clip(np.searchsorted(grid, at, side="right") - 1, 0, grid.size - 2)
+    low = rows[:, cell]
+    slope = (rows[:, cell + 1] - low) / (grid[cell + 1] - grid[cell])
+    out = slope * (np.maximum(at, grid[0]) - grid[cell]) + low
+    out[:, at >= grid[-1]] = rows[:, -1:]
+    return np.asarray(out)
 
 
 def _rows(data: CurveData, gradients: CurveGradients) -> FloatArray:
     if data.branches == "half_width" and data.load_case not in gradients.half_width:
         return np.zeros((data.size, len(gradients.paths)))
-    found = gradients.cases if data.branches == "mean" else gradients.half_width
-    values = found[data.load_case][data.response][data.side]
+    slopes = gradients.cases if data.branches == "mean" else gradients.half_width
+    values = slopes[data.load_case][data.response][data.side]
     return interpolated(data.input, gradients.inputs[data.load_case], values)
 
 

@@ -45,9 +45,9 @@ def linearize(
     paths = [*space.paths, *(tie.follower for tie in space.ties)]
     exact = sensitivities(there, solution, paths)
     chain = _chain(space, point)
-    found = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
+    slopes = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
     return Linearization(
-        found @ chain, _chained(curve_gradients(there, solution, paths, exact), chain, space)
+        slopes @ chain, _chained(curve_gradients(there, solution, paths, exact), chain, space)
     )
 
 
@@ -74,6 +74,6 @@ def _chained(gradients: CurveGradients, chain: FloatArray, space: Space) -> Curv
 
 def scaled_slopes(target: CurveTarget, curves: CurveGradients) -> FloatArray:
     """(2 n, d) slopes of one curve at the measured inputs, scaled as `Targets.scaled_curves`."""
-    found = curves.cases[target.load_case][target.response]
-    sides = [interpolated(target.input, curves.inputs[target.load_case], side) for side in found]
+    sides_slopes = curves.cases[target.load_case][target.response]
+    sides = [interpolated(target.input, curves.inputs[target.load_case], side) for side in sides_slopes]
     return np.asarray(np.vstack(sides) / (target.objective.norm * np.sqrt(target.curve.size)))

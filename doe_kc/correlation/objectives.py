@@ -38,9 +38,9 @@ def objectives(targets: Targets) -> Objectives:
     """
     cases = [t.entry.load_case if t.objective else "" for t in targets.characteristics]
     lines = [c.load_case for c in targets.curves]
-    found = _grouped(cases, lines)
-    if len(found.names) > 1:
-        return found
+    by_case = _grouped(cases, lines)
+    if len(by_case.names) > 1:
+        return by_case
     single = _grouped(
         [t.entry.id if t.objective else "" for t in targets.characteristics], [c.id for c in targets.curves]
     )

@@ -85,16 +85,21 @@ def conflict(
     d, m = point.size, len(rows)
     if m == 0:
         return None
-    found = linprog(
+    programme = linprog(
         np.concatenate([np.zeros(d), np.ones(m)]),
         A_ub=np.block([[jacobian, -np.eye(m)], [-jacobian, -np.eye(m)]]),
         b_ub=np.concatenate([high / half - now, now - low / half]),
         bounds=[*zip(-point, 1.0 - point, strict=True), *[(0.0, None)] * m],
     )
-    if found.status != 0 or found.x is None or found.fun is None or found.fun <= FORECAST_MARGIN:
+    if (
+        programme.status != 0
+        or programme.x is None
+        or programme.fun is None
+        or programme.fun <= FORECAST_MARGIN
+    ):
         return None
-    price = np.abs(found.ineqlin.marginals).reshape(2, m).sum(axis=0)
-    missed = found.x[d:] > ACTIVE
+    price = np.abs(programme.ineqlin.marginals).reshape(2, m).sum(axis=0)
+    missed = programme.x[d:] > ACTIVE
     return Conflict(
         tuple(targets[i] for i, out in zip(rows, missed, strict=True) if out),
         tuple(targets[i] for i, out, p in zip(rows, missed, price, strict=True) if not out and p > ACTIVE),

@@ -253,9 +253,9 @@ def recalled(
 
 
 def _expected(entry: EvaluationRecord) -> RatingForecast | None:
-    found = entry.predicted
-    if found is None:
+    forecast = entry.predicted
+    if forecast is None:
         return None
-    values, sd = (np.array([np.nan if v is None else v for v in x]) for x in (found.values, found.sd))
-    rating, spread = (np.nan if x is None else x for x in (found.rating, found.rating_sd))
+    values, sd = (np.array([np.nan if v is None else v for v in x]) for x in (forecast.values, forecast.sd))
+    rating, spread = (np.nan if x is None else x for x in (forecast.rating, forecast.rating_sd))
     return RatingForecast(values, sd, rating, spread)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
 from doe_kc.curves import CurveSet
 from doe_kc.effects._tables import checked_number
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -22,6 +23,10 @@ class Option:
     unit: str = ""
     positive: bool = True
     choices: tuple[str, ...] = ()
+
+
+Part = Literal["axle", "rack", "rods", "damper", "subframe", "bar", "balls", "mcpherson"]
+"""axle: what every type has. rods: that the rack steers by. mcpherson: the parts of that axle alone."""
 
 
 class Effect(ABC):
@@ -40,21 +45,57 @@ class Effect(ABC):
     """The component test or extra load case that would show it by itself."""
     sizes: ClassVar[tuple[Size, ...]] = ()
     """Numbers by which the effect grows, where it has one place only."""
+    laws: ClassVar[Mapping[str, tuple[Size, ...]]] = {}
+    """Values of the option `law`, the default first, each with the sizes that it has beside `sizes`: numbers
+    of its shape. Empty for an effect of one law."""
     replaces: ClassVar[tuple[str, ...]] = ()
     """Parameter paths that are this effect in other words: held while it is looked for."""
+    part: ClassVar[Part] = "mcpherson"
+    """What an axle must have for the effect to be possible."""
     odds: ClassVar[float] = 1.0
     """How much likelier than other effects it is before any measurement."""
     on_rig: ClassVar[bool] = False
     """True for a fault of the measurement: the axle stays as it is, `observe` changes what is read (and
     `extend` at most how a load case is run). Axle files do not hold such effects."""
 
+    def possible(self, places: Places) -> bool:
+        """Whether the axle has the part that the effect is of."""
+        structure = places.structure
+        if structure is None:
+            return self.part != "balls"
+        having: Mapping[Part, bool] = {
+            "axle": True,
+            "rack": structure.rack is not None,
+            "rods": structure.rack is not None and bool(structure.rack.rods),
+            "damper": structure.damper is not None,
+            "subframe": structure.subframe is not None,
+            "bar": structure.bar is not None,
+            "balls": bool(structure.balls),
+            "mcpherson": False,
+        }
+        return having[self.part]
+
     def present(self, axle: Axle) -> bool:
         """Whether the axle has the effect already, so that it is not looked for."""
         return self.id in axle.effects
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
-        """The places and sizes in which the effect is looked for."""
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+        """The places and sizes in which the effect is looked for on an axle with these places."""
+        del places
         return (Hypothesis(self.id, None, self.sizes),)
+
+    def consequence(self, options: Mapping[str, Any]) -> str:
+        """A sentence on what the effect means at its options beyond the axle; empty for most."""
+        del options
+        return ""
+
+    def variants(self, hypothesis: Hypothesis) -> tuple[Hypothesis, ...]:
+        """The hypothesis by each law that the effect can follow, the default one, itself, first."""
+        others = list(self.laws.items())[1:]
+        return (
+            hypothesis,
+            *(replace(hypothesis, law=law, sizes=(*hypothesis.sizes, *more)) for law, more in others),
+        )
 
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
         """What the rig reads of an axle's curves; the curves themselves unless `on_rig`."""
@@ -71,10 +112,17 @@ class Effect(ABC):
 
     def apply(self, axle: Axle, options: Mapping[str, Any], source: str) -> Axle:
         """The axle with this effect; InputError for an unknown key or a value out of range."""
-        return self.extend(axle, self.read(options, source))
+        places = places_of(axle)
+        if not self.possible(places):
+            raise InputError(
+                f"{source}: effect {self.id}: the axle has nothing that it is an effect of; remove it."
+            )
+        return self.extend(axle, self.read(options, source, places))
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
-        """Checked options, defaults filled in."""
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        """Checked options, defaults filled in. places: of the axle."""
         for key in options:
             if key not in self.options:
                 raise InputError(
@@ -113,9 +161,9 @@ def effect(cls: type[Effect]) -> type[Effect]:
 def observed(axle: Axle, curves: CurveSet) -> CurveSet:
     """What the rig reads of the axle's own curves, with the faults that it has among its effects."""
     for ident, options in axle.effects.items():
-        found = EFFECTS[ident]
-        if found.on_rig:
-            curves = found.observe(curves, found.read(options, axle.name))
+        effect = EFFECTS[ident]
+        if effect.on_rig:
+            curves = effect.observe(curves, effect.read(options, axle.name))
     return curves
 
 
@@ -126,17 +174,17 @@ def apply_effect(axle: Axle, ident: str, options: Mapping[str, Any], *, source: 
         raise InputError(
             f"{source}: unknown effect {ident!r}; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
         )
-    found = EFFECTS[ident]
-    changed = found.apply(axle, options, source)
+    effect = EFFECTS[ident]
+    changed = effect.apply(axle, options, source)
     before = axle.effects.get(ident)
-    all_options = dict(options) if before is None else found.combined(before, options, changed)
+    all_options = dict(options) if before is None else effect.combined(before, options, changed)
     return replace(changed, effects={**axle.effects, ident: all_options})
 
 
 def refuse_on_rig(ident: str, source: str) -> None:
     """InputError for a fault of the measurement in an axle file."""
-    found = EFFECTS.get(ident)
-    if found is not None and found.on_rig:
+    effect = EFFECTS.get(ident)
+    if effect is not None and effect.on_rig:
         raise InputError(
             f"{source}: [effects.{ident}] is a fault of the measurement, but an axle file describes an axle; "
             "expected an effect in the car. Remove the table and correct the records instead."

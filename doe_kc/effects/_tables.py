@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from typing import Any
 
 from doe_kc.ground.errors import InputError, nearest
@@ -43,7 +43,7 @@ def named_numbers(
 
 
 def per_bushing(
-    options: Mapping[str, Any], known: Mapping[str, str], length: int, source: str
+    options: Mapping[str, Any], known: Collection[str], length: int, source: str
 ) -> dict[str, list[float]]:
     """Options of the form LLR = [x, y, z], keyed by the lower-case bushing name."""
     out = {}

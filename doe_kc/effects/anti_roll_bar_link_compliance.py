@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -19,6 +19,7 @@ class AntiRollBarLinkCompliance(Effect):
 
     id: ClassVar[str] = "anti_roll_bar_link_compliance"
     label: ClassVar[str] = "Anti-roll bar link compliance"
+    part: ClassVar[Part] = "bar"
     options: ClassVar[Mapping[str, Option]] = {"k_N_mm": Option(300.0, "N/mm")}
 
     physics: ClassVar[str] = (

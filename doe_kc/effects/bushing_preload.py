@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import ClassVar
 
-from doe_kc.axle.model import BUSHINGS
-from doe_kc.effects._base import effect
+from doe_kc.effects._base import Part, effect
 from doe_kc.effects._bushing_values import BushingValues
 
 
@@ -16,10 +14,11 @@ class BushingPreload(BushingValues):
 
     id: ClassVar[str] = "bushing_preload"
     label: ClassVar[str] = "Bushing preload"
+    part: ClassVar[Part] = "axle"
     quantity: ClassVar[str] = "preload"
     unit: ClassVar[str] = "N"
     signed: ClassVar[bool] = True
-    typical: ClassVar[Mapping[str, float]] = dict.fromkeys(BUSHINGS, 600.0)
+    usual: ClassVar[float] = 600.0
 
     physics: ClassVar[str] = (
         "A bushing was clamped or swaged off its free position and pushes on the arm at ride height."

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from doe_kc.axle.model import BUSHINGS
-from doe_kc.effects._base import effect
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.effects._base import Part, effect
 from doe_kc.effects._bushing_values import BushingValues
 from doe_kc.ground.errors import InputError
 
@@ -17,11 +17,13 @@ class BushingProgression(BushingValues):
 
     id: ClassVar[str] = "bushing_progression"
     label: ClassVar[str] = "Bushing progression"
+    part: ClassVar[Part] = "axle"
     table: ClassVar[str] = "bushing_cubic"
     quantity: ClassVar[str] = "cubic"
     unit: ClassVar[str] = "1/mm^2"
     signed: ClassVar[bool] = False
-    typical: ClassVar[Mapping[str, float]] = dict.fromkeys(BUSHINGS, 0.05) | {"upb": 0.02}
+    usual: ClassVar[float] = 0.05
+    typical: ClassVar[Mapping[str, float]] = {"upb": 0.02}
 
     most: ClassVar[float] = 10.0
     """Typical is of a bushing that works over 2 mm; one that has its stop within 1 mm looks far sharper."""
@@ -35,8 +37,10 @@ class BushingProgression(BushingValues):
     def default(self) -> dict[str, list[float]]:
         return {"LLR": [0.05, 0.05, 0.05], "UPB": [0.02, 0.02, 0.02]}
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
-        checked = super().read(options, source)
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read(options, source, places)
         for bushing, values in checked.items():
             if bushing != "added" and min(values) < 0:
                 raise InputError(

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -17,6 +17,7 @@ class HubCompliance(Effect):
 
     id: ClassVar[str] = "hub_compliance"
     label: ClassVar[str] = "Hub and wheel-bearing compliance"
+    part: ClassVar[Part] = "axle"
     table: ClassVar[str] = "hub"
     options: ClassVar[Mapping[str, Option]] = {
         "camber_Nm_deg": Option(6000.0, "Nm/deg"),

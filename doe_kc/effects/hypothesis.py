@@ -20,9 +20,9 @@ class Size:
 
     key: option of the effect's table; index: place in it where the option is a list. typical: value at
     a = 1, in `unit`. growth: amount, value = typical a; compliance, value = typical a^(-1/power), rigid at
-    0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(0.7 a), a number
-    that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend, value =
-    typical a, a shape that may go either way and is none at 0.
+    0 (power 4 for a bar's radius); factor, value = typical^a; shape, value = typical exp(log_sd a), a
+    number that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend,
+    value = typical a, a shape that may go either way and is none at 0.
     signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
     have. needed: whether without it what is left is another effect.
     """
@@ -36,6 +36,7 @@ class Size:
     power: float = 1.0
     most: float = 3.0
     needed: bool = False
+    log_sd: float = SHAPE_LOG_SD
 
     @property
     def name(self) -> str:
@@ -57,20 +58,23 @@ class Size:
             return float(self.typical * max(amplitude, ABSENT) ** (-1.0 / self.power))
         if self.growth == "factor":
             return float(self.typical**amplitude)
-        return float(self.typical * 2.718281828459045 ** (SHAPE_LOG_SD * amplitude))
+        return float(self.typical * 2.718281828459045 ** (self.log_sd * amplitude))
 
 
 @dataclass(frozen=True)
 class Hypothesis:
     """An effect in one place. location: bushing or joint, with _L or _R for one side; None: no choice.
 
-    sizes: none for an effect that is there or not. fixed: further options, as in the effect's table.
+    sizes: none for an effect that is there or not. fixed: further options, as in the effect's table. law:
+    option of that name, for a variant of the effect by another law than its default (see `Effect.variants`);
+    a variant has the name of its effect, since a car has one of them.
     """
 
     effect: str
     location: str | None
     sizes: tuple[Size, ...]
     fixed: Mapping[str, Any] = field(default_factory=dict)
+    law: str = ""
 
     @property
     def name(self) -> str:
@@ -80,7 +84,7 @@ class Hypothesis:
 
     def options(self, amplitudes: Mapping[str, float]) -> dict[str, Any]:
         """The effect's table at the amplitudes, by `Size.name`."""
-        out: dict[str, Any] = dict(self.fixed)
+        out: dict[str, Any] = dict(self.fixed) | ({"law": self.law} if self.law else {})
         for size in self.sizes:
             value = size.value(amplitudes[size.name])
             if size.index is None:

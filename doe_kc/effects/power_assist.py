@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -17,6 +17,7 @@ class PowerAssist(Effect):
 
     id: ClassVar[str] = "power_assist"
     label: ClassVar[str] = "Power assist active"
+    part: ClassVar[Part] = "rack"
     options: ClassVar[Mapping[str, Option]] = {
         "gain": Option(1.0, "-"),
         "reference_N": Option(300.0, "N"),

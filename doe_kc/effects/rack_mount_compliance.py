@@ -10,7 +10,8 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.errors import InputError
 
@@ -24,6 +25,7 @@ class RackMountCompliance(Effect):
 
     id: ClassVar[str] = "rack_mount_compliance"
     label: ClassVar[str] = "Rack-mount compliance"
+    part: ClassVar[Part] = "rack"
     table: ClassVar[str] = "rack_mount"
     options: ClassVar[Mapping[str, Option]] = {
         "k_N_mm": Option(6000.0, "N/mm"),
@@ -42,8 +44,10 @@ class RackMountCompliance(Effect):
         Size("stiffening", 0.15, "-", "bend", most=2.5),
     )
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
-        checked = super().read(options, source)
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read(options, source, places)
         if checked["stiffening"] <= SOFTEST:
             raise InputError(
                 f"{source}: effect {self.id}: stiffening = {checked['stiffening']:g}, expected more than "

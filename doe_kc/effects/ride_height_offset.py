@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -16,6 +16,7 @@ class RideHeightOffset(Effect):
 
     id: ClassVar[str] = "ride_height_offset"
     label: ClassVar[str] = "Ride-height offset"
+    part: ClassVar[Part] = "axle"
     table: ClassVar[str] = "ride_height"
     options: ClassVar[Mapping[str, Option]] = {
         "offset_mm": Option(7.0, "mm", positive=False),

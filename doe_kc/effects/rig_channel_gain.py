@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
 from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
-from doe_kc.effects._base import Effect, effect
+from doe_kc.effects._base import Effect, Part, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
@@ -22,6 +23,7 @@ class RigChannelGain(Effect):
 
     id: ClassVar[str] = "rig_channel_gain"
     label: ClassVar[str] = "Wrong gain of a measuring channel"
+    part: ClassVar[Part] = "axle"
     on_rig: ClassVar[bool] = True
     odds: ClassVar[float] = 0.05
 
@@ -29,7 +31,7 @@ class RigChannelGain(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("rig_input_gain", "steering_ratio", "roll_technique")
     shown_by: ClassVar[str] = "the channel against a gauge of known size; one gain in every load case"
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(
             Hypothesis(self.id, name, (Size(name, 1.05, "-", "factor", signed=True),))
             for name in RIG_RESPONSES
@@ -38,7 +40,9 @@ class RigChannelGain(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         return self.read(before, axle.name) | self.read(after, axle.name)
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
         where = f"{source}: effect {self.id}"
         return named_numbers(options or {"toe": 1.05}, RIG_RESPONSES, where, "a response", positive=True)
 

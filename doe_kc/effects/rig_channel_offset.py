@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
 from doe_kc.curves import CurveSet
-from doe_kc.effects._base import Effect, effect
+from doe_kc.effects._base import Effect, Part, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
@@ -21,6 +22,7 @@ class RigChannelOffset(Effect):
 
     id: ClassVar[str] = "rig_channel_offset"
     label: ClassVar[str] = "Offset of the static alignment"
+    part: ClassVar[Part] = "axle"
     on_rig: ClassVar[bool] = True
     odds: ClassVar[float] = 0.05
 
@@ -30,7 +32,7 @@ class RigChannelOffset(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("static.toe", "static.camber", "bushing_preload")
     shown_by: ClassVar[str] = "the wheels' alignment measured on another rig, or with the car turned around"
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(
             Hypothesis(self.id, name, (Size(key, 0.1, "deg", signed=True),))
             for key, name in OFFSET_KEYS.items()
@@ -39,7 +41,9 @@ class RigChannelOffset(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         return self.read(before, axle.name) | self.read(after, axle.name)
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
         return named_numbers(
             options or {"toe_deg": 0.1}, OFFSET_KEYS, f"{source}: effect {self.id}", "an angle"
         )

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, effect
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.effects._base import Effect, Part, effect
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.load_cases import CASE_ORDER
@@ -19,6 +20,7 @@ class RigInputGain(Effect):
 
     id: ClassVar[str] = "rig_input_gain"
     label: ClassVar[str] = "Wrong input of a load case"
+    part: ClassVar[Part] = "axle"
     on_rig: ClassVar[bool] = True
     odds: ClassVar[float] = 0.05
 
@@ -26,7 +28,7 @@ class RigInputGain(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("rig_channel_gain", "steering_ratio", "arb.radius")
     shown_by: ClassVar[str] = "the actuator's load cell or encoder checked; one factor in every response"
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(
             Hypothesis(self.id, name, (Size(name, 1.05, "-", "factor", signed=True),)) for name in CASE_ORDER
         )
@@ -34,7 +36,9 @@ class RigInputGain(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         return self.read(before, axle.name) | self.read(after, axle.name)
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
         where = f"{source}: effect {self.id}"
         return named_numbers(options or {"lateral": 1.05}, CASE_ORDER, where, "a load case", positive=True)
 

@@ -9,8 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
 from doe_kc.curves import CurveSet
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.load_cases.roll import PadRoll, Roll
 
@@ -26,6 +27,7 @@ class RollTechnique(Effect):
 
     id: ClassVar[str] = "roll_technique"
     label: ClassVar[str] = "Other roll technique"
+    part: ClassVar[Part] = "axle"
     options: ClassVar[Mapping[str, Option]] = {"technique": Option("counter_phase", choices=OTHER_TECHNIQUES)}
     on_rig: ClassVar[bool] = True
 
@@ -35,7 +37,7 @@ class RollTechnique(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("arb.radius", "rig_input_gain", "rig_channel_gain")
     shown_by: ClassVar[str] = "roll run both ways; camber in roll against camber of the same wheel travel"
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(Hypothesis(self.id, None, (), {"technique": t}) for t in OTHER_TECHNIQUES)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:

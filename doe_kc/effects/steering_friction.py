@@ -1,27 +1,26 @@
-"""Dry friction between rack and housing, with state: Dahl or Prandtl-Iwan."""
+"""Dry friction between rack and housing, with state: Dahl, Prandtl-Iwan, or a backbone of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.axle.topology import FrictionLaw
+from doe_kc.effects._base import Option, Part, effect
+from doe_kc.effects._friction import DryFriction, friction_options
 from doe_kc.effects.hypothesis import Size
 
 
 @effect
-class SteeringFriction(Effect):
+class SteeringFriction(DryFriction):
     """Steering friction."""
 
     id: ClassVar[str] = "steering_friction"
     label: ClassVar[str] = "Steering friction"
-    options: ClassVar[Mapping[str, Option]] = {
-        "force_N": Option(250.0, "N"),
-        "presliding_mm": Option(0.05, "mm"),
-        "law": Option("dahl", choices=("dahl", "iwan")),
-    }
+    part: ClassVar[Part] = "rack"
+    options: ClassVar[Mapping[str, Option]] = friction_options(250.0, 0.05)
 
     physics: ClassVar[str] = (
         "The rack sticks in its housing, so that toe lags behind its load and both ways of a loop differ."
@@ -33,11 +32,8 @@ class SteeringFriction(Effect):
         Size("presliding_mm", 0.05, "mm", "shape"),
     )
 
-    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        changed = axle.changed(
-            {
-                "steering_friction.force": options["force_N"],
-                "steering_friction.presliding": options["presliding_mm"],
-            }
-        )
-        return replace(changed, topology=replace(axle.topology, steering_friction=options["law"]))
+    def law_values(self, name: str, value: float) -> Mapping[str, float]:
+        return {f"steering_friction.{name}": value}
+
+    def with_law(self, axle: Axle, law: FrictionLaw) -> Axle:
+        return replace(axle, topology=replace(axle.topology, steering_friction=law))

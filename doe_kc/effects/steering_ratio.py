@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -16,6 +16,7 @@ class SteeringRatio(Effect):
 
     id: ClassVar[str] = "steering_ratio"
     label: ClassVar[str] = "Wrong steering ratio"
+    part: ClassVar[Part] = "rack"
     options: ClassVar[Mapping[str, Option]] = {"factor": Option(1.03, "-")}
 
     physics: ClassVar[str] = (

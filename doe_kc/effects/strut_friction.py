@@ -1,27 +1,26 @@
-"""Dry friction along the damper, with state: Dahl or Prandtl-Iwan."""
+"""Dry friction along the damper, with state: Dahl, Prandtl-Iwan, or a backbone of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.axle.topology import FrictionLaw
+from doe_kc.effects._base import Option, Part, effect
+from doe_kc.effects._friction import DryFriction, friction_options
 from doe_kc.effects.hypothesis import Size
 
 
 @effect
-class StrutFriction(Effect):
+class StrutFriction(DryFriction):
     """Strut friction."""
 
     id: ClassVar[str] = "strut_friction"
     label: ClassVar[str] = "Strut friction"
-    options: ClassVar[Mapping[str, Option]] = {
-        "force_N": Option(120.0, "N"),
-        "presliding_mm": Option(0.3, "mm"),
-        "law": Option("dahl", choices=("dahl", "iwan")),
-    }
+    part: ClassVar[Part] = "damper"
+    options: ClassVar[Mapping[str, Option]] = friction_options(120.0, 0.3)
 
     physics: ClassVar[str] = (
         "The damper rod sticks in its guide and seal, so that the tyre load lags behind wheel travel."
@@ -33,9 +32,8 @@ class StrutFriction(Effect):
         Size("presliding_mm", 0.3, "mm", "shape"),
     )
 
-    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        changed = axle.changed(
-            both("strut_friction.force", options["force_N"])
-            | both("strut_friction.presliding", options["presliding_mm"])
-        )
-        return replace(changed, topology=replace(axle.topology, strut_friction=options["law"]))
+    def law_values(self, name: str, value: float) -> Mapping[str, float]:
+        return both(f"strut_friction.{name}", value)
+
+    def with_law(self, axle: Axle, law: FrictionLaw) -> Axle:
+        return replace(axle, topology=replace(axle.topology, strut_friction=law))

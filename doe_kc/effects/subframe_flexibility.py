@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 JOINT_STIFFNESS = {
@@ -27,6 +27,7 @@ class SubframeFlexibility(Effect):
 
     id: ClassVar[str] = "subframe_flexibility"
     label: ClassVar[str] = "Sub-frame flexibility"
+    part: ClassVar[Part] = "subframe"
     table: ClassVar[str] = "subframe"
     options: ClassVar[Mapping[str, Option]] = {
         "mode": Option("flexible", choices=("flexible", "rigid")),

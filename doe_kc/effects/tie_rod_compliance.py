@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -16,6 +16,7 @@ class TieRodCompliance(Effect):
 
     id: ClassVar[str] = "tie_rod_compliance"
     label: ClassVar[str] = "Tie-rod compliance"
+    part: ClassVar[Part] = "rods"
     options: ClassVar[Mapping[str, Option]] = {"k_N_mm": Option(15000.0, "N/mm")}
 
     physics: ClassVar[str] = (

@@ -11,7 +11,8 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError
 
@@ -24,6 +25,7 @@ class TieRodFreePlay(Effect):
 
     id: ClassVar[str] = "tie_rod_free_play"
     label: ClassVar[str] = "Tie-rod free play"
+    part: ClassVar[Part] = "rods"
     table: ClassVar[str] = "free_play"
     options: ClassVar[Mapping[str, Option]] = {
         "joints": Option(JOINTS),
@@ -41,16 +43,19 @@ class TieRodFreePlay(Effect):
     )
     shown_by: ClassVar[str] = "the wheel rocked by hand about the vertical, a dial gauge across the ball"
 
-    def hypotheses(self) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
         sizes = (
             Size("gap_mm", 0.2, "mm", needed=True),
             Size("contact_N_mm", 20000.0, "N/mm", "compliance"),
         )
-        places = {"ROB": list(JOINTS)} | {joint: [joint] for joint in JOINTS}
-        return tuple(Hypothesis(self.id, p, sizes, {"joints": joints}) for p, joints in places.items())
+        del places
+        joints_of = {"ROB": list(JOINTS)} | {joint: [joint] for joint in JOINTS}
+        return tuple(Hypothesis(self.id, p, sizes, {"joints": joints}) for p, joints in joints_of.items())
 
-    def read(self, options: Mapping[str, Any], source: str) -> dict[str, Any]:
-        checked = super().read(options, source)
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read(options, source, places)
         joints = checked["joints"]
         joints = list(joints) if isinstance(joints, list | tuple) else [joints]
         wrong = [j for j in joints if j not in JOINTS]

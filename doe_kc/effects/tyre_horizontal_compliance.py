@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -17,6 +17,7 @@ class TyreHorizontalCompliance(Effect):
 
     id: ClassVar[str] = "tyre_horizontal_compliance"
     label: ClassVar[str] = "Tyre horizontal compliance"
+    part: ClassVar[Part] = "axle"
     table: ClassVar[str] = "tyre_horizontal"
     options: ClassVar[Mapping[str, Option]] = {
         "k_lat_N_mm": Option(180.0, "N/mm"),

@@ -27,13 +27,25 @@ def number(value: float, digits: int = 3) -> str:
     return f"{round(value, places):.{max(0, places)}f}"
 
 
+def decimals(sd: float) -> int | None:
+    """Decimals that show the second significant digit of a sd, 6 at most; None without one."""
+    if not math.isfinite(sd) or sd <= 0.0:
+        return None
+    return max(0, min(1 - math.floor(math.log10(sd)), MOST_DECIMALS))
+
+
 def with_sd(value: float, sd: float) -> str:
     """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
-    if not math.isfinite(sd) or sd <= 0.0:
+    digits = decimals(sd)
+    if digits is None:
         return short(value)
     place = min(1 - math.floor(math.log10(sd)), MOST_DECIMALS)
-    digits = max(place, 0)
-    return f"{round(value, place):.{digits}f} ± {round(sd, place):.{digits}f}"
+    return f"{round(value, place) + 0.0:.{digits}f} ± {round(sd, place):.{digits}f}"
+
+
+def at_sd(value: float, sd: float) -> str:
+    """The value alone as `with_sd` writes it; a dash for none."""
+    return with_sd(value, sd).partition(" ")[0] if math.isfinite(value) else "–"
 
 
 def signed(value: float, sd: float) -> str:
@@ -46,9 +58,9 @@ def signed(value: float, sd: float) -> str:
 
 def sd_format(sd: float) -> str:
     """Number format of a sheet for a value with this standard deviation, or of the deviation itself."""
-    if not math.isfinite(sd) or sd <= 0.0:
+    digits = decimals(sd)
+    if digits is None:
         return "0.0000"
-    digits = max(0, min(1 - math.floor(math.log10(sd)), MOST_DECIMALS))
     return "0." + "0" * digits if digits else "0"
 
 

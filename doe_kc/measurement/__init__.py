@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from doe_kc.measurement.frames import MeasurementFrames, measurement_to_frames
 from doe_kc.measurement.gradients import Gradient, GradientEstimate
 from doe_kc.measurement.manifest import Manifest, load_manifest
 from doe_kc.measurement.noise import CaseNoise, ErrorComponents, NoiseModel
@@ -20,7 +19,6 @@ __all__ = [
     "GradientEstimate",
     "Manifest",
     "Measurement",
-    "MeasurementFrames",
     "NoiseModel",
     "PolynomialTrend",
     "RideHeight",
@@ -28,7 +26,6 @@ __all__ = [
     "fit_trends",
     "infer_ride_height",
     "load_manifest",
-    "measurement_to_frames",
     "read_record",
     "reduce_measurement",
 ]

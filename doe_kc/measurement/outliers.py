@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement.white_noise import white_sd
+from doe_kc.measurement.noise import white_sd
 
 MEDIAN_SAMPLES = 7
 """Of the running median: sees up to three outliers in a row, and follows any monotone curve with its

@@ -12,8 +12,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import CaseNoise
-from doe_kc.measurement.production_scatter import KINEMATIC_SCATTER
-from doe_kc.measurement.shift_problem import LOAD_CHANNEL, Scatter, ShiftProblem
+from doe_kc.measurement.shift_problem import KINEMATIC_SCATTER, LOAD_CHANNEL, Scatter, ShiftProblem
 from doe_kc.measurement.shifted_curves import ShiftedCurves, both_sides
 
 RIDE_HEIGHT_CASE = "vertical"

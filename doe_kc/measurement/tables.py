@@ -159,9 +159,9 @@ def number_at(table: RecordTable, row: int, column: int) -> float:
     value = _number(cell, table.decimal_comma)
     if value is not None and math.isfinite(value):
         return value
-    found = "is empty" if cell is None or cell == "" else f'holds "{_short(cell)}"'
+    fault = "is empty" if cell is None or cell == "" else f'holds "{_short(cell)}"'
     raise InputError(
-        f'{table.label}: row {table.row(row)}, column "{table.headings[column]}" {found}; '
+        f'{table.label}: row {table.row(row)}, column "{table.headings[column]}" {fault}; '
         "expected a finite number, so mend the cell or record the channel again."
     )
 

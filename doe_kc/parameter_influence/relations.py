@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 STRONG_PERCENT = 20.0
 """Entries below this share of a column's peak are left out."""
@@ -82,6 +85,8 @@ class Relations:
             for entry in self.by_characteristic
             for rank, link in enumerate(entry.links, start=1)
         ]
+        import pandas as pd
+
         return pd.DataFrame(rows, columns=["characteristic", "unit", "rank", "parameter", "percent"])
 
 

@@ -26,8 +26,8 @@ from doe_kc.parameter_influence.identifiability import (
     expected_move,
     posterior_ratio,
 )
-from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.targets.comparison.interval import constraint_interval
 
 BOUND_TOLERANCE = 1e-6

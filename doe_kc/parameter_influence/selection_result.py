@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from doe_kc.axle.parameters import Parameter
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True)
@@ -109,9 +111,13 @@ class Selection:
             }
             for v in self.variables
         ]
+        import pandas as pd
+
         return pd.DataFrame(rows).astype({"pivot": "Int64"})
 
     def outcome_frame(self) -> pd.DataFrame:
         """One row per characteristic: baseline, target, sd, expected, distance before and after."""
+        import pandas as pd
+
         names = ("characteristic", "unit", "baseline", "target", "sd", "expected", "before", "after")
         return pd.DataFrame([{n: getattr(o, n) for n in names} for o in self.outcomes])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyArrowPatch
 
 from doe_kc.axle.geometry import point
-from doe_kc.axle.model import HARDPOINTS, Axle
+from doe_kc.axle.members import drawn_points, members_of
+from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.numbers import signed
@@ -23,18 +24,8 @@ from doe_kc.report.panel_axis import ticks
 from doe_kc.report.sheet import Sheet
 from doe_kc.report.words import POINTS
 
-Member = tuple[str, str]
-MEMBERS: Mapping[str, tuple[Member, ...]] = {
-    "lower arm": (("LLF", "LWB"), ("LLR", "LWB"), ("LLF", "LLR")),
-    "strut": (("LWD", "UPB"),),
-    "spring": (("LWS", "UPS"),),
-    "tie rod": (("RIB", "ROB"),),
-    "knuckle": (("LWB", "LWD"), ("LWB", "WLC"), ("LWD", "WLC"), ("LWB", "ROB")),
-    "sub-frame": (("SFF", "LLF"), ("SFR", "LLR"), ("SFF", "SFR")),
-}
-"""Lines between hardpoints of one side of a McPherson axle."""
 ACROSS = ("SFF", "SFR", "RIB")
-"""Points from which sub-frame and rack reach over to the other side."""
+"""Points of a McPherson axle from which sub-frame and rack reach over to the other side."""
 MEMBER_COLOURS: Mapping[str, str] = {
     "lower arm": style.PALETTE["blue"],
     "strut": style.PALETTE["black"],
@@ -42,7 +33,14 @@ MEMBER_COLOURS: Mapping[str, str] = {
     "tie rod": style.PALETTE["vermillion"],
     "knuckle": style.PALETTE["purple"],
     "sub-frame": style.PALETTE["grey"],
+    "subframe": style.PALETTE["grey"],
+    "damper": style.PALETTE["black"],
+    "upper arm": style.PALETTE["sky"],
+    "arm": style.PALETTE["blue"],
+    "axle": style.PALETTE["purple"],
 }
+"""Of parts that most axles have; others follow in the order of `OTHER_COLOURS`."""
+OTHER_COLOURS = tuple(style.PALETTE[name] for name in ("blue", "vermillion", "sky", "orange", "yellow"))
 TRIM = "#C9CED3"
 BOTH_ENDS = np.array([-1.0, 1.0])
 LONGEST_ARROW = 100.0
@@ -106,7 +104,7 @@ class AxleView:
                 point(last, name) - point(self.before, name),
                 np.array([self.sd.get(f"{name}.{axis}", np.nan) for axis in "xyz"]),
             )
-            for name in HARDPOINTS
+            for name in drawn_points(self.before)
         ]
 
     @property
@@ -134,7 +132,7 @@ def axle_figure(view: AxleView) -> Sheet:
 
     The right side is the mirror image, but for what the axle file says of it alone.
     """
-    low, high = _extent(view.before)
+    low, high = view_extent(view.before)
     span = high - low
     width = style.A4[0] * POINTS
     scale = (width - LEFT_EDGE - BETWEEN_ACROSS - RIGHT_EDGE) / (span[0] + span[1])
@@ -155,17 +153,17 @@ def axle_figure(view: AxleView) -> Sheet:
         panel.y.set_locator(ticks(6))
         panel.set_labels(AXIS_WORDS_OF[across], AXIS_WORDS_OF[up])
         panel.set_title({"side": "From the left", "top": "From above", "rear": "From behind"}[name])
-        _draw(panel, view, name)
+        draw_view(panel, view, name)
     if view.after is not None:
         _table(page, view, middle, KEY_ROOM + scale * span[1])
-    page.add_legend(_handles(view), columns=3, size=7.5)
+    page.add_legend(view_handles(view), columns=3, size=7.5)
     page.set_heading(view.title, 1.0 - 18.0 / height)
     return page
 
 
-def _extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
+def view_extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
     """(3,) lowest and highest place of what is drawn, mm."""
-    points = np.array([point(axle, name) for name in HARDPOINTS])
+    points = np.array([point(axle, name) for name in drawn_points(axle)])
     wheel, radius = point(axle, "WLC"), float(point(axle, "WLC")[2])
     low = np.minimum(points.min(axis=0), [wheel[0] - radius, wheel[1], 0.0]) - BORDER
     high = np.maximum(points.max(axis=0), [wheel[0] + radius, wheel[1], wheel[2] + radius]) + BORDER
@@ -173,19 +171,22 @@ def _extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
     return low, high
 
 
-def _draw(panel: Panel, view: AxleView, name: View) -> None:
+def draw_view(panel: Panel, view: AxleView, name: View) -> None:
     across, up = PLANES[name]
     axle = view.before
     if up == 2:
         panel.hline(0.0, color=TRIM, lw=1.2, zorder=0)
-    for member, lines in MEMBERS.items():
+    members = members_of(axle)
+    colours = member_colours(members)
+    for member, lines in members.items():
         ends = np.array([[point(axle, a), point(axle, b)] for a, b in lines])
         panel.segments(
             ends[:, 0, across], ends[:, 0, up], ends[:, 1, across], ends[:, 1, up],
-            colors=MEMBER_COLOURS[member], zorder=2, linewidths=1.2,
+            colors=colours[member], zorder=2, linewidths=1.2,
         )  # fmt: skip
-    if name != "side":
-        start = np.array([point(axle, a) for a in ACROSS])
+    across_from = [a for a in ACROSS if a in drawn_points(axle)]
+    if name != "side" and across_from:
+        start = np.array([point(axle, a) for a in across_from])
         end = start + np.array([0.0, BORDER, 0.0])
         panel.segments(
             start[:, across], start[:, up], end[:, across], end[:, up],
@@ -263,8 +264,17 @@ def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:
             page.write((x + place) / page.width, height, words, along="top", **look)
 
 
-def _handles(view: AxleView) -> list[Line2D]:
-    out = [Line2D([], [], color=c, lw=1.5, label=name) for name, c in MEMBER_COLOURS.items()]
+def member_colours(members: Collection[str]) -> dict[str, str]:
+    """A colour for each part."""
+    others = iter(OTHER_COLOURS * (1 + len(members) // len(OTHER_COLOURS)))
+    return {name: MEMBER_COLOURS.get(name) or next(others) for name in members}
+
+
+def view_handles(view: AxleView) -> list[Line2D]:
+    out = [
+        Line2D([], [], color=c, lw=1.5, label=name)
+        for name, c in member_colours(members_of(view.before)).items()
+    ]
     out.append(Line2D([], [], color="#555555", lw=1.2, label="wheel (plane and rolling radius)"))
     if view.after is not None:
         colour = style.PALETTE["orange"]

@@ -56,7 +56,9 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
     table, legend = page.panels[7:]
     del page.panels[len(present) :]
     _table(page, table.box, comparison, load_case)
-    page.add_legend(_handles(comparison), 1, 7.5, ("left", "top"), (legend.box.left, legend.box.top))
+    page.add_legend(
+        _handles(comparison, load_case), 1, 7.5, ("left", "top"), (legend.box.left, legend.box.top)
+    )
     page.set_heading(f"{case.label}: {comparison.model.source} against {comparison.measured.source}", 0.985)
     return page
 
@@ -98,8 +100,9 @@ def _draw(panel: Panel, comparison: Comparison, load_case: str, response: str) -
                 panel.plot(model.input, model.mean[response][side] + sign * loop, ":", color=colour, lw=0.8)
 
 
-def _handles(comparison: Comparison) -> list[Line2D | Patch]:
+def _handles(comparison: Comparison, load_case: str) -> list[Line2D | Patch]:
     out: list[Line2D | Patch] = []
+    loops = any(np.any(half) for half in comparison.model.cases[load_case].half_width.values())
     for side, (colour, name) in enumerate(zip(SIDE_COLOURS, SIDE_NAMES, strict=True)):
         dots: dict[str, Any] = {"ls": "", "marker": "o", "ms": 3.5, "mfc": "none" if side else colour}
         out += [
@@ -110,7 +113,8 @@ def _handles(comparison: Comparison) -> list[Line2D | Patch]:
             out.append(Patch(color=colour, alpha=0.18, lw=0, label=f"   ± {NOISE_BAND:g} sd of its noise"))
         model = f"model, {name} wheel"
         out.append(Line2D([], [], color=colour, ls=SIDE_DASHES[side], lw=MODEL_WIDTHS[side], label=model))
-        out.append(Line2D([], [], color=colour, ls=":", lw=0.8, label="   its branches, with friction"))
+        if loops:
+            out.append(Line2D([], [], color=colour, ls=":", lw=0.8, label="   its branches, with friction"))
     return out
 
 
@@ -130,5 +134,5 @@ def _table(page: Sheet, box: PageBox, comparison: Comparison, load_case: str) ->
     for response in [r for r in RIG_RESPONSES if (r, "L") in rms]:
         name = f"{response_name(response)} [{RESPONSE_UNITS[response]}]"
         lines.append(f"{name:<{wide}}" + "".join(f"{rms[response, side]:>10.3g}" for side in SIDES))
-    words = "\n".join(lines).replace("-", "\N{MINUS SIGN}")
+    words = "\n".join(lines)
     page.write(box.left / page.width, box.top / page.height, words, 6.0, along="top", family="monospace")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from doe_kc.correlation.assessment import inside
 from doe_kc.correlation.result import Correlation
+from doe_kc.ground.numbers import at_sd, with_sd
 from doe_kc.load_cases import CASE_ORDER
 from doe_kc.report.names import case_label
 from doe_kc.report.table import (
@@ -19,6 +20,7 @@ from doe_kc.report.table import (
     SheetLayout,
     Table,
     TerminalCell,
+    row_digits,
 )
 from doe_kc.targets import Improvement
 from doe_kc.targets.comparison.interval import FLOOR, constraint_interval
@@ -93,7 +95,7 @@ class CharacteristicRow:
             return self.role
         if self.constraint and not self.inside:
             return "outside"
-        return "" if self.entry.counts else "baseline within 3 sd"
+        return "" if self.entry.counts else "baseline within its noise"
 
     @property
     def active(self) -> bool:
@@ -135,28 +137,35 @@ def characteristic_rows(correlation: Correlation) -> list[CharacteristicRow]:
     ]
 
 
+def value_format(row: CharacteristicRow) -> str:
+    """Number format of its values: two digits of the target's standard deviation."""
+    return row_digits(row.entry.target.sd, row.entry.target.value or row.entry.final)
+
+
 APPENDIX_D_COLUMNS: tuple[Column[CharacteristicRow], ...] = (
-    Column("id", "Id", lambda r: r.id, width=32, json="name", terminal=TerminalCell("characteristic", "34")),
-    Column("label", "Characteristic", lambda r: r.label, width=28,
-           page=PageCell(style="first", attributes=lambda r: {"title": r.id})),
-    Column("load_case", "Load case", lambda r: r.load_case, width=25, page=PageCell()),
+    Column("id", None, lambda r: r.id, json="name", terminal=TerminalCell("characteristic", "34")),
+    Column("label", "Characteristic", lambda r: r.label, width=52, cell=lambda r: f"{r.label} ({r.id})",
+           page=PageCell(style="first wrap", attributes=lambda r: {"title": r.id})),
+    Column("load_case", "Load case", lambda r: r.load_case, width=25, page=PageCell(style="wrap")),
     Column("unit", "Unit", lambda r: r.unit, width=9, page=PageCell(), json="unit"),
-    Column("target", "Target", lambda r: r.entry.target.value, "0.0000", page=PageCell(), json="target",
+    Column("target", "Target", lambda r: r.entry.target.value, value_format, json="target",
+           page=PageCell("Target ± sd", text=lambda r: with_sd(r.entry.target.value, r.entry.target.sd)),
            terminal=TerminalCell("target", ">11", ".4g")),
-    Column("target_sd", "Target sd", lambda r: r.entry.target.sd, "0.0000",
-           page=PageCell("± sd", digits=2), json="sd"),
-    Column("baseline", "Baseline", lambda r: r.entry.baseline, "0.0000", page=PageCell(), json="baseline",
+    Column("target_sd", "Target sd", lambda r: r.entry.target.sd, value_format, json="sd"),
+    Column("baseline", "Baseline", lambda r: r.entry.baseline, value_format, json="baseline",
+           page=PageCell(text=lambda r: at_sd(r.entry.baseline, r.entry.target.sd)),
            terminal=TerminalCell("baseline", ">11", ".4g")),
-    Column("final", "Final", lambda r: r.entry.final, "0.0000", page=PageCell(strong=lambda r: True),
-           json="final", terminal=TerminalCell("final", ">11", ".4g")),
-    Column("low", "Low", lambda r: r.interval[0], "0.0000", page=PageCell(), json="low"),
-    Column("high", "High", lambda r: r.interval[1], "0.0000", page=PageCell(), json="high"),
+    Column("final", "Final", lambda r: r.entry.final, value_format, json="final",
+           page=PageCell(text=lambda r: at_sd(r.entry.final, r.entry.target.sd), strong=lambda r: True),
+           terminal=TerminalCell("final", ">11", ".4g")),
+    Column("low", "Low", lambda r: r.interval[0], value_format, json="low"),
+    Column("high", "High", lambda r: r.interval[1], value_format, json="high"),
     Column("inside", "Inside", lambda r: r.inside, width=8),
     Column("objective", None, lambda r: r.objective),
     Column("constraint", None, lambda r: r.constraint),
     Column("held", None, lambda r: r.held, json="held"),
     Column("reachable", None, lambda r: r.reachable, json="reachable"),
-    Column("role", "Role", lambda r: r.role, width=22, csv=False, page=PageCell(), json="role"),
+    Column("role", "Role", lambda r: r.role, width=22, csv=False, page=PageCell(style="remark"), json="role"),
     Column("improvement_percent", "Improvement, %", lambda r: r.entry.percent, "0.0", width=13,
            page=PageCell("Improve\N{SOFT HYPHEN}ment, %", layout=".1f"), json="improvement_percent",
            terminal=TerminalCell("improved", ">10", text=lambda r: _percent(r.entry.percent))),
@@ -165,7 +174,7 @@ APPENDIX_D_COLUMNS: tuple[Column[CharacteristicRow], ...] = (
     Column("counts", "In the mean", lambda r: r.entry.counts, width=9),
     Column("baseline_distance_sd", "Baseline distance, sd", lambda r: r.baseline_distance, "0.0"),
     Column("final_distance_sd", "Final distance, sd", lambda r: r.distance, "0.0",
-           page=PageCell("Distance, sd", layout="+.1f", order=lambda r: abs(r.distance))),
+           page=PageCell("Distance, times noise", layout="+.1f", order=lambda r: abs(r.distance))),
     Column("target_normalized", None, lambda r: 1.0),
     Column("baseline_normalized", "Baseline, normalised", lambda r: r.normalized(r.entry.baseline), "0.000",
            width=12),
@@ -183,7 +192,7 @@ def characteristic_table(correlation: Correlation) -> Table[CharacteristicRow]:
         APPENDIX_D_COLUMNS,
         characteristic_rows(correlation),
         colors=(Inside("final", "low", "high"), Bar("improvement_percent", NEGATIVE_FILL, 100)),
-        sheet=SheetLayout(frozen="id", paper="A3", single=True, first=("load_case", "label")),
+        sheet=SheetLayout(frozen="unit", single=True, first=("load_case", "label")),
         page=PageLayout(
             "characteristics-table",
             "Characteristics",
@@ -195,7 +204,7 @@ def characteristic_table(correlation: Correlation) -> Table[CharacteristicRow]:
             },
             tags=_tags,
             quiet=lambda r: not r.active,
-            first=("label", "load_case", "unit", "target", "target_sd", "baseline", "final", "bar",
+            first=("label", "load_case", "unit", "target", "baseline", "final", "bar",
                    "improvement_percent", "final_distance_sd", "note", "role"),
         ),
     )  # fmt: skip

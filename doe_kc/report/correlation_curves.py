@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,33 +11,42 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import RESPONSE_LABELS, CaseCurves
+from doe_kc.curves import RESPONSE_LABELS, RIG_RESPONSES, CaseCurves
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER
 from doe_kc.measurement import Measurement
 from doe_kc.report import style
-from doe_kc.report.names import case_label, input_label, response_axis
+from doe_kc.report.names import case_label, input_label, response_axis, without_remark
 from doe_kc.report.panel import Dash, Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.sheet import Sheet, sheet
 from doe_kc.targets.comparison.compare import same_input
 
-CURVE_PANELS = ("toe", "camber", "spin", "wc_x", "wc_y", "tyre_load")
 BAND_SDS = 2.0
 """Standard deviations of the measured mean curve that its band shows."""
 MEASURED_COLOUR = style.PALETTE["black"]
-CURVES_MARGINS = {"left": 0.07, "right": 0.985, "top": 0.89, "bottom": 0.145, "wspace": 0.24, "hspace": 0.3}
+CURVES_MARGINS = {
+    "left": 0.058,
+    "right": 0.988,
+    "top": 0.89,
+    "bottom": 0.075,
+    "wspace": 0.34,
+    "hspace": 0.28,
+}
+CURVES_ACROSS = 4
 
 
 @dataclass(frozen=True)
 class CaseView:
-    """One load case; None or empty for what there is not. sd: response -> (2, n) of the measured mean."""
+    """One load case; None or empty for what there is not. sd, half_width_sd: response -> (2, n) of the
+    measured mean and half-width curves."""
 
     load_case: str
     measured: CaseCurves | None
     baseline: CaseCurves | None
     final: CaseCurves | None
     sd: Mapping[str, FloatArray]
+    half_width_sd: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
     def any(self) -> CaseCurves:
@@ -63,26 +72,37 @@ def case_views(correlation: Correlation, measurement: Measurement | None) -> lis
         if measured is not None and after is not None and not same_input(after, measured):
             measured = None
         if any(c is not None for c in (before, after, measured)):
-            views.append(CaseView(case, measured, before, after, _curve_sd(measurement, measured)))
+            known = measurement if measured is not None else None
+            sd = known.curve_sd(case) if known is not None else {}
+            half = half_width_sd(known, case) if known is not None else {}
+            views.append(CaseView(case, measured, before, after, sd, half))
     return views
 
 
-def _curve_sd(measurement: Measurement | None, case: CaseCurves | None) -> dict[str, FloatArray]:
-    return {} if measurement is None or case is None else measurement.curve_sd(case.load_case)
+def half_width_sd(measurement: Measurement, load_case: str) -> dict[str, FloatArray]:
+    """Response -> (2, n) standard deviations of its half-width curves, left and right, in its unit."""
+    return {
+        name: np.array([np.sqrt(np.diag(model.half_width_covariance(side=s))) for s in (0, 1)])
+        for name, model in measurement.noise.get(load_case, {}).items()
+    }
+
+
+def has_loop(case: CaseCurves, response: str) -> bool:
+    """Whether the branches of a model differ, as with friction."""
+    return bool(np.any(case.half_width[response]))
 
 
 def curve_figure(view: CaseView, study: str) -> Sheet:
-    """Six responses of both wheels over the input; angles and wheel centre are changes from static."""
-    page, panels = sheet(2, 3, size=style.A4_LANDSCAPE, share_x=True, margins=CURVES_MARGINS)
-    for panel, response in zip(panels.flat, CURVE_PANELS, strict=True):
+    """All responses of both wheels over the input; angles and wheel centre are changes from static."""
+    page, panels = sheet(2, CURVES_ACROSS, size=style.A4_LANDSCAPE, share_x=False, margins=CURVES_MARGINS)
+    for panel, response in zip(panels.flat, RIG_RESPONSES, strict=False):
         _panel(panel, view, response)
-        panel.set_labels(None, response_axis(response))
+        panel.set_labels(without_remark(view.input_label), response_axis(response))
         panel.set_title(RESPONSE_LABELS[response])
-        panel.x.set_locator(ticks(6))
+        panel.x.set_locator(ticks(5))
         panel.y.set_locator(ticks(7))
-    for panel in panels[-1]:
-        panel.set_labels(view.input_label, None)
-    page.add_legend(_handles(view), 4, 7.5)
+    legend = page.panels.pop().box
+    page.add_legend(_handles(view), 1, 7.5, ("left", "top"), (legend.left - 10.0, legend.top))
     page.set_heading(f"{case_label(view.load_case)}: {study}", 0.965)
     return page
 
@@ -94,8 +114,15 @@ def _panel(panel: Panel, view: CaseView, response: str) -> None:
         models: list[tuple[CaseCurves | None, str, Dash]]
         models = [(view.baseline, style.BASELINE_COLOUR, "--"), (view.final, style.FINAL_COLOUR, "-")]
         for case, colour, dash in models:
-            if case is not None and response in case.mean:
-                panel.plot(case.input, case.mean[response][side], dash, color=colour, **_weight(side))
+            if case is None or response not in case.mean:
+                continue
+            mean, half = case.mean[response][side], case.half_width[response][side]
+            panel.plot(case.input, mean, dash, color=colour, **_weight(side))
+            if has_loop(case, response):
+                for sign in (-1, 1):
+                    panel.plot(
+                        case.input, mean + sign * half, ":", color=colour, lw=0.6 if side else 0.9, zorder=3
+                    )
 
 
 def _weight(side: int) -> dict[str, Any]:
@@ -142,4 +169,7 @@ def _handles(view: CaseView) -> list[Line2D | Patch]:
                 Line2D([], [], color=colour, ls=dash, lw=1.5, label=f"{name}, left wheel"),
                 Line2D([], [], color=colour, ls=dash, lw=0.8, alpha=0.55, label=f"{name}, right wheel"),
             ]
+            if any(has_loop(case, response) for response in case.half_width):
+                words = "   its branches, with friction"
+                out.append(Line2D([], [], color=colour, ls=":", lw=0.9, label=words))
     return out

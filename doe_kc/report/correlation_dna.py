@@ -23,9 +23,9 @@ BAND_COLOUR, SOFT_BAND_COLOUR = "#C9CED3", "#EDEFF1"
 WORSE_COLOUR = style.PALETTE["vermillion"]
 DNA_ROW = 0.235
 """Inches."""
-X0, X1 = 0.475, 0.79
+X0, X1 = 0.505, 0.8
 """Place of the bars across the sheet; text columns around them."""
-COLUMN_PLACES = {"unit": 0.235, "target": 0.345, "baseline": 0.405, "final": 0.462, "improvement": 0.865}
+COLUMN_PLACES = {"unit": 0.23, "target": 0.353, "baseline": 0.421, "final": 0.489, "improvement": 0.872}
 
 
 def dna_figure(correlation: Correlation, study: str) -> Sheet:

@@ -10,7 +10,8 @@ import numpy as np
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.typing import FloatArray
-from doe_kc.report.table import Column, SheetLayout, Table
+from doe_kc.report.table import Column, SheetLayout, Table, four_digits, three_digits
+from doe_kc.variables.variable import Variable
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ def history(correlation: Correlation) -> History:
     )
 
 
-COLUMNS_PER_PAGE = 24
+COLUMNS_PER_PAGE = 17
 """Columns of the sheet that fit the width of one printed page."""
 
 
@@ -80,7 +81,7 @@ def evaluation_table(correlation: Correlation) -> Table[EvaluationRow]:
         EvaluationRow(e, i, past, i == correlation.run.best, space.values(e.point))
         for i, e in enumerate(correlation.run.evaluated)
     ]
-    columns = (*EVALUATION_FIGURES, *(_variable(v.path, v.unit) for v in space.variables))
+    columns = (*EVALUATION_FIGURES, *(_variable(v) for v in space.variables))
     return Table(
         "Evaluations",
         "In order; the shaded one is handed over. Values are absolute.",
@@ -89,7 +90,6 @@ def evaluation_table(correlation: Correlation) -> Table[EvaluationRow]:
         flagged=lambda r: r.chosen,
         sheet=SheetLayout(
             frozen="best_so_far",
-            paper="A3",
             pages_wide=-(-len(columns) // COLUMNS_PER_PAGE),
             repeat_columns="A:C",
         ),
@@ -99,19 +99,46 @@ def evaluation_table(correlation: Correlation) -> Table[EvaluationRow]:
 EVALUATION_FIGURES: tuple[Column[EvaluationRow], ...] = (
     Column("evaluation", "Evaluation", lambda r: r.index + 1, "0"),
     Column("origin", "Origin", lambda r: r.past.origin[r.index], width=23),
-    Column("merit", "Merit", lambda r: float(r.past.rating[r.index]), "0.0000", 13),
-    Column("best_so_far", "Best so far", lambda r: float(r.past.best[r.index]), "0.0000", 13),
+    Column(
+        "merit",
+        "Merit",
+        lambda r: float(r.past.rating[r.index]),
+        lambda r: four_digits(float(r.past.rating[r.index])),
+        13,
+    ),
+    Column(
+        "best_so_far",
+        "Best so far",
+        lambda r: float(r.past.best[r.index]),
+        lambda r: four_digits(float(r.past.best[r.index])),
+        13,
+    ),
     Column("feasible", "Feasible", lambda r: bool(r.past.feasible[r.index]), width=9),
     Column("chosen", "Chosen", lambda r: r.chosen, width=9),
     Column("failed_because", "Failed because", lambda r: r.evaluated.outcome.reason, width=34),
-    Column("predicted_merit", "Predicted merit", lambda r: float(r.past.predicted[r.index]), "0.0000", 13),
-    Column("predicted_sd", "Predicted sd", lambda r: float(r.past.sd[r.index]), "0.0000", 12),
+    Column(
+        "predicted_merit",
+        "Predicted merit",
+        lambda r: float(r.past.predicted[r.index]),
+        lambda r: four_digits(float(r.past.predicted[r.index])),
+        13,
+    ),
+    Column(
+        "predicted_sd",
+        "Predicted sd",
+        lambda r: float(r.past.sd[r.index]),
+        lambda r: three_digits(float(r.past.sd[r.index])),
+        12,
+    ),
     Column("seconds", "Seconds", lambda r: r.evaluated.outcome.seconds, "0.00", 9),
 )
 
 
-def _variable(path: str, unit: str) -> Column[EvaluationRow]:
-    """Its head breaks at its blank only, so that the column is as wide as the path."""
+def _variable(variable: Variable) -> Column[EvaluationRow]:
+    """Its head breaks at its blank only, so that the column is as wide as the path; three digits of a tenth
+    of the range."""
+    path, unit = variable.path, variable.unit
     head = f"{path}, {unit}" if unit else path
+    number = three_digits((variable.upper - variable.lower) / 10.0)
     width = max(11.0, 1.1 * len(head.split(",")[0]) + 1.0)
-    return Column(path, head, lambda r: r.values[path], "0.0000", width)
+    return Column(path, head, lambda r: r.values[path], number, width)

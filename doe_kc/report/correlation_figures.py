@@ -13,6 +13,7 @@ from doe_kc.report.correlation_bars import parameter_figure
 from doe_kc.report.correlation_convergence import convergence_figure
 from doe_kc.report.correlation_curves import case_views, curve_figure
 from doe_kc.report.correlation_dna import dna_figure
+from doe_kc.report.hysteresis import hysteresis_figure
 from doe_kc.report.series import Job, draw_series
 
 
@@ -25,7 +26,8 @@ def write_correlation_figures(
     workers: int | None = None,
     pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """Pictures `correlation_dna`, `_parameters`, `_axle`, `_convergence` and one `curves_<load case>` each.
+    """Pictures `correlation_dna`, `_parameters`, `_axle`, `_convergence`, one `curves_<load case>` each and,
+    with records, `hysteresis`.
 
     Raises RunError when the folder cannot be written.
     """
@@ -35,8 +37,9 @@ def write_correlation_figures(
         (folder / "correlation_axle", partial(axle_figure, correlation_view(correlation, study))),
         (folder / "correlation_convergence", partial(convergence_figure, correlation, study)),
     ]
-    jobs += [
-        (folder / f"curves_{view.load_case}", partial(curve_figure, view, study))
-        for view in case_views(correlation, measurement)
-    ]
+    views = case_views(correlation, measurement)
+    jobs += [(folder / f"curves_{view.load_case}", partial(curve_figure, view, study)) for view in views]
+    measured = [view for view in views if view.measured is not None]
+    if measured:
+        jobs.append((folder / "hysteresis", partial(hysteresis_figure, measured, study)))
     return draw_series(jobs, workers, pictures=pictures)

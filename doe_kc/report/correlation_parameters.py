@@ -11,8 +11,8 @@ import numpy as np
 from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import number, with_sd
-from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table
+from doe_kc.ground.numbers import at_sd, number, signed, with_sd
+from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table, row_digits
 from doe_kc.variables import Tie
 
 Role = Literal["variable", "tied", "fixed"]
@@ -135,22 +135,29 @@ def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, flo
     )
 
 
+def parameter_format(row: ParameterRow) -> str:
+    """Number format of its values: two digits of their sd, else three of a tenth of the range."""
+    return row_digits(row.sd, (row.upper - row.lower) / 10.0 if row.upper > row.lower else row.final)
+
+
 APPENDIX_A_COLUMNS: tuple[Column[ParameterRow], ...] = (
-    Column("path", "Path", lambda r: r.path, width=24, page=PageCell(style="first")),
-    Column("label", "Parameter", lambda r: r.label, width=46, page=PageCell(style="wide")),
-    Column("group", "Group", lambda r: r.group, width=14, page=PageCell()),
+    Column("path", None, lambda r: r.path, page=PageCell("Path", style="first")),
+    Column("label", "Parameter", lambda r: r.label, width=58,
+           cell=lambda r: f"{r.path}: {r.label}", page=PageCell(style="wide")),
+    Column("group", "Group", lambda r: r.group, width=14),
     Column("unit", "Unit", lambda r: r.unit, width=8, page=PageCell()),
     Column("role", "Role", lambda r: r.role, width=10),
     Column("tied_to", None, lambda r: r.leader),
-    Column("baseline", "Baseline", lambda r: r.baseline, "0.0000", 12, page=PageCell(digits=5),
-           json="baseline"),
-    Column("final", "Final", lambda r: r.final, "0.0000", 12, json="final",
+    Column("baseline", "Baseline", lambda r: r.baseline, parameter_format, 12, json="baseline",
+           page=PageCell(text=lambda r: at_sd(r.baseline, r.sd))),
+    Column("final", "Final", lambda r: r.final, parameter_format, 12, json="final",
            page=PageCell("Final ± sd", text=lambda r: with_sd(r.final, r.sd), strong=lambda r: True)),
-    Column("change", "Change", lambda r: r.change, "0.0000", 12, page=PageCell(layout="+.4f")),
-    Column("lower", "Lower", lambda r: r.lower, "0.0000", 12, page=PageCell(digits=5)),
-    Column("upper", "Upper", lambda r: r.upper, "0.0000", 12, page=PageCell(digits=5)),
+    Column("change", "Change", lambda r: r.change, parameter_format, 12,
+           page=PageCell(text=lambda r: signed(r.change, r.sd).partition(" ")[0])),
+    Column("lower", "Lower", lambda r: r.lower, parameter_format, 12, page=PageCell(digits=5)),
+    Column("upper", "Upper", lambda r: r.upper, parameter_format, 12, page=PageCell(digits=5)),
     Column("at_bound", "At bound", lambda r: r.at_bound, width=10),
-    Column("sd", "sd", lambda r: r.sd, "0.0000", 12, json="sd"),
+    Column("sd", "sd", lambda r: r.sd, parameter_format, 12, json="sd"),
     Column("inward", None, lambda r: r.inward, json="inward"),
     Column("not_visible", None, lambda r: None if r.visible is None else not r.visible),
     Column("remark", "Remark", lambda r: r.remark, width=32, csv=False, page=PageCell(
@@ -169,9 +176,7 @@ def parameter_table(correlation: Correlation) -> Table[ParameterRow]:
         flagged=lambda r: bool(r.at_bound),
         sheet=SheetLayout(
             frozen="unit",
-            paper="A3",
-            single=True,
-            first=("group", "label", "path", "unit", "role", "baseline", "final", "change", "sd"),
+            first=("group", "label", "unit", "role", "baseline", "final", "change", "sd"),
         ),
         page=PageLayout(
             "parameters-table",

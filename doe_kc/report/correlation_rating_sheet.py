@@ -12,7 +12,6 @@ from doe_kc.report.correlation_terms import TermRow, term_rows
 from doe_kc.report.render.cells import (
     HEADER_FILL,
     MUTED,
-    PAPER_A3,
     CellFill,
     frame,
     page,
@@ -20,6 +19,7 @@ from doe_kc.report.render.cells import (
     title,
     widths,
 )
+from doe_kc.report.table import four_digits
 
 HEADS = (
     "Kind", "Term", "Id", "Unit", "Goal", "Target", "Low", "High", "LinWt", "QuadWt", "S", "Norm",
@@ -28,9 +28,10 @@ HEADS = (
 RATING_HEAD_ROW, RATING_FIRST_ROW = 7, 8
 FINAL_RATING = "R5"
 INPUT = CellFill("solid", fgColor="FFF7D6")
+TERM = "0.0000;-0.0000;0"
+"""Number format of a term: a zero is one."""
 EDITED = "FGHIJL"
 """Columns to edit: target, interval, weights, Norm."""
-VALUE = "0.00000"
 
 
 def rating_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
@@ -54,7 +55,7 @@ def rating_sheet(book: Workbook, correlation: Correlation, study: str) -> None:
     ws.freeze_panes = ws.cell(RATING_FIRST_ROW, 4)
     ws.row_dimensions[RATING_HEAD_ROW].height = 30
     widths(ws, [11, 50, 32, 9, 10, *[11.0] * 13])
-    page(ws, study, paper=PAPER_A3, repeat=f"{RATING_HEAD_ROW}:{RATING_HEAD_ROW}")
+    page(ws, study, repeat=f"1:{RATING_HEAD_ROW}")
 
 
 def _sums(ws: Worksheet, correlation: Correlation, last: int) -> None:
@@ -64,9 +65,9 @@ def _sums(ws: Worksheet, correlation: Correlation, last: int) -> None:
     ):
         at = ord(column) - ord("A") + 1
         put(ws, 4, at, name, bold=True, horizontal="right")
-        cell = put(ws, 5, at, None, bold=True, number="0.000000")
+        cell = put(ws, 5, at, None, bold=True, number=four_digits(value))
         cell.value = f"=SUM({column}{RATING_FIRST_ROW}:{column}{last})"
-        put(ws, 6, at, value, color=MUTED, number="0.000000")
+        put(ws, 6, at, value, color=MUTED, number=four_digits(value))
     put(ws, 5, 2, "Rating with the cells below", bold=True)
     put(ws, 6, 2, "Rating of the correlation", color=MUTED)
 
@@ -77,7 +78,7 @@ def _row(ws: Worksheet, r: int, row: TermRow) -> None:
         put(ws, r, c, text)
     numbers = (row.target, row.low, row.high, row.linear, row.quadratic, row.sign, row.norm)
     for c, value in enumerate(numbers, start=6):
-        put(ws, r, c, value, number="General" if c in {9, 10, 11} else VALUE)
+        put(ws, r, c, value, number="General" if c in {9, 10, 11} else four_digits(value))
     for column in EDITED:
         if ws[f"{column}{r}"].value is not None:
             ws[f"{column}{r}"].fill = INPUT
@@ -88,10 +89,12 @@ def _row(ws: Worksheet, r: int, row: TermRow) -> None:
 def _formulas(ws: Worksheet, r: int, row: TermRow, value: float, at: str) -> None:
     """Value, deviation and term; no formula for a value that is not known."""
     cells = [ws[f"{column}{r}"] for column in at]
+    number = f"{four_digits(max(abs(value), row.norm))};-{four_digits(max(abs(value), row.norm))};0"
     for cell in cells:
-        put(ws, r, cell.column, None, number=VALUE)
+        put(ws, r, cell.column, None, number=number)
     if not math.isfinite(value):
         return
+    cells[2].number_format = TERM
     v, d, _ = (f"{column}{r}" for column in at)
     deviation = {
         "constraint": f"=MAX(G{r}-{v},{v}-H{r},0)",

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
-import pandas as pd
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
 from doe_kc.report.names import case_label
-from doe_kc.report.table import POSITIVE_FILL, Bar, Column, SheetLayout, Table
+from doe_kc.report.table import POSITIVE_FILL, Bar, Column, SheetLayout, Table, three_digits
 from doe_kc.targets import Constraint, Objective, Rating, Score
 from doe_kc.targets.options import Goal
 
@@ -51,9 +50,10 @@ def term_rows(correlation: Correlation) -> list[TermRow]:
     return [*_objectives(correlation), *_curves(correlation), *_constraints(correlation)]
 
 
-def term_frame(correlation: Correlation) -> pd.DataFrame:
+def term_columns(correlation: Correlation) -> dict[str, list[Any]]:
     """One row a term, with its weights."""
-    return pd.DataFrame([asdict(r) for r in term_rows(correlation)])
+    rows = term_rows(correlation)
+    return {f.name: [getattr(row, f.name) for row in rows] for f in fields(TermRow)}
 
 
 def _weights(of: Objective | Constraint) -> dict[str, Any]:
@@ -152,19 +152,24 @@ def curve_rows(correlation: Correlation) -> list[CurveRow]:
     ]
 
 
+def curve_format(row: CurveRow) -> str:
+    """Number format of its deviations: three digits of the noise."""
+    return three_digits(row.noise_rms or row.rms_final)
+
+
 CURVE_DEVIATION_COLUMNS: tuple[Column[CurveRow], ...] = (
-    Column("id", "Id", lambda r: r.id, width=24),
+    Column("id", None, lambda r: r.id),
     Column("load_case", "Load case", lambda r: r.load_case, width=28,
            words=lambda r: case_label(r.load_case)),
     Column("response", "Response", lambda r: r.response, width=32,
            words=lambda r: RESPONSE_LABELS[r.response]),
     Column("unit", "Unit", lambda r: r.unit, width=8),
-    Column("rms_baseline", "RMS baseline", lambda r: r.rms_baseline, "0.00000", 13),
-    Column("rms_final", "RMS final", lambda r: r.rms_final, "0.00000", 13),
-    Column("noise_rms", "Noise RMS", lambda r: r.noise_rms, "0.00000", 13),
+    Column("rms_baseline", "RMS baseline", lambda r: r.rms_baseline, curve_format, 13),
+    Column("rms_final", "RMS final", lambda r: r.rms_final, curve_format, 13),
+    Column("noise_rms", "Noise RMS", lambda r: r.noise_rms, curve_format, 13),
     Column("final_over_noise", "Final / noise",
            lambda r: r.rms_final / r.noise_rms if r.noise_rms else np.nan, "0.00", 13, csv=False),
-    Column("norm", "Norm", lambda r: r.norm, "0.0000", 13),
+    Column("norm", "Norm", lambda r: r.norm, lambda r: three_digits(r.norm), 13),
     Column("final_percent", "Final, % of Norm", lambda r: 100.0 * r.rms_final / r.norm, "0.00", 13,
            csv=False),
 )  # fmt: skip

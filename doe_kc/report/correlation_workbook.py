@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
+from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc import __version__
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.report.correlation_characteristics import characteristic_table
+from doe_kc.report.correlation_dna import DNA_REACH
 from doe_kc.report.correlation_evaluations import evaluation_table
 from doe_kc.report.correlation_parameters import parameter_table, remark_sentences
 from doe_kc.report.correlation_rating_sheet import FINAL_RATING, rating_sheet
 from doe_kc.report.correlation_summary import summary
 from doe_kc.report.correlation_terms import curve_table
+from doe_kc.report.hysteresis import LoopWidth, hysteresis_table
 from doe_kc.report.render.cells import frame, put
-from doe_kc.report.render.workbook import lines_sheet, new_book, table_sheet, write_book
+from doe_kc.report.render.charts import add_bars, add_picture, chart_sheet
+from doe_kc.report.render.workbook import TABLE_FIRST_ROW, lines_sheet, new_book, table_sheet, write_book
+from doe_kc.report.style import BASELINE_COLOUR, FINAL_COLOUR
+from doe_kc.report.table import four_digits
 
 CORRELATION_LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Characteristics: left wheel.",
@@ -50,17 +57,30 @@ def correlation_workbook(
     date: str,
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
+    loops: Sequence[LoopWidth] = (),
+    axle_picture: bytes | None = None,
 ) -> Workbook:
-    """Sheets Summary, Characteristics, Parameters, Curves, Evaluations, Rating terms and Legend.
+    """Sheets Summary, DNA, Axle, Characteristics, Parameters, Curves, Hysteresis, Evaluations, Rating terms
+    and Legend; Axle and Hysteresis where there is a picture and where there are loops.
 
     study: name in titles and page headers. date: as it shall stand in the summary. notes: further lines of
     the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
+    axle_picture: PNG.
     """
     book = new_book(f"Correlation: {study}")
     _summary_sheet(book, correlation, study, date, notes or {}, assessment or assess(correlation))
-    table_sheet(book, characteristic_table(correlation), study)
+    remark = (
+        "Final and baseline over the target, away from zero; 1 is the target. Longer bars end at the axis."
+    )
+    dna = chart_sheet(book, "DNA", "Correlation DNA", remark, study)
+    if axle_picture is not None:
+        remark = "How far each hardpoint of the left side moved; the factor is in the key."
+        add_picture(chart_sheet(book, "Axle", "The axle before and after", remark, study), axle_picture)
+    _dna_chart(dna, table_sheet(book, characteristic_table(correlation), study), correlation)
     table_sheet(book, parameter_table(correlation), study)
     table_sheet(book, curve_table(correlation), study)
+    if loops:
+        table_sheet(book, hysteresis_table(loops), study)
     table_sheet(book, evaluation_table(correlation), study)
     rating_sheet(book, correlation, study)
     lines_sheet(
@@ -77,10 +97,33 @@ def write_correlation_workbook(
     date: str,
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
+    loops: Sequence[LoopWidth] = (),
+    axle_picture: bytes | None = None,
 ) -> Path:
     """Write `correlation_workbook`; RunError naming path and remedy when the place is locked or full."""
-    book = correlation_workbook(correlation, study=study, date=date, notes=notes, assessment=assessment)
+    book = correlation_workbook(
+        correlation,
+        study=study,
+        date=date,
+        notes=notes,
+        assessment=assessment,
+        loops=loops,
+        axle_picture=axle_picture,
+    )
     return write_book(path, book)
+
+
+def _dna_chart(ws: Worksheet, data: Worksheet, correlation: Correlation) -> None:
+    """Bars of baseline and final about the target, from the sheet of the characteristics."""
+    table = characteristic_table(correlation)
+    letters = {c.key: get_column_letter(i) for i, c in enumerate(table.sheet_columns, start=1)}
+    values = [letters["baseline_normalized"], letters["final_normalized"]]
+    add_bars(
+        ws, data, names=letters["label"], values=values,
+        colors=[c.removeprefix("#") for c in (BASELINE_COLOUR, FINAL_COLOUR)],
+        rows=(TABLE_FIRST_ROW, TABLE_FIRST_ROW + len(table.rows) - 1),
+        limits=(1.0 - DNA_REACH, 1.0 + DNA_REACH), middle=1.0, axis="normalised to the target (1)",
+    )  # fmt: skip
 
 
 def _summary_sheet(
@@ -105,7 +148,7 @@ def _summary_sheet(
     ws = lines_sheet(book, "Summary", "Correlation", remark, lines, study, bold=4, flagged=flagged)
     row = 4 + len(lines)
     put(ws, row, 1, "Rating, live", bold=True, vertical="top")
-    cell = put(ws, row, 2, None, number="0.000000", horizontal="left")
+    cell = put(ws, row, 2, None, number=four_digits(correlation.rating), horizontal="left")
     cell.value = f"='Rating terms'!{FINAL_RATING}"
     put(ws, row + 1, 2, "with the weights, targets and intervals as they stand in the sheet Rating terms")
     frame(ws, range(row, row + 1), range(1, 3))

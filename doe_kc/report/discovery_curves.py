@@ -146,6 +146,7 @@ class WorstView:
     def title(self) -> str:
         """Load case and wheel, and the gap."""
         place = f"{case_label(self.view.load_case)}, {WHEEL_WORDS[self.side]}"
+        place += ", loop" if self.view.branches == "half_width" else ""
         gap = f"{self.gaps['tuned']:.1f} re-tuned"
         if "with_effect" in self.gaps:
             gap += f", {self.gaps['with_effect']:.1f} with the effect"
@@ -157,7 +158,7 @@ class WorstView:
         view = self.view
         name, unit = response_name(view.response), RESPONSE_UNITS[view.response]
         if view.branches == "half_width":
-            return f"{name}, half-width of the loop [{unit}]"
+            return f"{name}, half-width [{unit}]"
         return f"{'' if view.response == TYRE_LOAD else 'Δ '}{name} [{unit}]"
 
 
@@ -231,7 +232,7 @@ def _curve(panel: Panel, worst: WorstView) -> None:
     step = max(1, mean.size // 22)
     panel.plot(view.input[::step], mean[::step], "", marker="o", color="black", ms=2.4, mew=0.0, zorder=4)
     panel.set_title(worst.title, size=8.5)
-    panel.set_labels(None, worst.label)
+    panel.set_labels(None, worst.label, 7.0)
     panel.numbers["x"] = False
     panel.x.set_locator(ticks(6))
     panel.y.set_locator(ticks(6))
@@ -244,7 +245,8 @@ def _deviation(panel: Panel, worst: WorstView) -> None:
     for name, dash in DASHES.items():
         if name in view.models:
             panel.plot(view.input, view.deviation(name)[worst.side], dash, color=MODEL_COLOURS[name], lw=1.2)
-    panel.set_labels(view.input_label, "model − measured\n[sd of the noise]")
+    panel.set_labels(view.input_label, None)
+    panel.set_labels(None, "model − measured\n[sd of the noise]", 6.5)
     panel.x.set_locator(ticks(6))
     panel.y.set_locator(ticks(4))
 

@@ -10,7 +10,14 @@ from doe_kc.discovery.thresholds import CERTAIN, NAME_PROBABILITY
 from doe_kc.discovery.verdict.sentences import against_words
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.numbers import sd_format
-from doe_kc.report.discovery_words import FoundSize, effect_label, found_sizes, mistaken_words, place_of
+from doe_kc.report.discovery_words import (
+    FoundSize,
+    effect_label,
+    found_sizes,
+    mistaken_words,
+    physics_words,
+    place_of,
+)
 from doe_kc.report.table import Column, SheetLayout, Table
 
 ODDS = '[>=6]"> 6";0.0'
@@ -72,8 +79,8 @@ def rival_words(finding: Finding) -> str:
 
 
 EFFECT_COLUMNS: tuple[Column[EffectRow], ...] = (
-    Column("effect", "Id", lambda r: r.effect, width=24),
-    Column("label", "Effect", lambda r: r.label, width=30),
+    Column("effect", None, lambda r: r.effect),
+    Column("label", "Effect", lambda r: r.label, width=36, cell=lambda r: f"{r.label} ({r.effect})"),
     Column("place", "Place", lambda r: r.place, width=16),
     Column("kind", "Kind", lambda r: r.kind, width=9),
     Column("probability", "Probability", lambda r: r.finding.probability, "0.0%"),
@@ -91,7 +98,7 @@ EFFECT_COLUMNS: tuple[Column[EffectRow], ...] = (
     Column("detectability_sd", "Detectability, sd", lambda r: r.finding.detectability, "0.0", 13),
     Column("wrong_name_chance", "Chance of a wrong name", lambda r: r.finding.wrong_name, "0.00%", 12),
     Column("rivals", "Rivals", lambda r: rival_words(r.finding), width=34),
-    Column("physics", "What happens in the car", lambda r: EFFECTS[r.effect].physics, width=44),
+    Column("physics", "What happens in the car", lambda r: physics_words(r.finding), width=44),
     Column("shown_by", "Shown by", lambda r: EFFECTS[r.effect].shown_by, width=44),
     Column("mistaken_for", "Mistaken for", lambda r: mistaken_words(r.effect), width=34),
 )  # fmt: skip
@@ -109,7 +116,6 @@ def effect_table(discovery: Discovery) -> Table[EffectRow]:
         empty="No effect is asked for.",
         sheet=SheetLayout(
             frozen="kind",
-            paper="A3",
             wrapped=True,
             printed_to="rivals",
             printed=max(1, len(rows)),

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.search.search import Step, threshold
 from doe_kc.report import style
-from doe_kc.report.discovery_words import hypothesis_label
+from doe_kc.report.discovery_words import hypothesis_label, hypothesis_words
 from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import PanelAxis
 from doe_kc.report.sheet import Sheet
@@ -64,7 +64,7 @@ def evidence_steps(discovery: Discovery) -> list[EvidenceStep]:
     last = len(discovery.search.steps) - 1
     out = []
     for i, step in enumerate(discovery.search.steps):
-        names = ", ".join(hypothesis_label(h).lower() for h in step.before.model.members)
+        names = ", ".join(hypothesis_words(h) for h in step.before.model.members)
         title = f"Step {i + 1}: re-tuned with {names}" if names else "Step 1: re-tuned without an effect"
         end = "" if step.accepted or i < last else "; nothing more is asked for"
         out.append(EvidenceStep(title + end, _candidates(step), threshold(count) * step.temper))
@@ -137,6 +137,6 @@ def _bar(panel: Panel, y: float, candidate: EvidenceBar) -> None:
     panel.bars(y, 0.0, shown, 0.68, [colour], edgecolors=edge, linewidths=0.5, zorder=2)
     text = f"{candidate.gain:,.{1 if abs(candidate.gain) < 1000 else 0}f}".replace("-0.0", "0.0")
     panel.text(
-        max(shown, 0.0), y, text.replace("-", "−").replace(",", " "), shift=(4.0, 0.0), size=6.5,
-        along="center", color="#333333",
+        max(shown, 0.0), y, text.replace(",", " "), shift=(4.0, 0.0), size=6.5,
+        along="center", color="#333333", backing="white",
     )  # fmt: skip

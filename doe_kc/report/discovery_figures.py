@@ -12,7 +12,8 @@ from doe_kc.report.discovery_evidence import evidence_figure, evidence_steps
 from doe_kc.report.discovery_gaps import gap_figure
 from doe_kc.report.discovery_heat_map import discovery_grids, heat_map_figure
 from doe_kc.report.discovery_held_out import held_out_figure
-from doe_kc.report.discovery_isolability import isolability, isolability_figure
+from doe_kc.report.discovery_isolability import isolability
+from doe_kc.report.discovery_isolability_figure import isolability_figure
 from doe_kc.report.discovery_parameter_figure import parameter_figure
 from doe_kc.report.discovery_parameters import tuned_parameters
 from doe_kc.report.discovery_tables import gap_rows

@@ -1,55 +1,78 @@
-"""Which effects these records can tell apart, and from which size on they would show each."""
+"""Which effects these records can tell apart once the axle is re-tuned, and what to measure where not."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from string import ascii_uppercase
 
 import numpy as np
-from matplotlib.collections import QuadMesh
-from matplotlib.colors import BoundaryNorm, ListedColormap
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.verdict.exclusion import Status
+from doe_kc.discovery.thresholds import ALIKE_CORRELATION
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
-from doe_kc.report import style
-from doe_kc.report.color_scale import draw_color_scale, outline
-from doe_kc.report.discovery_words import hypothesis_label
-from doe_kc.report.panel import PageBox, Panel
-from doe_kc.report.sheet import Sheet, sheet
-from doe_kc.report.words import POINTS
+from doe_kc.report.discovery_words import STATUS_WORDS, hypothesis_label
+from doe_kc.report.table import Column, SheetLayout, Table
 
 VISIBLE_LEVEL = 1.0
 """Standard deviations that an effect must leave after re-tuning for its direction to mean anything."""
-LEVELS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99, 1.0)
-CORRELATION_MAP = ListedColormap(
-    ["#FFFFFF", "#F3F6F8", "#DCE7EF", "#B7D0E3", "#86B4D5", "#4C93C2", "#0F6BA6", "#08335C"]
-)
-BAR_COLOURS: dict[Status, str] = {
-    "found": style.PALETTE["blue"],
-    "trace": style.PALETTE["sky"],
-    "excluded": style.PALETTE["green"],
-    "unresolved": style.PALETTE["yellow"],
-    "not testable": style.PALETTE["orange"],
-    "no solution": style.PALETTE["grey"],
-}
-ISOLABILITY_ROW = 0.148
-SMALLEST_MULTIPLE, LARGEST_MULTIPLE = 1e-3, 100.0
+ALONE, HIDDEN = "told apart", "hidden"
+"""Groups of effects that no other resembles, and of those that re-tuning absorbs."""
 
 
 @dataclass(frozen=True)
 class Isolability:
-    """labels, statuses: (k,) of every hypothesis. detectable: (k,) smallest size that would be found, in
-    typical sizes. correlation: (k, k) |correlation| of the changes that re-tuning leaves, nan where it leaves
-    nothing."""
+    """labels, statuses, tests: (k,) of every hypothesis. detectable: (k,) smallest size that would be found,
+    in typical sizes. correlation: (k, k) |correlation| of the changes that re-tuning leaves, nan where it
+    leaves nothing. tests: what to measure to see it, or to tell it from its like."""
 
     labels: tuple[str, ...]
     statuses: tuple[Status, ...]
     detectable: FloatArray
     correlation: FloatArray
+    tests: tuple[str, ...]
+
+    @cached_property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """Places of the hypotheses of which every pair is alike: complete linkage, two members at least.
+
+        Those with a finding come first, then the larger ones.
+        """
+        from scipy.cluster.hierarchy import fcluster, linkage  # its import takes 0.1 s, of every command
+
+        visible = np.flatnonzero(np.isfinite(np.diag(self.correlation)))
+        if visible.size < 2:
+            return ()
+        distance = 1.0 - self.correlation[np.ix_(visible, visible)]
+        upper = np.triu_indices(visible.size, 1)
+        tree = linkage(distance[upper], method="complete")
+        numbers = fcluster(tree, 1.0 - ALIKE_CORRELATION, criterion="distance")
+        members = [tuple(int(i) for i in visible[numbers == n]) for n in np.unique(numbers)]
+        several = [g for g in members if len(g) > 1]
+        return tuple(sorted(several, key=lambda g: (not self._found(g), -len(g), g)))
+
+    @property
+    def hidden(self) -> tuple[int, ...]:
+        """Places of the hypotheses that re-tuning absorbs."""
+        return tuple(int(i) for i in np.flatnonzero(np.isnan(np.diag(self.correlation))))
+
+    @property
+    def alone(self) -> tuple[int, ...]:
+        """Places of the hypotheses that no other resembles."""
+        taken = {i for group in self.groups for i in group} | set(self.hidden)
+        return tuple(i for i in range(len(self.labels)) if i not in taken)
+
+    def least_correlation(self, group: Sequence[int]) -> float:
+        """The smallest |correlation| of two of its members."""
+        return min(float(self.correlation[i, j]) for i, j in combinations(group, 2))
+
+    def _found(self, group: Sequence[int]) -> bool:
+        return any(self.statuses[i] in ("found", "trace") for i in group)
 
 
 def isolability(discovery: Discovery) -> Isolability:
@@ -68,7 +91,15 @@ def isolability(discovery: Discovery) -> Isolability:
         tuple(s.status for s in stands),
         np.array([s.detectable for s in stands]),
         correlation,
+        tuple(_test(s) for s in stands),
     )
+
+
+def _test(status: HypothesisStatus) -> str:
+    """Parts that a bench has to measure, else what shows the effect itself."""
+    if status.component_test is not None:
+        return f"measure {', '.join(status.component_test.parts)} on a bench"
+    return EFFECTS[status.hypothesis.effect].shown_by.split(";")[0]
 
 
 def _changes(discovery: Discovery) -> dict[str, FloatArray]:
@@ -80,72 +111,82 @@ def _changes(discovery: Discovery) -> dict[str, FloatArray]:
     }
 
 
-def isolability_figure(table: Isolability, study: str) -> Sheet:
-    """Matrix of |correlation| on the left, detectable sizes on the right, one row a hypothesis."""
-    count = len(table.labels)
-    deep = ISOLABILITY_ROW * count
-    height, width = deep + 2.2, 3.25 + deep + 2.6
-    margins = {"left": 3.0 / width, "right": 1 - 0.25 / width, "top": 1 - 0.7 / height}
-    margins |= {"bottom": 1.5 / height, "wspace": 0.03}
-    page, panels = sheet(1, 2, size=(width, height), margins=margins, share_x=False,
-                         width_ratios=(deep, 2.4))  # fmt: skip
-    _matrix(panels[0, 0], table)
-    _sizes(panels[0, 1], table)
-    _scale(page)
-    present = [s for s in BAR_COLOURS if s in table.statuses]
-    handles: list[Line2D | Patch] = [Patch(color=BAR_COLOURS[s], label=s) for s in present]
-    handles.append(Line2D([], [], color="black", ls="--", lw=0.9, label="typical size"))
-    page.add_legend(handles, len(handles), corner=("right", "bottom"))
-    page.set_heading(f"What these records can tell apart: {study}", 1 - 0.12 / height)
-    return page
+def group_name(place: int) -> str:
+    """A, B, ..., Z, AA, BB, ..."""
+    return ascii_uppercase[place % 26] * (1 + place // 26)
 
 
-def _matrix(panel: Panel, table: Isolability) -> None:
-    count = len(table.labels)
-    panel.background = "#E4E7EA"
-    edges = np.stack(np.meshgrid(np.arange(count + 1), np.arange(count + 1)), axis=-1)
-    panel.add(
-        QuadMesh(edges, array=np.ma.masked_invalid(table.correlation), cmap=CORRELATION_MAP,
-                 norm=BoundaryNorm(LEVELS, CORRELATION_MAP.N), edgecolors="#ECEFF1", linewidth=0.3)
-    )  # fmt: skip
-    panel.x.set_limits(0, count)
-    panel.y.set_limits(count, 0)
-    panel.grid, panel.marks = dict.fromkeys(panel.grid, False), dict.fromkeys(panel.marks, False)
-    panel.number_size = {"x": 5.5, "y": 6.5}
-    places = np.arange(count) + 0.5
-    names = [f"{label}  {i}" for i, label in enumerate(table.labels, start=1)]
-    panel.y.set_ticks(places, names, [status == "found" for status in table.statuses])
-    panel.x.set_ticks(places, [str(i) for i in range(1, count + 1)])
-    panel.set_title("|correlation| of the changes that re-tuning leaves", size=8.5)
+def common_name(labels: Sequence[str]) -> str:
+    """The members, the words that they share said once: `Left/right asymmetry, LLF left or right`."""
+    words = [label.split(" ") for label in labels]
+    shared = 0
+    while shared < min(map(len, words)) - 1 and len({w[shared] for w in words}) == 1:
+        shared += 1
+    if not shared or not " ".join(words[0][:shared]).count(","):
+        return " or ".join(labels)
+    return f"{' '.join(words[0][:shared])} {' or '.join(' '.join(w[shared:]) for w in words)}"
 
 
-def _sizes(panel: Panel, table: Isolability) -> None:
-    panel.x.set_logarithmic()
-    panel.x.set_limits(SMALLEST_MULTIPLE, LARGEST_MULTIPLE)
-    panel.y.set_limits(len(table.labels), 0)
-    panel.y.set_ticks([], [])
-    ticks = (0.001, 0.01, 0.1, 1.0, 10.0, 100.0)
-    panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
-    places = np.arange(len(table.labels)) + 0.5
-    shown = np.clip(table.detectable, SMALLEST_MULTIPLE, LARGEST_MULTIPLE)
-    panel.bars(places, SMALLEST_MULTIPLE, shown, 0.7, [BAR_COLOURS[s] for s in table.statuses], zorder=2)
-    beyond = places[table.detectable > LARGEST_MULTIPLE]
-    panel.plot(
-        np.full(beyond.size, LARGEST_MULTIPLE * 0.8), beyond, "", marker=">", color="white", ms=2.6, zorder=3
+@dataclass(frozen=True)
+class IsolabilityRow:
+    """One hypothesis. group: letter, `ALONE` or `HIDDEN`. nearest: |correlation| with the hypothesis that is
+    most alike, nan where re-tuning leaves nothing. test: empty where the records tell it apart and show
+    it."""
+
+    group: str
+    label: str
+    status: Status
+    detectable: float
+    nearest: float
+    nearest_label: str
+    test: str
+
+
+def isolability_rows(table: Isolability) -> list[IsolabilityRow]:
+    """Groups of several first, then those that are told apart, then those that re-tuning hides."""
+    several = [(group_name(k), group) for k, group in enumerate(table.groups)]
+    parts = [*several, (ALONE, table.alone), (HIDDEN, table.hidden)]
+    return [_row(table, name, i) for name, group in parts for i in group]
+
+
+def _row(table: Isolability, group: str, i: int) -> IsolabilityRow:
+    others = np.nan_to_num(table.correlation[i], nan=-1.0)
+    others[i] = -1.0
+    nearest = int(np.argmax(others)) if others.size > 1 else i
+    known = others[nearest] >= 0.0
+    needed = group != ALONE or table.detectable[i] > 1.0
+    return IsolabilityRow(
+        group,
+        table.labels[i],
+        table.statuses[i],
+        float(table.detectable[i]),
+        float(others[nearest]) if known else np.nan,
+        table.labels[nearest] if known else "",
+        table.tests[i] if needed else "",
     )
-    panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=4)
-    panel.set_labels("smallest size that would be found,\nas a multiple of the typical one", None)
-    panel.set_title("Detectable size", size=8.5)
 
 
-def _scale(page: Sheet) -> None:
-    """Every level is as wide as the next."""
-    panel = page.add_panel(PageBox(3.0 * POINTS, 0.95 * POINTS, 2.6 * POINTS, 0.12 * POINTS))
-    edges = np.arange(float(len(LEVELS)))
-    draw_color_scale(panel, edges, CORRELATION_MAP(np.arange(CORRELATION_MAP.N)))
-    outline(panel)
-    panel.x.set_ticks(edges, [f"{v:g}" for v in LEVELS])
-    panel.number_size["x"] = 5.5
-    panel.set_labels("|correlation|; near 1: cannot be told apart", None, 6.5)
-    words = "grey: re-tuning absorbs the effect (nearly) wholly"
-    page.write(3.0 * POINTS / page.width, 0.42 * POINTS / page.height, words, 6.5)
+ISOLABILITY_COLUMNS: tuple[Column[IsolabilityRow], ...] = (
+    Column("group", "Group", lambda r: r.group, width=11),
+    Column("effect", "Effect", lambda r: r.label, width=44),
+    Column("status", "Status", lambda r: r.status, width=17, words=lambda r: STATUS_WORDS[r.status]),
+    Column("detectable_times_typical", "Detectable, times typical", lambda r: r.detectable, "0.00", 12),
+    Column("nearest_correlation", "Most alike, |r|", lambda r: r.nearest, "0.00", 10),
+    Column("nearest", "Most alike", lambda r: r.nearest_label, width=40),
+    Column("measure", "What to measure", lambda r: r.test, width=58),
+)  # fmt: skip
+
+
+def isolability_table(discovery: Discovery) -> Table[IsolabilityRow]:
+    """Groups of effects that re-tuning cannot tell apart, and what to measure."""
+    return Table(
+        "Groups",
+        "Effects with the same letter change the records alike after re-tuning (|correlation| "
+        f"{ALIKE_CORRELATION:g} and above): these records name the group, not the member. Hidden: re-tuning "
+        "takes its place.",
+        ISOLABILITY_COLUMNS,
+        isolability_rows(isolability(discovery)),
+        title="Effects that the records tell apart",
+        muted=lambda r: r.group == HIDDEN,
+        sheet=SheetLayout(frozen="status", wrapped=True),
+    )

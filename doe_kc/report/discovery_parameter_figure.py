@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import FancyArrowPatch, Patch
 
 from doe_kc.discovery.thresholds import RETURNS_FROM
-from doe_kc.ground.numbers import short, unit_words
+from doe_kc.ground.numbers import decimals, short, unit_words, with_sd
 from doe_kc.report import style
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
 from doe_kc.report.discovery_parameters import TunedParameter
@@ -40,7 +40,7 @@ def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
     """An arrow a parameter, from the re-tuned model to the one with the effect, in sd of the prior."""
     rows = moved_parameters(parameters)
     height = BIAS_ROW * max(len(rows), 4) + 1.75
-    margins = {"left": 0.15, "right": 0.66, "top": 1 - 0.75 / height, "bottom": 0.95 / height}
+    margins = {"left": 0.15, "right": 0.62, "top": 1 - 0.75 / height, "bottom": 0.95 / height}
     page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
     panel = panels[0, 0]
     reach = max(2.0, 1.08 * max((p.moved for p in rows), default=1.0))
@@ -55,7 +55,7 @@ def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
     for y, p in enumerate(rows):
         _arrow(panel, y + 0.5, p)
     if rows:
-        heads = "nominal, re-tuned, with the effect"
+        heads = "nominal, re-tuned, with the effect ± sd"
         panel.text(1.02, -0.35, heads, scales=("panel", "data"), size=6.5, color="#555555")
     else:
         panel.text(0, 0.5, "no parameter is off nominal", across="center", along="center")
@@ -77,9 +77,12 @@ def _arrow(panel: Panel, y: float, p: TunedParameter) -> None:
 
 
 def values_words(p: TunedParameter) -> str:
-    """The three values with their unit."""
-    values = [p.nominal, p.tuned, p.with_effect]
-    text = "  →  ".join(short(v) for v in values if np.isfinite(v))
+    """The three values with their unit, the last with its standard deviation."""
+    *before, last = (v for v in (p.nominal, p.tuned, p.with_effect) if np.isfinite(v))
+    digits = decimals(p.sd)
+    text = "  →  ".join(
+        [*(short(v) if digits is None else f"{v:.{digits}f}" for v in before), with_sd(last, p.sd)]
+    )
     return f"{text}{unit_words(p.unit)}"
 
 

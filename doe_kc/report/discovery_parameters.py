@@ -9,7 +9,8 @@ import numpy as np
 from markupsafe import Markup
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table, diverging
+from doe_kc.ground.numbers import at_sd
+from doe_kc.report.table import Column, PageCell, PageLayout, SheetLayout, Table, diverging, row_digits
 
 FULL_COLOUR_DISTANCE = 2.0
 """Standard deviations of the prior at which the colour of a parameter's distance is full."""
@@ -70,19 +71,26 @@ def _label(row: TunedParameter) -> str:
     return Markup("{} <b>(outside its bounds)</b>").format(row.label) if row.beyond else row.label
 
 
+def _format(row: TunedParameter) -> str:
+    return row_digits(row.sd, row.nominal)
+
+
 TUNED_COLUMNS: tuple[Column[TunedParameter], ...] = (
-    Column("path", "Path", lambda p: p.path, width=24, page=PageCell(style="first")),
-    Column("label", "Parameter", lambda p: p.label, width=44, page=PageCell(style="wide", text=_label)),
+    Column("path", None, lambda p: p.path, page=PageCell("Path", style="first")),
+    Column("label", "Parameter", lambda p: p.label, width=58,
+           cell=lambda p: f"{p.path}: {p.label}", page=PageCell(style="wide", text=_label)),
     Column("group", "Group", lambda p: p.group, width=15),
     Column("unit", "Unit", lambda p: p.unit, width=8, page=PageCell()),
-    Column("nominal", "Nominal", lambda p: p.nominal, "0.0000", 12, page=PageCell(digits=5)),
-    Column("tuned", "Re-tuned", lambda p: p.tuned, "0.0000", 12, page=PageCell(digits=5)),
-    Column("with_effect", "With effect", lambda p: p.with_effect, "0.0000", 12),
-    Column("sd", "sd", lambda p: p.sd, "0.0000", 12),
+    Column("nominal", "Nominal", lambda p: p.nominal, _format, 12,
+           page=PageCell(text=lambda p: at_sd(p.nominal, p.sd))),
+    Column("tuned", "Re-tuned", lambda p: p.tuned, _format, 12,
+           page=PageCell(text=lambda p: at_sd(p.tuned, p.sd))),
+    Column("with_effect", "With effect", lambda p: p.with_effect, _format, 12),
+    Column("sd", "sd", lambda p: p.sd, _format, 12),
     Column("tuned_distance", "Distance re-tuned, sd", lambda p: p.tuned_distance, "0.00", 14,
-           page=PageCell("Re-tuned, sd", layout="+.2f")),
+           page=PageCell("Re-tuned, times scatter", layout="+.2f")),
     Column("with_effect_distance", "Distance with effect, sd", lambda p: p.with_effect_distance, "0.00", 14,
-           page=PageCell("With effect, sd", layout="+.2f")),
+           page=PageCell("With effect, times scatter", layout="+.2f")),
     Column("beyond", "Bounds", lambda p: p.beyond, width=10, words=lambda p: "outside" if p.beyond else ""),
 )  # fmt: skip
 
@@ -98,12 +106,12 @@ def tuned_table(discovery: Discovery) -> Table[TunedParameter]:
         TUNED_COLUMNS,
         tuned_parameters(discovery),
         colors=(diverging("tuned_distance", "with_effect_distance", FULL_COLOUR_DISTANCE),),
-        sheet=SheetLayout(frozen="label"),
+        sheet=SheetLayout(frozen="group"),
         page=PageLayout(
             "tuned-table",
             "Parameters",
             filtered=True,
-            choices={"moved": "only those more than one sd off"},
+            choices={"moved": "only those further off than production scatters"},
             tags=lambda p: "moved" if p.moved >= 1.0 else "",
             first=("path", "label", "unit", "nominal", "tuned", "last", "bar"),
         ),

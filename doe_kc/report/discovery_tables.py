@@ -125,8 +125,9 @@ def gap_rows(discovery: Discovery) -> list[GapRow]:
     return [GapRow(r.case, r.response, Gap(**{**vars(r.gap), "with_effect": math.nan})) for r in rows]
 
 
-def _gap_column(key: str, head: str, *, on_page: bool = True) -> Column[GapRow]:
-    """The gap of one model, on the page from white at noise to full colour at three times that."""
+def _gap_column(key: str, head: str, page_head: str = "") -> Column[GapRow]:
+    """The gap of one model, on the page from white at noise to full colour at three times that; not there
+    without a head of its own."""
 
     def value(row: GapRow) -> float:
         return float(getattr(row.gap, key))
@@ -134,7 +135,7 @@ def _gap_column(key: str, head: str, *, on_page: bool = True) -> Column[GapRow]:
     def shade(row: GapRow) -> dict[str, str]:
         return {"style": f"background:rgba(242,162,60,{_share(value(row))})"}
 
-    cell = PageCell(layout=".2f", attributes=shade) if on_page else None
+    cell = PageCell(page_head, layout=".2f", attributes=shade) if page_head else None
     return Column(key, head, value, "0.00", 13, page=cell)
 
 
@@ -151,11 +152,11 @@ GAP_COLUMNS: tuple[Column[GapRow], ...] = (
     Column("response", "Response", lambda r: r.response or "all", width=34,
            words=lambda r: RESPONSE_LABELS.get(r.response, "All"),
            page=PageCell(text=lambda r: response_name(r.response) if r.response else "all")),
-    _gap_column("nominal", "Nominal"),
-    _gap_column("tuned", "Re-tuned"),
-    _gap_column("with_effect", "With effect"),
-    _gap_column("best_decoy", "Best decoy"),
-    _gap_column("noise_floor", "Noise floor", on_page=False),
+    _gap_column("nominal", "Nominal", "As handed in"),
+    _gap_column("tuned", "Re-tuned", "Re-tuned"),
+    _gap_column("with_effect", "With effect", "With the effect"),
+    _gap_column("best_decoy", "Best decoy", "With the best other effect"),
+    _gap_column("noise_floor", "Noise floor"),
 )  # fmt: skip
 
 
@@ -183,14 +184,14 @@ HELD_OUT_COLUMNS: tuple[Column[HeldOut], ...] = (
     Column("load_case", "Load case", lambda h: h.load_case, width=30, words=lambda h: case_label(h.load_case),
            page=PageCell(style="first")),
     Column("rms_tuned", "RMS re-tuned", lambda h: h.tuned.rms, "0.00", 15,
-           page=PageCell("RMS re-tuned without an effect", layout=".2f")),
+           page=PageCell("Deviation without an effect", layout=".2f")),
     Column("rms_with_effect", "RMS with effect", lambda h: h.with_effect.rms, "0.00", 15,
-           page=PageCell("RMS with the effect", layout=".2f", strong=lambda h: True)),
-    Column("rms_law_granted", "RMS, law granted", lambda h: h.law_granted.rms, "0.00", 17,
-           page=PageCell(layout=".2f")),
+           page=PageCell("With the effect", layout=".2f", strong=lambda h: True)),
+    Column("rms_law_granted", "RMS, law granted", lambda h: h.law_granted.rms, "0.00", 17),
     Column("gain_ln_density", "Gain, ln density", lambda h: h.gain, "0.0", 17,
-           page=PageCell("Gain, ln predictive density", text=lambda h: gain_words(h.gain),
-                         attributes=lambda h: {"class": "flag" if h.gain < 0 else ""})),
+           page=PageCell("Predicted better", text=lambda h: "yes" if h.gain > 0.0 else "no",
+                         attributes=lambda h: {"class": "flag" if h.gain < 0 else "",
+                                               "title": f"ln predictive density {gain_words(h.gain)}"})),
 )  # fmt: skip
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
 from doe_kc.discovery.fit import amplitude_estimates
@@ -70,6 +71,20 @@ def hypothesis_label(hypothesis: Hypothesis) -> str:
     """Name and place, e.g. `Bushing preload, LLR`."""
     place = place_of(hypothesis)
     return f"{effect_label(hypothesis.effect)}, {place}" if place else effect_label(hypothesis.effect)
+
+
+def physics_words(finding: Finding) -> str:
+    """What happens in the car, and what it means at the sizes that were estimated."""
+    options: dict[str, Any] = dict(finding.hypothesis.fixed)
+    options |= {e.key: e.value for e in finding.estimates if e.index is None}
+    effect = EFFECTS[finding.hypothesis.effect]
+    return f"{effect.physics} {effect.consequence(options)}".strip()
+
+
+def hypothesis_words(hypothesis: Hypothesis) -> str:
+    """Name and place within a sentence, e.g. `bushing preload, LLR`."""
+    label = hypothesis_label(hypothesis)
+    return label[0].lower() + label[1:]
 
 
 def mistaken_words(ident: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -10,21 +11,32 @@ from openpyxl.workbook import Workbook
 from doe_kc import __version__
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.thresholds import RELEVANT
-from doe_kc.effects import EFFECTS
 from doe_kc.report.discovery_effects import effect_table
+from doe_kc.report.discovery_isolability import isolability_table
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_table
-from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
+from doe_kc.report.discovery_tables import GapRow, disagreement_table, gap_table, held_out_table
 from doe_kc.report.discovery_words import (
     HEADLINES,
     contrast_words,
     effect_label,
     hypothesis_label,
     own_sentences,
+    physics_words,
     size_words,
 )
+from doe_kc.report.names import case_label, response_name
+from doe_kc.report.render.charts import add_marks, chart_sheet
 from doe_kc.report.render.workbook import lines_sheet, new_book, table_sheet, write_book
+from doe_kc.report.table import Column, Table, Value
 
+GAP_LOOKS: Mapping[str, tuple[str, str]] = {
+    "nominal": ("dash", "555555"),
+    "tuned": ("circle", "E69F00"),
+    "with_effect": ("diamond", "0072B2"),
+    "best_decoy": ("x", "CC79A7"),
+}
+"""Symbol and colour of the models in the chart, as in the pictures."""
 SCAN_PLACES = 3
 """Places of the generic scan that are listed."""
 VERDICT_LINE_LENGTH = 125
@@ -102,7 +114,7 @@ DISCOVERY_LEGEND = {
 def discovery_workbook(
     discovery: Discovery, *, study: str, date: str, notes: Mapping[str, str] | None = None
 ) -> Workbook:
-    """Sheets Verdict, Disagreement, Effects, Library, Gap, Held out, Parameters and Legend.
+    """Sheets Verdict, Disagreement, Effects, Library, Groups, Gap chart, Gap, Held out, Parameters, Legend.
 
     study: name in titles and page headers. date: as it shall stand in the first sheet. notes: further lines
     of that, title -> text (axle file, measurement, ...).
@@ -123,11 +135,39 @@ def discovery_workbook(
     table_sheet(book, disagreement_table(discovery, worst_first=True), study)
     table_sheet(book, effect_table(discovery), study)
     table_sheet(book, library_table(discovery), study)
+    table_sheet(book, isolability_table(discovery), study)
+    _gap_chart(book, gap_table(discovery), study)
     table_sheet(book, gap_table(discovery), study)
     table_sheet(book, held_out_table(discovery), study)
     table_sheet(book, tuned_table(discovery), study)
     lines_sheet(book, "Legend", "Legend", "How to read this workbook.", list(DISCOVERY_LEGEND.items()), study)
     return book
+
+
+def _gap_chart(book: Workbook, table: Table[GapRow], study: str) -> None:
+    """Marks of every model over load case and response."""
+    remark = "Whitened RMS of model minus measured: 1 is noise."
+    ws = chart_sheet(book, "Gap chart", "Gap", remark, study)
+    columns = [c for c in table.columns if c.key in GAP_LOOKS and not _absent(c, table)]
+    rows: list[list[str | float | None]] = []
+    last = ""
+    for row in table.rows:
+        case = case_label(row.case) if row.case else "All"
+        rows.append([case if case != last else None, response_name(row.response) if row.response else "all"])
+        rows[-1] += [_known(c.value(row)) for c in columns]
+        last = case
+    add_marks(
+        ws, ["Load case", "Response", *(c.head or "" for c in columns)], rows,
+        looks=[GAP_LOOKS[c.key] for c in columns], lowest=0.5, axis="RMS over noise (1 is noise)",
+    )  # fmt: skip
+
+
+def _absent(column: Column[GapRow], table: Table[GapRow]) -> bool:
+    return all(_known(column.value(row)) is None for row in table.rows)
+
+
+def _known(value: Value) -> float | None:
+    return value if isinstance(value, float) and math.isfinite(value) else None
 
 
 def write_discovery_workbook(
@@ -156,7 +196,7 @@ def verdict_lines(discovery: Discovery) -> list[tuple[str, str]]:
 def finding_words(discovery: Discovery, finding: Finding) -> str:
     """Name and place, sizes, and what happens in the car."""
     sizes = f": {size_words(discovery, finding)}" if finding.hypothesis.sizes else ""
-    return f"{hypothesis_label(finding.hypothesis)}{sizes}. {EFFECTS[finding.hypothesis.effect].physics}"
+    return f"{hypothesis_label(finding.hypothesis)}{sizes}. {physics_words(finding)}"
 
 
 def scan_lines(discovery: Discovery) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import partial
 from itertools import groupby
 from pathlib import Path
@@ -13,9 +14,9 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.report.color_scale import STRIPS, draw_color_scale
-from doe_kc.report.influence_layout import Layout, layout
+from doe_kc.report.influence_layout import Layout, group_steps, layout, step_text
 from doe_kc.report.names import case_label
 from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.series import draw_series
@@ -34,8 +35,8 @@ CELL_HEIGHT, CELL_WIDTH = 0.165, 0.36
 LINE_COLOUR = PALETTE["black"]
 INFLUENCE_GAP = 6.0
 """Points between the heat map and what is beside it."""
-INFLUENCE_HEAD = 0.72 * POINTS
-"""Of the heat map: the title of the page and the names of the load cases."""
+INFLUENCE_HEAD = 0.9 * POINTS
+"""Of the heat map: the title of the page, how to read it and the names of the load cases."""
 INFLUENCE_KEY = (0.18 * POINTS, 48.0)
 """Width of the colour scale, and of its numbers and name, points."""
 
@@ -53,7 +54,8 @@ def influence_heat_map(influence: Influence, *, study: str) -> Sheet:
     values = values[np.ix_(at.rows, at.columns)]
     size = (max(8.0, 3.2 + CELL_WIDTH * len(at.columns)), max(5.0, 3.0 + CELL_HEIGHT * len(at.rows)))
     columns = [_name(influence.characteristics[j]) for j in at.columns]
-    rows = [influence.parameters[i].path for i in at.rows]
+    usual = group_steps(influence)
+    rows = [_row_name(influence, i, usual) for i in at.rows]
     page = Sheet(size)
     left = max(text_width(name, 7.0) for name in rows) + 2.0 * INFLUENCE_GAP
     bottom = max(text_width(name, 7.0) for name in columns) + 2.0 * INFLUENCE_GAP
@@ -74,9 +76,27 @@ def influence_heat_map(influence: Influence, *, study: str) -> Sheet:
         )
     )
     page.set_heading(
-        f"Parameter influence, percent of each column's largest entry: {study}", 1 - 3 / page.height
+        f"Parameter influence, percent of each column's largest entry: {study}", 1 - 5 / page.height
     )
+    page.write(
+        0.5, 1 - 22 / page.height, _reading(usual), 7.0, "center", "top", color="#555555",
+    )  # fmt: skip
     return page
+
+
+def _row_name(influence: Influence, i: int, usual: Mapping[str, str]) -> str:
+    """Path, with its step where that is not the usual one of its group."""
+    parameter, step = influence.parameters[i], step_text(influence, i)
+    return parameter.path if usual.get(parameter.group) == step else f"{parameter.path} ({step})"
+
+
+def _reading(usual: Mapping[str, str]) -> str:
+    """How large the steps are, and what a blank means."""
+    steps = ", ".join(f"{group.lower()} {words}" for group, words in usual.items())
+    return (
+        f"One parameter at a time, raised and lowered by its step: {f'{steps}, ' if steps else ''}"
+        f"others as beside their name.\nBlank: below {ANNOTATE:g} %. Grey: no equilibrium with the step."
+    )
 
 
 def _matrix(panel: Panel, values: FloatArray) -> None:

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from dataclasses import dataclass
 
 from openpyxl.utils import get_column_letter
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.load_cases import LOAD_CASES
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 
 KINEMATICS = ("static", "vertical", "roll", "steer")
 COMPLIANCES = ("lateral", "lateral_opposite", "lateral_offset", "drive", "brake")
 GROUPS = ("HARDPOINTS", "BUSHINGS", "OTHER")
 SECTION_ROW, CASE_ROW, NAME_ROW, BASELINE_ROW, UNIT_ROW, FIRST_MATRIX_ROW = 4, 5, 6, 7, 8, 9
 """Rows: section, load case, characteristic, nominal value, unit (with the filter), first parameter."""
-LABELS = 4
-"""Columns before the matrix: group, label, path, step."""
+LABELS = 3
+"""Columns before the matrix: group, path, step."""
 
 
 @dataclass(frozen=True)
@@ -67,3 +69,25 @@ def layout(influence: Influence) -> Layout:
 
 def _breaks(names: list[str]) -> list[int]:
     return [k for k, name in enumerate(names) if k == 0 or name != names[k - 1]]
+
+
+def step_text(influence: Influence, i: int) -> str:
+    """`±1 mm`, `±10 %`, or `+0.1` for a parameter at zero that can only be raised."""
+    parameter = influence.parameters[i]
+    share = 100.0 * parameter.step / abs(parameter.nominal) if parameter.nominal else math.nan
+    relative = parameter.unit not in {"mm", "deg"} or parameter.quantity == "radius"
+    if relative and math.isfinite(share):
+        return f"±{share:.3g} %"
+    sign = "+" if parameter.one_sided else "±"
+    return f"{sign}{parameter.step:.3g} {parameter.unit}".removesuffix(" -")
+
+
+def group_steps(influence: Influence) -> dict[str, str]:
+    """Group -> step of most of its parameters, of the groups in which at least half have the same."""
+    out = {}
+    for group in GROUPS:
+        steps = [step_text(influence, i) for i, p in enumerate(influence.parameters) if p.group == group]
+        for words, count in Counter(steps).most_common(1):
+            if 2 * count >= len(steps):
+                out[group] = words
+    return out

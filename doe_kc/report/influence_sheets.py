@@ -11,7 +11,7 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
 from doe_kc.report.influence_layout import (
     BASELINE_ROW,
     CASE_ROW,
@@ -23,13 +23,13 @@ from doe_kc.report.influence_layout import (
     Layout,
     layout,
     section,
+    step_text,
 )
 from doe_kc.report.names import case_label
 from doe_kc.report.render.cells import (
     FLAGGED,
     HEADER_FILL,
     MUTED,
-    PAPER_A3,
     colour_scale,
     frame,
     page,
@@ -41,7 +41,7 @@ from doe_kc.report.render.cells import (
 from doe_kc.report.table import three_digits
 
 REMARK = "Description, remark"
-PERCENT_WIDTH = 8.0
+PERCENT_WIDTH = 7.0
 """Characters of a percent column; values with their decimals need more."""
 
 
@@ -122,7 +122,7 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
         number = decimals[c - LABELS - 1]
         put(ws, BASELINE_ROW, c, value, number=number, horizontal="center", fill=HEADER_FILL, color=MUTED)
         put(ws, UNIT_ROW, c, entry.unit, horizontal="center", vertical="top", fill=HEADER_FILL)
-    for c, text in enumerate(("Group", "Parameter", "Path", "Step"), start=1):
+    for c, text in enumerate(("Group", "Parameter", "Step"), start=1):
         put(ws, UNIT_ROW, c, text, bold=True, vertical="top", fill=HEADER_FILL)
     put(ws, BASELINE_ROW, 1, "Nominal value of the characteristic", fill=HEADER_FILL, color=MUTED)
     put(ws, NAME_ROW, 1, "Characteristic", bold=True, vertical="bottom", fill=HEADER_FILL)
@@ -131,7 +131,7 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
         ws.merge_cells(start_row=row, end_row=row, start_column=1, end_column=LABELS)
     extra = 3 if sums else 1
     _tail_heads(ws, at, sums=sums)
-    ws.row_dimensions[NAME_ROW].height = 168
+    ws.row_dimensions[NAME_ROW].height = 150
     ws.row_dimensions[UNIT_ROW].height = 30
     ws.freeze_panes = ws.cell(FIRST_MATRIX_ROW, LABELS + 1)
     end = get_column_letter(at.last_column + extra)
@@ -140,8 +140,7 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
         ws,
         [
             12,
-            20,
-            20,
+            21,
             9,
             *[PERCENT_WIDTH if sums else 1.3 * PERCENT_WIDTH] * len(at.columns),
             *([6.5, 5.0] if sums else []),
@@ -155,7 +154,8 @@ def _heads(ws: Worksheet, influence: Influence, at: Layout, study: str, *, sums:
         thick_above=(SECTION_ROW, *at.row_breaks, at.last_row + 1),
         thick_left=(1, *at.column_breaks, at.last_column + 1),
     )
-    page(ws, study, paper=PAPER_A3, repeat=f"{SECTION_ROW}:{UNIT_ROW}", single=True)
+    page(ws, study, repeat=f"1:{UNIT_ROW}")
+    ws.print_area = f"A1:{get_column_letter(at.last_column + extra - 1)}{at.last_row + (2 if sums else 0)}"
 
 
 def _tail_heads(ws: Worksheet, at: Layout, *, sums: bool) -> None:
@@ -185,21 +185,9 @@ def _labels(ws: Worksheet, influence: Influence, at: Layout) -> None:
         first = r in at.row_breaks
         # The group stands in every row, not in a merged cell, so that rows can be filtered and sorted.
         put(ws, r, 1, parameter.group, bold=first, color=None if first else MUTED)
-        put(ws, r, 2, parameter.path.replace(".", " "), bold=True)
-        put(ws, r, 3, parameter.path, color=MUTED)
-        put(ws, r, 4, step_text(influence, i), horizontal="right")
+        put(ws, r, 2, parameter.path, bold=True)
+        put(ws, r, 3, step_text(influence, i), horizontal="right")
         put(ws, r, last, _remark(influence, i), color=MUTED)
-
-
-def step_text(influence: Influence, i: int) -> str:
-    """`±1 mm`, `±10 %`, or `+0.1` for a parameter at zero that can only be raised."""
-    parameter = influence.parameters[i]
-    share = 100.0 * parameter.step / abs(parameter.nominal) if parameter.nominal else math.nan
-    relative = parameter.unit not in {"mm", "deg"} or parameter.quantity == "radius"
-    if relative and math.isfinite(share):
-        return f"±{share:.3g} %"
-    sign = "+" if parameter.one_sided else "±"
-    return f"{sign}{parameter.step:.3g} {parameter.unit}".removesuffix(" -")
 
 
 def _remark(influence: Influence, i: int) -> str:

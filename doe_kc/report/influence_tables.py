@@ -39,7 +39,7 @@ def characteristic_links_table(relations: Relations) -> Table[CharacteristicLink
         "+ = both grow together.",
         columns,
         relations.by_characteristic,
-        sheet=SheetLayout(frozen="rank_1" if relations.longest else "", paper="A3"),
+        sheet=SheetLayout(frozen="rank_1" if relations.longest else ""),
     )
 
 
@@ -129,7 +129,7 @@ def selection_table(selection: Selection) -> Table[VariableAdvice]:
         selection.variables,
         title="Selection of variables",
         flagged=lambda v: bool(v.at_bound),
-        sheet=SheetLayout(frozen="verdict", paper="A3", single=True),
+        sheet=SheetLayout(frozen="verdict", single=True),
     )
 
 

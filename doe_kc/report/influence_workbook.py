@@ -13,8 +13,8 @@ from doe_kc import __version__
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.parameter_influence.identifiability import COLLINEAR, NO_INFLUENCE
 from doe_kc.parameter_influence.relations import Relations
-from doe_kc.parameter_influence.result import NONLINEAR_PERCENT, Influence
 from doe_kc.parameter_influence.selection_result import Selection
+from doe_kc.parameter_influence.study import NONLINEAR_PERCENT, Influence
 from doe_kc.report.influence_sheets import absolute_sheet, exact_sheet, influence_sheet
 from doe_kc.report.influence_tables import (
     characteristic_links_table,

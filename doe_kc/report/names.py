@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
@@ -25,6 +27,11 @@ def input_label(load_case: str, unit: str) -> str:
     cases = [LOAD_CASES[load_case], *(ROLL_TECHNIQUES.values() if load_case == "roll" else ())]
     name = next((c.input_label for c in cases if c.unit == unit), "Input")
     return f"{name} [{unit}]"
+
+
+def without_remark(axis: str) -> str:
+    """Label of an axis without its remark on signs, which does not fit a small panel."""
+    return re.sub(r" \([^)]*\)", "", axis)
 
 
 def response_name(response: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from matplotlib.scale import LogTransform, SymmetricalLogTransform
@@ -25,9 +26,15 @@ MARGIN = 0.05
 STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
+@lru_cache(maxsize=32)
 def ticks(count: int) -> MaxNLocator:
-    """At most `count` intervals between round numbers."""
+    """At most `count` intervals between round numbers; the same object every time."""
     return MaxNLocator(count, steps=STEPS)
+
+
+@lru_cache(maxsize=1)
+def _usual_formatter() -> ScalarFormatter:
+    return ScalarFormatter()
 
 
 @dataclass(frozen=True)
@@ -49,6 +56,8 @@ class PanelAxis:
     def __init__(self) -> None:
         self._low, self._high = np.inf, -np.inf
         self._limits: tuple[float, float] | None = None
+        self._known_limits: tuple[float, float] | None = None
+        self._known_ticks: dict[tuple[float, float, int], Ticks] = {}
         self._fixed: Ticks | None = None
         self._locator: Locator | None = None
         self._formatter: Formatter | None = None
@@ -60,6 +69,7 @@ class PanelAxis:
         data = np.asarray(values, dtype=float)
         data = data[np.isfinite(data) & (data > 0.0)] if self.logarithmic else data[np.isfinite(data)]
         if data.size:
+            self._known_limits = None
             self._low = min(self._low, float(data.min()))
             self._high = max(self._high, float(data.max()))
 
@@ -69,12 +79,12 @@ class PanelAxis:
 
     def set_logarithmic(self) -> None:
         """Base 10."""
-        self.scale = LogTransform(10.0)
+        self.scale, self._known_limits = LogTransform(10.0), None
         self.logarithmic = True
 
     def set_symmetrical_logarithmic(self, linear: float) -> None:
         """Base 10 on either side, linear between -linear and linear."""
-        self.scale = SymmetricalLogTransform(10.0, linear, 1.0)
+        self.scale, self._known_limits = SymmetricalLogTransform(10.0, linear, 1.0), None
 
     def set_ticks(self, places: ArrayLike, words: Sequence[str], bold: Sequence[bool] = ()) -> None:
         """Fixed ones; bold: which of the words are."""
@@ -84,17 +94,23 @@ class PanelAxis:
     def set_locator(self, locator: Locator, formatter: Formatter | None = None) -> None:
         """Where ticks are, and what is written there: Matplotlib's ScalarFormatter unless told."""
         self._locator, self._formatter = locator, formatter
+        self._known_ticks.clear()
 
     @property
     def limits(self) -> tuple[float, float]:
         """Start and end of the axis."""
         if self._limits is not None:
             return self._limits
+        if self._known_limits is None:
+            self._known_limits = self._data_limits()
+        return self._known_limits
+
+    def _data_limits(self) -> tuple[float, float]:
         if self._low > self._high:
             return (1.0, 10.0) if self.logarithmic else (0.0, 1.0)
         low, high = self._low, self._high
         if not self.logarithmic:
-            low, high = MaxNLocator().nonsingular(low, high)  # wider where all values are the same
+            low, high = ticks(9).nonsingular(low, high)  # wider where all values are the same
         elif low == high:
             low, high = low / 10.0, high * 10.0
         start, end = self._scaled(np.array([low, high]))
@@ -124,14 +140,19 @@ class PanelAxis:
         if self._fixed is not None:
             return _inside(self._fixed, self.limits)
         low, high = sorted(self.limits)
+        if (low, high, most) not in self._known_ticks:  # panels of a sheet share their axes
+            self._known_ticks[low, high, most] = self._located(low, high, most)
+        return self._known_ticks[low, high, most]
+
+    def _located(self, low: float, high: float, most: int) -> Ticks:
         if self.logarithmic and self._locator is None:
             return self._decades(low, high)
         locator = self._locator or ticks(min(max(most, 1), 9))
         places = np.asarray(locator.tick_values(low, high), dtype=float)
-        formatter = self._formatter or ScalarFormatter()
+        formatter = self._formatter or _usual_formatter()
         words = _formatted(formatter, places, (low, high))
-        found = Ticks(places, words, (False,) * places.size, np.zeros(0), formatter.get_offset())
-        return _inside(found, self.limits)
+        major = Ticks(places, words, (False,) * places.size, np.zeros(0), formatter.get_offset())
+        return _inside(major, self.limits)
 
     def _decades(self, low: float, high: float) -> Ticks:
         places = np.asarray(LogLocator(10.0).tick_values(low, high), dtype=float)

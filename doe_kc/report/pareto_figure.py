@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.lines import Line2D
+from matplotlib.ticker import FuncFormatter, SymmetricalLogLocator
 from scipy.stats import rankdata
 
 from doe_kc.correlation.front import VIOLATION, Front
@@ -120,9 +121,19 @@ def most_in_conflict(values: FloatArray) -> tuple[int, int, float]:
 
 
 def _scale(axis: PanelAxis, values: FloatArray) -> None:
-    """Logarithmic when positive values span more than a factor of thirty."""
-    if values.min() > 0.0 and values.max() > 30.0 * values.min():
+    """Logarithmic where values span more than a factor of thirty; linear from 0 to a decade below the median
+    of the positive ones where some are zero."""
+    positive = values[values > 0.0]
+    if not positive.size or values.max() <= 30.0 * values.min():
+        return
+    if values.min() > 0.0:
         axis.set_logarithmic()
+    elif positive.max() > 30.0 * np.median(positive):
+        linear = float(10.0 ** np.floor(np.log10(np.median(positive))))
+        axis.set_symmetrical_logarithmic(linear)
+        axis.set_locator(
+            SymmetricalLogLocator(base=10, linthresh=linear), FuncFormatter(lambda v, _: f"{v:g}")
+        )
 
 
 def _name(name: str) -> str:

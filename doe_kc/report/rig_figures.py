@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from functools import partial
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from doe_kc.ground.numbers import with_sd
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Gradient, Measurement
-from doe_kc.report.names import input_label, response_axis
+from doe_kc.report.names import input_label, response_axis, without_remark
 from doe_kc.report.panel import Panel
 from doe_kc.report.panel_axis import ticks
 from doe_kc.report.series import draw_series
@@ -58,7 +57,7 @@ def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
     for panel in panels.flat:
         panel.y.set_locator(ticks(5))
     for panel in panels[-1]:
-        panel.set_labels(_without_remark(input_label(load_case, case.input_unit)), None)
+        panel.set_labels(without_remark(input_label(load_case, case.input_unit)), None)
     for panel, title in zip(panels[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
         panel.set_title(title)
     page.set_heading(f"{measurement.manifest.name}: {run.record.case.label}", 0.985)
@@ -81,11 +80,6 @@ def write_rig_figures(
         workers,
         pictures=pictures,
     )
-
-
-def _without_remark(axis: str) -> str:
-    """Label without its remark on signs, which does not fit a small panel."""
-    return re.sub(r" \([^)]*\)", "", axis)
 
 
 def _panel(panel: Panel, measurement: Measurement, load_case: str, response: str, side: int) -> None:
@@ -116,7 +110,7 @@ def _gradient(panel: Panel, gradient: Gradient, characteristic: str) -> None:
     panel.plot(window, gradient.intercept + gradient.value * window, color=GRADIENT_COLOUR, lw=1.6)
     scale, unit = _readable(gradient.unit)
     travel = " of pad travel" if gradient.load_case == "vertical" else ""
-    words = f"{_numbers(scale * gradient.value, scale * gradient.sd)} {unit}{travel}"
+    words = f"{with_sd(scale * gradient.value, scale * gradient.sd)} {unit}{travel}"
     _note(panel, f"{words}\n{characteristic}" if characteristic else words, GRADIENT_COLOUR)
 
 
@@ -127,12 +121,8 @@ def _characteristic(measurement: Measurement, load_case: str, response: str) -> 
         entry = CHARACTERISTICS[ident]
         of_panel = (entry.load_case, entry.response, entry.kind) == (load_case, response, "gradient")
         if of_panel and entry.abscissa not in ("input", same) and np.isfinite(estimate.value):
-            return f"{_numbers(estimate.value, estimate.sd)} {entry.unit} {ABSCISSA_WORDS[entry.abscissa]}"
+            return f"{with_sd(estimate.value, estimate.sd)} {entry.unit} {ABSCISSA_WORDS[entry.abscissa]}"
     return ""
-
-
-def _numbers(value: float, sd: float) -> str:
-    return with_sd(value, sd).replace("-", "\N{MINUS SIGN}")
 
 
 def _readable(unit: str) -> tuple[float, str]:

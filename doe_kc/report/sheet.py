@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from operator import methodcaller
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.artist import Artist
-from matplotlib.backend_bases import RendererBase
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
+from matplotlib.backends.backend_agg import RendererAgg
+from matplotlib.collections import Collection, LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.transforms import Affine2D, Transform
@@ -20,7 +20,10 @@ from doe_kc.report.panel import PageBox, Panel
 from doe_kc.report.panel_axis import PanelAxis
 from doe_kc.report.panel_frame import Frame
 from doe_kc.report.style import A4, DPI
-from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent
+from doe_kc.report.words import POINTS, Across, Along, Word, Words, extent, with_minus_sign
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FRAME, FRAME_WIDTH, MINOR_WIDTH = "#000000", 0.8, 0.6
 GRID, GRID_WIDTH = "#DDDDDD", 0.5
@@ -28,13 +31,18 @@ BACK_ORDER, GRID_ORDER, FRAME_ORDER = -1.0, 0.5, 2.5
 SHEET_MARGINS = {"left": 0.125, "right": 0.9, "top": 0.88, "bottom": 0.11, "wspace": 0.2, "hspace": 0.2}
 
 
-class Sheet(Figure):
-    """A figure whose panels are completed at its first drawing: their limits must be final then."""
+class Sheet:
+    """A page whose panels are completed at its first drawing: their limits must be final then.
+
+    No Matplotlib Figure: the import of that class with all its axes takes as long as three pages.
+    """
 
     def __init__(self, size: tuple[float, float]) -> None:
-        super().__init__(figsize=size, dpi=DPI)
         self.panels: list[Panel] = []
-        self.page: Transform = Affine2D().scale(1.0 / POINTS) + self.dpi_scale_trans
+        self._dots = Affine2D().scale(DPI)
+        self.page: Transform = Affine2D().scale(1.0 / POINTS) + self._dots
+        self.inches, self._artists = size, list[Artist]()
+        self._figure: Figure | None = None
         self.width, self.height = size[0] * POINTS, size[1] * POINTS
         self.keys: list[Legend] = []
         self.heading = ""
@@ -95,7 +103,7 @@ class Sheet(Figure):
                 back = Rectangle((box.left, box.bottom), box.width, box.height, fc=panel.background, lw=0.0)
                 self._place(back, BACK_ORDER)
             for artist in panel.artists(self.page):
-                self.add_artist(artist)
+                self._artists.append(artist)
             frame.add(panel)
             frame.words += panel.words()
         self._segments(frame.grid, GRID, GRID_WIDTH, GRID_ORDER)
@@ -106,8 +114,8 @@ class Sheet(Figure):
             for artist in artists:
                 self._place(artist, artist.get_zorder())
             frame.words += words
-        self._words.entries += frame.words
-        self.add_artist(self._words)
+        self._words.entries = [with_minus_sign(w) for w in (*self._words.entries, *frame.words)]
+        self._artists.append(self._words)
 
     def _segments(self, segments: Sequence[Any], color: str, width: float, order: float) -> None:
         if segments:
@@ -116,12 +124,38 @@ class Sheet(Figure):
     def _place(self, artist: Artist, order: float) -> None:
         artist.set_zorder(order)
         artist.set_transform(self.page)
-        self.add_artist(artist)
+        self._artists.append(artist)
 
-    def draw(self, renderer: RendererBase) -> None:
-        """Completes the panels first."""
+    def pixels(self) -> NDArray[np.uint8]:
+        """(height, width, 3) from the upper left corner, DPI dots an inch."""
+        renderer = RendererAgg(self.inches[0] * DPI, self.inches[1] * DPI, DPI)  # type: ignore[no-untyped-call]
+        self._dots.clear().scale(DPI)
+        for artist in self._ordered():
+            if isinstance(artist, PolyCollection):  # its own method asks a figure for the dots of its sizes
+                artist.set_urls([None, None])  # else one polygon alone asks a figure too, for its size
+                Collection.draw(artist, renderer)
+            else:
+                artist.draw(renderer)
+        out: NDArray[np.uint8] = np.asarray(renderer.buffer_rgba(), dtype=np.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
+        return out
+
+    def figure(self) -> Figure:
+        """The page for a vector format, 72 dots an inch; the same one every time."""
+        from matplotlib.figure import Figure
+
+        self._dots.clear().scale(POINTS)
+        if self._figure is None:
+            self._figure = Figure(figsize=self.inches, dpi=POINTS)
+            for artist in self._ordered()[1:]:  # it has its own ground
+                self._figure.add_artist(artist)
+        return self._figure
+
+    def _ordered(self) -> list[Artist]:
+        """On a white ground, the upper ones last."""
         self.complete()
-        super().draw(renderer)
+        ground = Rectangle((0.0, 0.0), self.width, self.height, fc="white", lw=0.0)
+        ground.set_transform(self.page)
+        return [ground, *sorted(self._artists, key=methodcaller("get_zorder"))]
 
 
 def sheet(

@@ -3,54 +3,69 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
+from numpy.typing import NDArray
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.curves import SIDES
-from doe_kc.ground.output import write_csv
-from doe_kc.report.render.csv import table_frame
+from doe_kc.ground.output import write_columns
+from doe_kc.report.names import case_label, response_name
+from doe_kc.report.render.csv import table_columns, table_frame
 from doe_kc.report.render.json import table_records
-from doe_kc.report.table import Column, Table
+from doe_kc.report.table import Column, PageCell, PageLayout, Table
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
+from doe_kc.solver.elements.responses import output_unit
 from doe_kc.solver.result import BranchSolution, CaseSolution, Solution
 
+if TYPE_CHECKING:
+    import pandas as pd
 
-def curves_frame(solution: Solution) -> pd.DataFrame:
+
+def curves_columns(solution: Solution) -> dict[str, NDArray[Any]]:
     """One row a load case, branch, step and side; angles absolute, wheel centre as change from static."""
-    rows = [
-        _branch_frame(solution, case, branch, side)
+    parts = [
+        _branch_columns(solution, case, branch, side)
         for case in solution.cases.values()
         for branch in case.branches
         for side in SIDES
     ]
-    return pd.concat(rows, ignore_index=True)
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _branch_frame(solution: Solution, case: CaseSolution, branch: BranchSolution, side: str) -> pd.DataFrame:
+def curves_frame(solution: Solution) -> pd.DataFrame:
+    """`curves_columns` as a data frame."""
+    import pandas as pd
+
+    return pd.DataFrame(curves_columns(solution))
+
+
+def _branch_columns(
+    solution: Solution, case: CaseSolution, branch: BranchSolution, side: str
+) -> dict[str, NDArray[Any]]:
     assert solution.static is not None
-    columns: dict[str, Any] = {
-        "load_case": case.load_case.id,
-        "branch": branch.name,
-        "step": np.arange(len(branch.input)),
+    n = len(branch.input)
+    columns: dict[str, NDArray[Any]] = {
+        "load_case": np.full(n, case.load_case.id, dtype=object),
+        "branch": np.full(n, branch.name, dtype=object),
+        "step": np.arange(n),
         "input": branch.input,
-        "input_unit": case.load_case.unit,
-        "side": side,
+        "input_unit": np.full(n, case.load_case.unit, dtype=object),
+        "side": np.full(n, side, dtype=object),
     }
-    for name, unit in OUTPUT_UNITS.items():
-        column = solution.column(f"{name}@{side}")
+    for column, output in enumerate(solution.output_names):
+        name, _, own = output.partition("@")
+        if own not in ("", side):
+            continue
         values = branch.y[:, column]
         if name.startswith("wc_"):
             values = values - solution.static.y[column]
-        columns[f"{name}_{unit}"] = values
-    for name, unit in AXLE_OUTPUT_UNITS.items():
-        columns[f"{name}_{unit}"] = branch.y[:, solution.column(name)]
-    return pd.DataFrame(columns)
+        columns[f"{name}_{output_unit(name)}"] = values
+    return columns
 
 
 @dataclass(frozen=True)
@@ -62,12 +77,16 @@ class SimulatedCharacteristic:
 
 
 SIMULATED_COLUMNS: tuple[Column[SimulatedCharacteristic], ...] = (
-    Column("name", "Id", lambda r: r.entry.id),
-    Column("load_case", "Load case", lambda r: r.entry.load_case, json="load_case"),
-    Column("response", "Response", lambda r: r.entry.response),
-    Column("unit", "Unit", lambda r: r.entry.unit, json="unit"),
-    Column("value", "Value", lambda r: r.value, "0.0000", json="value"),
-)
+    Column("name", "Id", lambda r: r.entry.id,
+           page=PageCell("Characteristic", text=lambda r: r.entry.label, style="first",
+                         attributes=lambda r: {"title": r.entry.id})),
+    Column("load_case", "Load case", lambda r: r.entry.load_case, json="load_case",
+           page=PageCell(text=lambda r: case_label(r.entry.load_case))),
+    Column("response", "Response", lambda r: r.entry.response,
+           page=PageCell(text=lambda r: response_name(r.entry.response))),
+    Column("unit", "Unit", lambda r: r.entry.unit, json="unit", page=PageCell()),
+    Column("value", "Value", lambda r: r.value, "0.0000", json="value", page=PageCell()),
+)  # fmt: skip
 
 
 def simulated_characteristic_table(solution: Solution) -> Table[SimulatedCharacteristic]:
@@ -78,7 +97,14 @@ def simulated_characteristic_table(solution: Solution) -> Table[SimulatedCharact
         for name, entry in CHARACTERISTICS.items()
         if math.isfinite(values[name])
     ]
-    return Table("Characteristics", "Of the simulated axle, left wheel.", SIMULATED_COLUMNS, rows)
+    return simulated_table(rows)
+
+
+def simulated_table(rows: Sequence[SimulatedCharacteristic]) -> Table[SimulatedCharacteristic]:
+    """One row a characteristic."""
+    layout = PageLayout[SimulatedCharacteristic]("simulated-table", "Characteristics", filtered=True)
+    remark = "Of the simulated axle, left wheel."
+    return Table("Characteristics", remark, SIMULATED_COLUMNS, rows, page=layout)
 
 
 def characteristics_frame(solution: Solution) -> pd.DataFrame:
@@ -96,6 +122,8 @@ def characteristics_document(solution: Solution, seconds: float) -> dict[str, An
 def write_simulation(solution: Solution, folder: Path) -> list[Path]:
     """curves.csv and characteristics.csv."""
     return [
-        write_csv(folder / "curves.csv", curves_frame(solution)),
-        write_csv(folder / "characteristics.csv", characteristics_frame(solution)),
+        write_columns(folder / "curves.csv", curves_columns(solution)),
+        write_columns(
+            folder / "characteristics.csv", table_columns(simulated_characteristic_table(solution))
+        ),
     ]

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
+from typing import IO, TYPE_CHECKING, Protocol
 
 import numpy as np
-from matplotlib import rc_context
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from doe_kc.ground.output import write_whole
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.report.png import write_png
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MARKERS = "osD^vPX"
 
@@ -49,7 +49,19 @@ def picture_path(path_without_suffix: Path, pictures: PictureFormat) -> Path:
     return path_without_suffix.with_name(f"{path_without_suffix.name}.{pictures}")
 
 
-def save(fig: Figure, path_without_suffix: Path, pictures: PictureFormat = PNG, *, mark: str = "") -> Path:
+class Picture(Protocol):
+    """A page that can be drawn."""
+
+    def pixels(self) -> NDArray[np.uint8]:
+        """(height, width, 3) from the upper left corner, DPI dots an inch."""
+
+    def figure(self) -> Figure:
+        """For a vector format."""
+
+
+def save(
+    fig: Picture | Figure, path_without_suffix: Path, pictures: PictureFormat = PNG, *, mark: str = ""
+) -> Path:
     """Write one picture, PNG (150 dpi) or SVG, making the folder; returns its path.
 
     mark: kept in the file's head; see `picture_digest`. A picture of the other format with another mark
@@ -59,20 +71,42 @@ def save(fig: Figure, path_without_suffix: Path, pictures: PictureFormat = PNG, 
     target = picture_path(path_without_suffix, pictures)
     note = f"doe_kc {mark}".strip()
     if pictures == "svg":
-        svg = FigureCanvasSVG(fig)
-        _write(target, lambda p: svg.print_svg(p, metadata={"Date": None, "Description": note}))  # type: ignore[no-untyped-call]
+        write_whole(target, lambda p: _write_svg_file(fig, p, note))
     else:
-        canvas = FigureCanvasAgg(fig)
-        _write(
-            target,
-            lambda p: write_png(p, _pixels(canvas), DPI, words={"Software": "doe_kc", "Description": note}),
-        )
+        words = {"Software": "doe_kc", "Description": note}
+        write_whole(target, lambda p: write_png(p, _pixels(fig), DPI, words=words))
     _remove_older(picture_path(path_without_suffix, "png" if pictures == "svg" else "svg"), note)
     return target
 
 
-def _pixels(canvas: FigureCanvasAgg) -> NDArray[np.uint8]:
+def write_svg(fig: Picture | Figure, stream: IO[bytes], note: str | None = None) -> None:
+    """No dates inside, so that equal results are equal files; note: kept in the file's head."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    canvas = FigureCanvasSVG(_figure(fig))
+    with rc_context(dict(RC)):  # type: ignore[arg-type]  # matplotlib types the keys as literals
+        canvas.print_svg(stream, metadata={"Date": None, "Description": note})  # type: ignore[no-untyped-call]
+
+
+def _write_svg_file(fig: Picture | Figure, path: Path, note: str) -> None:
+    with path.open("wb") as file:
+        write_svg(fig, file, note)
+
+
+def _figure(fig: Picture | Figure) -> Figure:
+    from matplotlib.figure import Figure
+
+    return fig if isinstance(fig, Figure) else fig.figure()
+
+
+def _pixels(fig: Picture | Figure) -> NDArray[np.uint8]:
     """(height, width, 3); the page is opaque, so that its alpha says nothing."""
+    if hasattr(fig, "pixels"):
+        return fig.pixels()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(_figure(fig))
     canvas.draw()  # type: ignore[no-untyped-call]
     return np.asarray(canvas.buffer_rgba(), dtype=np.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
 
@@ -86,9 +120,3 @@ def _remove_older(picture: Path, note: str) -> None:
             picture.unlink()
     except OSError:
         return
-
-
-def _write(target: Path, draw: Callable[[Path], object]) -> Path:
-    """Let `draw` write `target` as a whole; no dates inside, so that equal results are equal files."""
-    with rc_context(dict(RC)):  # type: ignore[arg-type]
-        return write_whole(target, draw)

@@ -74,6 +74,49 @@ def _panel(panel: Panel, report: SurrogateReport, j: int, predicted: FloatArray,
     panel.set_title(heads, size=6.5)
 
 
+def residuals(report: SurrogateReport, *, study: str) -> Sheet:
+    """One panel a characteristic: left-out error of each design over its true value.
+
+    Beside a spread of hundreds of its errors the interval of `predicted_against_true` cannot be seen.
+    """
+    entries = report.designs.characteristics
+    rows = -(-len(entries) // SURROGATE_PANELS)
+    height = 1.2 + 2.05 * rows
+    margins = {"left": 0.075, "right": 0.985, "wspace": 0.5, "hspace": 0.62}
+    margins |= {"bottom": 0.6 / height, "top": 1.0 - 1.15 / height}
+    page, panels = sheet(rows, SURROGATE_PANELS, size=(11.69, height), share_x=False, margins=margins)
+    predicted, sd = left_out_predictions(report), left_out_sd(report)
+    for j, panel in enumerate(panels.flat[: len(entries)]):
+        _residual_panel(panel, report, j, predicted[:, j] - report.designs.y[:, j], NOMINAL_WIDTH * sd[:, j])
+    del page.panels[len(entries) :]
+    for panel in panels[:, 0]:
+        panel.set_labels(None, "predicted − true")
+    for panel in page.panels[-SURROGATE_PANELS:]:
+        panel.set_labels("true value", None)
+    page.set_heading(f"Left-out errors with 95 % intervals: {study}", 1.0 - 0.1 / height)
+    return page
+
+
+def _residual_panel(
+    panel: Panel, report: SurrogateReport, j: int, error: FloatArray, bars: FloatArray
+) -> None:
+    entry, true = report.designs.characteristics[j], report.designs.y[:, j]
+    color = PALETTE["sky"]
+    panel.segments(true, error - bars, true, error + bars, colors=color, linewidths=0.6, zorder=1)
+    panel.plot(true, error, "", marker="o", ms=2.2, mew=0, color=PALETTE["blue"], zorder=2)
+    pad = 0.05 * float(np.ptp(true)) or 0.05 * float(np.abs(true).max()) or 1.0
+    limits = (float(true.min()) - pad, float(true.max()) + pad)
+    high = 1.08 * float(np.max(np.abs(error) + bars)) or 1.0
+    panel.plot(limits, (0.0, 0.0), color=PALETTE["black"], lw=0.7, zorder=1.5)
+    panel.x.set_limits(*limits)
+    panel.y.set_limits(-high, high)
+    for axis in (panel.x, panel.y):
+        axis.set_locator(ticks(4))
+    share = float((np.abs(error) <= bars).mean())
+    heads = f"{case_label(entry.load_case)}\n{entry.label} [{entry.unit}]\n{100.0 * share:.0f} % inside"
+    panel.set_title(heads, size=6.5)
+
+
 def _target(panel: Panel, value: float, limits: tuple[float, float]) -> None:
     """The measured value as a dashed line, or an arrow to the side where the designs do not reach it."""
     color = PALETTE["vermillion"]
@@ -154,12 +197,13 @@ def write_surrogate_figures(
     workers: int | None = None,
     pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """Pictures `predicted_against_true` and `model_quality`; returns their paths.
+    """Pictures `predicted_against_true`, `residuals` and `model_quality`; returns their paths.
 
     Raises RunError when the folder cannot be written.
     """
     jobs = [
         (folder / "predicted_against_true", partial(predicted_against_true, report, study=study)),
+        (folder / "residuals", partial(residuals, report, study=study)),
         (folder / "model_quality", partial(model_quality, report, study=study)),
     ]
     return draw_series(jobs, workers, pictures=pictures)

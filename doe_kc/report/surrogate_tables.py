@@ -12,6 +12,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.report.names import case_label
 from doe_kc.report.render.json import table_records
 from doe_kc.report.table import Column, SheetLayout, Table, TerminalCell, Value, three_digits
+from doe_kc.surrogates.calibration import coverage_interval
 from doe_kc.surrogates.models import SURROGATES
 from doe_kc.surrogates.report import SurrogateReport
 from doe_kc.surrogates.study import Judged
@@ -33,6 +34,12 @@ class QualityRow:
     def id(self) -> str:
         """`load_case.name`."""
         return self.entry.id
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Between which the calibrated coverage is with 95 % confidence, counted on so few designs."""
+        low, high = coverage_interval(self.fit.covered[self.index], len(self.fit.held.residual))
+        return float(low), float(high)
 
     @property
     def quality(self) -> Quality:
@@ -58,6 +65,10 @@ QUALITY_COLUMNS: tuple[Column[QualityRow], ...] = (
            json="coverage", terminal=TerminalCell("coverage", ">9", ".2f")),
     Column("calibrated_coverage", "Calibrated", lambda r: float(r.fit.covered[r.index]), "0.0000", 12,
            json="calibrated_coverage", terminal=TerminalCell("calibrated", ">11", ".2f")),
+    Column("calibrated_low", "Calibrated, at least", lambda r: r.limits[0], "0.0000", 12,
+           json="calibrated_low"),
+    Column("calibrated_high", "Calibrated, at most", lambda r: r.limits[1], "0.0000", 12,
+           json="calibrated_high"),
     Column("sharpness", "Sharpness", lambda r: float(r.quality.sharpness[r.index]), "0.0000", 12,
            json="sharpness"),
     Column("variance_factor", None, lambda r: float(r.fit.factors[r.index]), json="variance_factor"),
@@ -79,9 +90,7 @@ def quality_table(report: SurrogateReport) -> Table[QualityRow]:
         QUALITY_COLUMNS,
         rows,
         title="Surrogates",
-        sheet=SheetLayout(
-            frozen="unit", paper="A3", single=True, first=("load_case", "characteristic", "unit")
-        ),
+        sheet=SheetLayout(frozen="unit", single=True, first=("load_case", "characteristic", "unit")),
     )
 
 
@@ -182,7 +191,7 @@ def matrix_table(report: SurrogateReport, name: str, remark: str, percent: Float
         Column("step", "Step", lambda r: r.step, width=12),
         *(_matrix_column(j, entry) for j, entry in enumerate(report.designs.characteristics)),
     )
-    layout = SheetLayout(frozen=columns[2].key, paper="A3", single=True)
+    layout = SheetLayout(frozen=columns[2].key, single=True)
     return Table(name, remark, columns, rows, title=f"{name} by surrogates", sheet=layout)
 
 

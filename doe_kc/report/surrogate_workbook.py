@@ -9,7 +9,7 @@ from openpyxl.utils import get_column_letter
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
-from doe_kc.parameter_influence.result import percent_of_column
+from doe_kc.parameter_influence.study import percent_of_column
 from doe_kc.report.render.cells import cell_alignment, colour_scale, put
 from doe_kc.report.render.workbook import TABLE_FIRST_ROW, new_book, table_sheet, write_book
 from doe_kc.report.surrogate_tables import MatrixRow, chosen_table, matrix_table
@@ -20,7 +20,8 @@ from doe_kc.surrogates.selection import ERROR_MARGIN, EXACT
 SURROGATE_LEGEND = (
     ("Q2", "1 - left-out squared error / squares about the mean: 1 = perfect, 0 = no better than the mean."),
     ("RMSE", "Root mean square left-out error, in the characteristic's unit."),
-    ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration."),
+    ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration; "
+     "the latter with its own 95 % limits (Wilson), as it is counted on the designs that there are."),
     ("Sharpness", "Half width of the 95 % interval over the characteristic's standard deviation."),
     ("Chosen", f"The simplest model whose left-out squared error is within {ERROR_MARGIN:.0%} of the "
      f"best one's, or whose 1 - Q2 is at most {EXACT:g}."),

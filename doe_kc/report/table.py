@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Generic, Literal, TypeVar
+from typing import Generic, TypeVar
+
+from doe_kc.ground.numbers import sd_format
 
 Value = str | float | int | bool | None
 """Of a cell: nan and None are empty, a truth value is yes or no to a reader."""
@@ -21,7 +23,8 @@ class PageCell(Generic[Row]):
     head: by default the column's. text: what is read, by default the column's words, a number as `layout` (a
     format specification) says or with `digits` significant digits; a dash for none. strong: rows that have it
     bold. order: what the column is sorted by where that is not its value. style: CSS class of all its cells.
-    attributes: further ones of one cell (title, style); its `class` is added to `style`.
+    attributes: further ones of one cell (title, style); its `class` is added to `style`. fill: colour behind
+    one cell, RRGGBB; empty for none.
     """
 
     head: str | None = None
@@ -32,6 +35,7 @@ class PageCell(Generic[Row]):
     order: Callable[[Row], float] | None = None
     style: str = ""
     attributes: Callable[[Row], Mapping[str, str]] | None = None
+    fill: Callable[[Row], str] | None = None
 
 
 @dataclass(frozen=True)
@@ -52,8 +56,8 @@ class Column(Generic[Row]):
     key: its name in files and code. head: of the sheet, with the unit where all rows have the same; None
     where the sheet does not have it. value: from a row. number: format of the sheet's cell, of the column or
     from a row; empty for text. width: of the sheet's column, characters. words: what a reader of sheet and
-    page sees in place of the value. csv: whether the CSV has it. page, terminal: None where it is absent.
-    json: key in JSON documents, empty where it is absent.
+    page sees in place of the value; cell: what the sheet alone shows. csv: whether the CSV has it. page,
+    terminal: None where it is absent. json: key in JSON documents, empty where it is absent.
     """
 
     key: str
@@ -66,6 +70,7 @@ class Column(Generic[Row]):
     page: PageCell[Row] | None = None
     terminal: TerminalCell[Row] | None = None
     json: str = ""
+    cell: Callable[[Row], Value] | None = None
 
     def read(self, row: Row) -> Value:
         """What a reader sees: `words`, yes or no for a truth value, else the value."""
@@ -73,6 +78,10 @@ class Column(Generic[Row]):
         if isinstance(value, bool):
             return "yes" if value else "no"
         return value
+
+    def in_sheet(self, row: Row) -> Value:
+        """What the sheet shows."""
+        return self.cell(row) if self.cell is not None else self.read(row)
 
 
 @dataclass(frozen=True)
@@ -111,14 +120,13 @@ class Inside:
 class SheetLayout:
     """How a table lies in its sheet.
 
-    frozen: key of the first column that scrolls. paper: of its print. single: printed on one page.
+    frozen: key of the first column that scrolls. single: printed on one page.
     pages_wide: pages beside each other. repeat_columns: as `A:C`, on each of them. wrapped: rows as high as
     their longest text. printed_to: key of the last printed column; printed: number of printed rows, by
     default all. first: keys of columns before the others, in this order.
     """
 
     frozen: str = ""
-    paper: Literal["A3", "A4"] = "A4"
     single: bool = False
     pages_wide: int = 1
     repeat_columns: str = ""
@@ -190,7 +198,35 @@ def _ordered(columns: list[Column[Row]], first: Sequence[str]) -> list[Column[Ro
     return sorted(columns, key=lambda c: order.get(c.key, len(order)))
 
 
+def row_digits(sd: float, value: float) -> str:
+    """Number format of a row's values: two digits of their standard deviation, else three of `value`."""
+    return sd_format(sd) if math.isfinite(sd) and sd > 0.0 else three_digits(value)
+
+
+def zero_format(value: Value, number: str) -> str:
+    """Number format that shows exactly zero as 0, and a negative value that rounds to zero without a sign."""
+    decimals = number.partition(".")[2]
+    plain = number in ("0", f"0.{'0' * len(decimals)}")
+    if not plain or not isinstance(value, float) or round(value, len(decimals)) or value > 0.0:
+        return number
+    return "0" if value == 0.0 else f'"{number}"'
+
+
+def four_digits(value: float) -> str:
+    """Number format that shows four significant digits of a number of this size, eight decimals at most."""
+    places = min(8, max(0, 3 - math.floor(math.log10(abs(value))))) if value and math.isfinite(value) else 0
+    return f"0.{'0' * places}" if places else "0"
+
+
 def three_digits(value: float) -> str:
     """Number format that shows three significant digits of a number of this size, seven decimals at most."""
-    places = min(7, max(0, 2 - math.floor(math.log10(abs(value))))) if value else 0
+    places = min(7, max(0, 2 - math.floor(math.log10(abs(value))))) if value and math.isfinite(value) else 0
     return f"0.{'0' * places}" if places else "0"
+
+
+def ink_on(fill: str) -> str:
+    """Black or white as RRGGBB, whichever is read better on a colour (its luma, ITU-R BT.601)."""
+    if not fill:
+        return "000000"
+    red, green, blue = (int(fill[i : i + 2], 16) for i in (0, 2, 4))
+    return "000000" if 0.299 * red + 0.587 * green + 0.114 * blue > 140 else "FFFFFF"

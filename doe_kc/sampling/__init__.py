@@ -5,7 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+from doe_kc.ground.errors import InputError
 from doe_kc.ground.registry import import_members
+from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling._base import SAMPLERS, Request, Sampler, find_sampler
 from doe_kc.sampling.design import Design
 from doe_kc.variables import Space
@@ -16,12 +18,24 @@ __all__ = ["SAMPLERS", "Design", "Request", "Sampler", "find_sampler", "sample"]
 
 
 def sample(
-    space: Space, n: int, *, seed: int, method: str = "lhs", levels: int = 3, table: Path | None = None
+    space: Space,
+    n: int,
+    *,
+    seed: int,
+    method: str = "lhs",
+    levels: int = 3,
+    table: Path | None = None,
+    existing: FloatArray | None = None,
 ) -> Design:
     """n designs by a registered method; the seed is kept in the design of a method that has chance in it.
 
-    levels: of each variable, for `full_factorial`. table: file of designs, for `table`. InputError for an
-    unknown method, or a space that does not suit it.
+    levels: of each variable, for `full_factorial`. table: file of designs, for `table`. existing: (k, d)
+    designs in the unit cube that the n new ones complete. InputError for an unknown method, a space that does
+    not suit it, or a method that cannot complete designs.
     """
-    request = Request(n=n, seed=seed, levels=levels, table=table)
-    return find_sampler(method, "sampling").sample(space, request)
+    sampler = find_sampler(method, "sampling")
+    if existing is not None and not sampler.extends:
+        able = ", ".join(name for name, s in SAMPLERS.items() if s.extends)
+        raise InputError(f"sampling: {method} cannot complete existing designs; use {able}.")
+    request = Request(n=n, seed=seed, levels=levels, table=table, existing=existing)
+    return sampler.sample(space, request)

@@ -18,24 +18,30 @@ from doe_kc.variables import Space
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """n: designs wanted; levels: of each variable in a full factorial; table: file of designs."""
+    """n: designs wanted; levels: of each variable in a full factorial; table: file of designs.
+
+    existing: (k, d) designs in the unit cube that the n new ones shall complete.
+    """
 
     n: int
     seed: int
     levels: int = 3
     table: Path | None = None
+    existing: FloatArray | None = None
 
 
 class Sampler(ABC):
     """Every variable stays inside its bounds and, where the method chooses the values, on its levels.
 
-    sized: whether n decides the number of designs. seeded: whether the seed decides the values.
+    sized: whether n decides the number of designs. seeded: whether the seed decides the values. extends:
+    whether it completes existing designs.
     """
 
     id: ClassVar[str]
     label: ClassVar[str]
     sized: ClassVar[bool] = True
     seeded: ClassVar[bool] = True
+    extends: ClassVar[bool] = False
 
     @abstractmethod
     def sample(self, space: Space, request: Request) -> Design:
@@ -71,6 +77,6 @@ def design_of(
     return Design(method, tuple(rows[0]), np.array([list(row.values()) for row in rows]), tuple(labels), seed)
 
 
-def numbered(n: int) -> list[str]:
-    """Labels of designs that have no meaning of their own."""
-    return [f"sample {i + 1}" for i in range(n)]
+def numbered(n: int, before: int = 0) -> list[str]:
+    """Labels of designs that have no meaning of their own, counted on from `before`."""
+    return [f"sample {before + i + 1}" for i in range(n)]

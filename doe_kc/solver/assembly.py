@@ -8,12 +8,21 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.equations import Equations, finish
+from doe_kc.solver.structure.assembly import assemble_structure
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
 def assemble(topology: Topology) -> Equations:
-    """Every registered element, in order, then virtual work (cached per topology: a pure function)."""
+    """The equations of a topology, closed by virtual work (cached: a pure function)."""
+    return finish(collected(topology))
+
+
+def collected(topology: Topology) -> Builder:
+    """Bodies, forces and outputs of every element of the topology's type, in order."""
     builder = Builder(topology)
+    if topology.structure is not None:
+        assemble_structure(builder, topology.structure)
+        return builder
     for unit in ELEMENTS:
         unit.assemble(builder)
-    return finish(builder)
+    return builder

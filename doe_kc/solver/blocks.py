@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 
 import casadi as ca
@@ -102,6 +102,14 @@ class Block:
         out = np.zeros((len(points), *self._shape))
         out[:, self._row, self._col] = self.at(points)
         return out
+
+    def each(self, points: Points) -> Iterator[sparse.csr_array]:
+        """The sparse block at one point after the other: one matrix, whose numbers change."""
+        ends = np.concatenate([[0], np.cumsum(np.bincount(self._row, minlength=self._shape[0]))])
+        matrix = sparse.csr_array((np.zeros(self._col.size), self._col, ends), shape=self._shape)
+        for values in self.at(points):
+            matrix.data = values
+            yield matrix
 
     def times(self, points: Points, right: sparse.csr_array) -> FloatArray:
         """(n, rows, m) products of the blocks at many points with one sparse matrix (columns, m)."""

@@ -163,9 +163,14 @@ class Builder:
         self.multipliers.append((Unknown(name, joint, LENGTH_SCALE), force, violation - compliance * force))
         return force
 
-    def state(self, freedom: str, previous: ca.SX, following: ca.SX) -> None:
-        """Path-dependent state of a motion (mm): symbols of its previous value, expression of the next."""
-        self.slips.append(freedom)
+    def state(self, previous: ca.SX, following: ca.SX, *, freedom: str | None = None) -> None:
+        """Path-dependent state (mm): symbols of its previous value, expression of the next.
+
+        freedom: the free motion that it resists, in which steps are halved where it reverses; None for one
+        so soft beside its spring that a reversal inside a step is not seen.
+        """
+        if freedom is not None:
+            self.slips.append(freedom)
         self.states.append((ca.vec(previous), ca.vec(following)))
 
     def tail_unknown(self, name: str, joint: str, scale: float) -> ca.SX:

@@ -31,11 +31,13 @@ def characteristic_gradients(
     exact: sensitivities of `solution` to `paths`, where they are known.
     """
     entries = list(CHARACTERISTICS.values()) if characteristics is None else characteristics
-    found = exact if exact is not None else sensitivities(axle, solution, paths)
+    gradients = exact if exact is not None else sensitivities(axle, solution, paths)
     curves = curve_set(solution)
     half_track = np.array([_half_track_gradient(axle, path) for path in paths])
     chosen = windows or {}
-    return np.array([_one(e, solution, curves, found, half_track, chosen.get(e.load_case)) for e in entries])
+    return np.array(
+        [_one(e, solution, curves, gradients, half_track, chosen.get(e.load_case)) for e in entries]
+    )
 
 
 def _half_track_gradient(axle: Axle, path: str) -> float:

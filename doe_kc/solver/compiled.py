@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import accumulate
 from pathlib import Path
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -21,6 +22,12 @@ from doe_kc.solver.newton import NewtonSettings
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
 DRIVER = Path(__file__).with_name("driver.c")
+INT, LONG, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_longlong, ctypes.c_double, ctypes.c_void_p
+MARCH_ARGUMENTS = (
+    *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, INT, INT, LONG, LONG, INT, INT, ADDRESS,
+    INT, *(ADDRESS,) * 4, INT, *(ADDRESS,) * 9, INT, ADDRESS, ADDRESS,
+)  # fmt: skip
+"""Of `march` in driver.c, in its order."""
 
 
 @dataclass(frozen=True)
@@ -61,49 +68,51 @@ class CompiledKernel:
         capacity: int,
     ) -> tuple[March, int]:
         """The path, with `capacity` of its substeps, and how many there were."""
-
-        n = len(s)
-        x, z = np.zeros((n, kernel.nx)), np.zeros((n, kernel.nz))
-        y, level = np.zeros((n, kernel.ny)), np.zeros(n)
-        end = np.zeros(2 + kernel.nu + kernel.nz + kernel.nx)
-        rows, passed = np.zeros((capacity, end.size)), np.zeros(1, dtype=np.int32)
-        iterations, counts = np.zeros(n, dtype=np.int32), np.zeros(4, dtype=np.int64)
-        tail, slips = kernel.tail_controls, kernel.slips
-        inputs = [np.ascontiguousarray(a, dtype=float) for a in (start.s, start.x, start.u, start.z, s, u, c)]
-        s_known, x_known, u_start, z_start, s_in, u_in, c_in = inputs
-        code = self.library.march(
-            *(ctypes.c_int(v) for v in (kernel.nx, active, kernel.nu, kernel.nz, kernel.ny)),
-            ctypes.c_int(len(kernel.rows)),
-            *(_pointer(a) for a in (kernel.rows, kernel.cols, tail, kernel.scale, c_in)),
-            ctypes.c_double(settings.tol),
-            ctypes.c_double(settings.refresh),
-            ctypes.c_int(settings.max_iterations),
-            ctypes.c_int(settings.max_halvings),
-            ctypes.c_longlong(self.size_iw),
-            ctypes.c_longlong(self.size_w),
-            ctypes.c_int(start.guess),
-            ctypes.c_int(len(slips)),
-            _pointer(slips),
-            ctypes.c_int(len(s_known)),
-            *(_pointer(a) for a in (s_known, x_known, u_start, z_start)),
-            ctypes.c_int(n),
-            *(_pointer(a) for a in (s_in, u_in, x, z, y, iterations, level, end, counts)),
-            ctypes.c_int(capacity),
-            *(_pointer(a) for a in (rows, passed)),
+        n, length = len(s), 2 + kernel.nu + kernel.nz + kernel.nx
+        (x, z, y, level, end), out = _zeros((n, kernel.nx), (n, kernel.nz), (n, kernel.ny), (n,), (length,))
+        rows, whole = np.zeros((capacity, length)), np.zeros(n + 1, dtype=np.int32)
+        counts = np.zeros(4, dtype=np.int64)
+        known, (s_known, x_known, u_start, z_start, s_in, u_in, c_in) = _joined(
+            start.s, start.x, start.u, start.z, s, u, c
         )
+        jacobian_rows, jacobian_cols, tail, scale, slips = kernel.addresses
+        iterations_out = whole.ctypes.data
+        code = self.library.march(
+            *(kernel.nx, active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
+            *(jacobian_rows, jacobian_cols, tail, scale, c_in),
+            *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
+            *(self.size_iw, self.size_w, start.guess, len(kernel.slips), slips),
+            *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
+            *(*out[:3], iterations_out, *out[3:], counts.ctypes.data),
+            *(capacity, rows.ctypes.data, iterations_out + n * whole.itemsize),
+        )
+        del known  # not before the library has read it
+        iterations, passed = whole[:n], int(whole[n])
         if code < 0:
             raise MemoryError("the solver could not allocate its working memory")
-        between = substeps(kernel, rows[: passed[0]]) if passed[0] else None
+        between = substeps(kernel, rows[:passed]) if passed else None
         if not code:
-            return March(x, z, y, iterations, level, None, counts, None, between), int(passed[0])
+            return March(x, z, y, iterations, level, None, counts, None, between), passed
         (s_end, snap), rest = end[:2], end[2:]
         u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
         halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
-        return March(x, z, y, iterations, level, code - 1, counts, halt, between), int(passed[0])
+        return March(x, z, y, iterations, level, code - 1, counts, halt, between), passed
 
 
-def _pointer(array: np.ndarray[Any, Any]) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)
+def _zeros(*shapes: tuple[int, ...]) -> tuple[list[FloatArray], list[int]]:
+    """Arrays of zeros beside each other, and their addresses, which are slow to ask for one by one."""
+    sizes = [math.prod(shape) for shape in shapes]
+    room = np.zeros(sum(sizes))
+    first, ends = room.ctypes.data, list(accumulate(sizes))
+    arrays = [room[e - n : e].reshape(shape) for n, e, shape in zip(sizes, ends, shapes, strict=True)]
+    return arrays, [first + room.itemsize * (e - n) for n, e in zip(sizes, ends, strict=True)]
+
+
+def _joined(*arrays: FloatArray) -> tuple[FloatArray, list[int]]:
+    """A copy of the arrays, one after the other, and where in memory each begins."""
+    room = np.concatenate([np.ravel(array) for array in arrays], dtype=float)
+    first, ends = room.ctypes.data, accumulate(array.size for array in arrays)
+    return room, [first + room.itemsize * (e - a.size) for a, e in zip(arrays, ends, strict=True)]
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
@@ -117,9 +126,11 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
 
     path = library_of(topology, KERNEL_LIBRARY, sources, COMPILER_FLAGS)
     functions = [ca.external(name, str(path)) for name in MARCHED]
+    library = ctypes.CDLL(str(path))
+    library.march.argtypes = MARCH_ARGUMENTS
     return CompiledKernel(
         path,
-        ctypes.CDLL(str(path)),
+        library,
         max(f.sz_iw() for f in functions),
         max(f.sz_w() for f in functions),
     )

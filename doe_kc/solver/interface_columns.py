@@ -29,25 +29,25 @@ def law_columns(
     """
     chosen = LAWS[law]
     pick = np.array([i for i, p in enumerate(influences.probes) if p.kind in chosen.kinds], dtype=int)
-    found = picked(influences, pick)
+    at_place = picked(influences, pick)
     if chosen.value is None:
-        found = looped(found)
+        at_place = looped(at_place)
         distances = np.broadcast_to(np.asarray(presliding, dtype=float), (len(influences.probes),))[pick]
-        values = {i: stop_operator([b.seen for b in c], distances) for i, c in found.branches.items()}
+        values = {i: stop_operator([b.seen for b in c], distances) for i, c in at_place.branches.items()}
         design = static = np.zeros(pick.size)
     else:
-        values, design, static = _pointwise(found, chosen)
-    datum = found.static.datum_design * design + found.static.datum * static
+        values, design, static = _pointwise(at_place, chosen)
+    datum = at_place.static.datum_design * design + at_place.static.datum * static
     start = (
-        found.static.output_design * design + found.static.output * static,
-        found.static.state_design * design + found.static.state * static,
+        at_place.static.output_design * design + at_place.static.output * static,
+        at_place.static.state_design * design + at_place.static.state * static,
     )
     branches = {
         ident: _case(case, values[ident], datum, start, loop=is_loop(case))
-        for ident, case in found.branches.items()
+        for ident, case in at_place.branches.items()
     }
-    names = tuple(p.name for p in found.probes)
-    return gradients_of(found.solution, Sensitivities(names, start[0], branches))
+    names = tuple(p.name for p in at_place.probes)
+    return gradients_of(at_place.solution, Sensitivities(names, start[0], branches))
 
 
 def _pointwise(

@@ -86,13 +86,13 @@ def interface_influences(axle: Axle, solution: Solution) -> Influences:
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no influences")
-    found = InterfaceBlocks(axle)
-    static = _static(found, solution.static)
+    blocks = InterfaceBlocks(axle)
+    static = _static(blocks, solution.static)
     branches = {
-        ident: tuple(_branch(found, solution.static, case.load_case, b) for b in case.branches)
+        ident: tuple(_branch(blocks, solution.static, case.load_case, b) for b in case.branches)
         for ident, case in solution.cases.items()
     }
-    return Influences(solution, found.probes, static, branches)
+    return Influences(solution, blocks.probes, static, branches)
 
 
 def _static(blocks: InterfaceBlocks, s: StaticState) -> StaticInfluences:

@@ -98,6 +98,14 @@ class Kernel:
         tail = self.layout.unknowns[-self.layout.tail :]
         return np.array([self.layout.control_names.index(names[t.name]) for t in tail], dtype=np.int32)
 
+    @cached_property
+    def addresses(self) -> tuple[int, int, int, int, int]:
+        """In memory: rows, cols, tail_controls, scale, slips, for compiled code."""
+        rows, cols, tail, scale, slips = (
+            a.ctypes.data for a in (self.rows, self.cols, self.tail_controls, self.scale, self.slips)
+        )
+        return rows, cols, tail, scale, slips
+
     def constant_values(self, values: dict[str, float]) -> FloatArray:
         """(nc,) constants from the axle's internal values."""
         p = np.array([values[name] for name in self.layout.parameter_names])

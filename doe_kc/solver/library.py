@@ -25,7 +25,8 @@ CACHE_VARIABLE = "DOE_KC_CACHE"
 COMPILE_VARIABLE = "DOE_KC_COMPILE"
 """Set to 0 to stay interpreted."""
 DEFAULT_FLAGS = "-O1"
-COMPILE_TIMEOUT = 120.0
+COMPILE_TIMEOUT = 600.0
+"""s; of a machine that does much else."""
 PACKAGE = Path(__file__).parents[1]
 ORIGINS = ("solver/**/*.py", "solver/*.c", "axle/*.py", "curves.py")
 """Sources of the package that generated code follows from."""
@@ -146,8 +147,8 @@ def build(sources: dict[str, str], flags: Mapping[str, str] = MappingProxyType({
     name = _digest(compiler, flags, *sources.values())
     folder = cache_folder()
     try:
-        if found := cached(folder, name):
-            return found
+        if library_path := cached(folder, name):
+            return library_path
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=folder) as scratch:
             library = _compile(compiler, Path(scratch), sources, flags)

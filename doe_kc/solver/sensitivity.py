@@ -19,7 +19,7 @@ from doe_kc.axle.parameters import internal_gradient, switched_topology
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
-from doe_kc.solver.blocks import Block, blocks, equilibrium_change
+from doe_kc.solver.blocks import Block, Points, blocks, equilibrium_change
 from doe_kc.solver.datum import control_gradient, gradient_between
 from doe_kc.solver.kernel import kernel
 from doe_kc.solver.result import BranchSolution, Solution, StaticState
@@ -46,18 +46,18 @@ def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensi
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
-    found = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+    exact = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
         columns = _Differentiator(bent, lifted.static, tuple(paths[i] for i in soft)).run(lifted)
-        found.static[:, soft] = columns.static
+        exact.static[:, soft] = columns.static
         for ident, branches in columns.branches.items():
-            for own, other in zip(found.branches[ident], branches, strict=True):
+            for own, other in zip(exact.branches[ident], branches, strict=True):
                 own[:, :, soft] = other
-    return found
+    return exact
 
 
 def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:
@@ -137,18 +137,25 @@ class _Differentiator:
         if not k.nz:
             dx = equilibrium_change(k, matrix, known["R"])
             return dx, known["Y"] + block["Y_x"].times_each(points, dx), dz
-        by_state = {p: block[f"{p}_z"].dense(points) for p in self._parts}
-        change = equilibrium_change(k, matrix, np.concatenate([known["R"], by_state["R"]], axis=2))
-        total = {
-            p: np.concatenate([known[p], by_state[p]], axis=2) + block[f"{p}_x"].times_each(points, change)
-            for p in ("Y", "Z")
-        }
-        before = np.empty((len(x), *dz.shape))
-        for i, (own, carried) in enumerate(zip(*_halves(total["Z"], dz.shape[1]), strict=True)):
+        dx, before, after = self._carried(points, matrix, known, dz)
+        dy = known["Y"] + block["Y_x"].times_each(points, dx) + block["Y_z"].times_each(points, before)
+        return dx, dy, after
+
+    def _carried(
+        self, points: Points, matrix: FloatArray, known: Mapping[str, FloatArray], dz: FloatArray
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """(n, ., np) dx of each equilibrium and dz before it, and dz after the last.
+
+        matrix: (n, nx, nx); known: what moves with the parameters directly; dz: before the first. One point
+        after the other: the states, some hundred with rubber, never become right-hand sides.
+        """
+        blocks_each = (self._block[name].each(points) for name in ("R_z", "Z_x", "Z_z"))
+        dx, before = np.empty_like(known["R"]), np.empty((len(points), *dz.shape))
+        for i, (r_z, z_x, z_z) in enumerate(zip(*blocks_each, strict=True)):
             before[i] = dz
-            dz = own + carried @ dz
-        (dx, x_by_state), (dy, y_by_state) = (_halves(a, dz.shape[1]) for a in (change, total["Y"]))
-        return dx + x_by_state @ before, dy + y_by_state @ before, dz
+            dx[i] = equilibrium_change(self._kernel, matrix[i], known["R"][i] + r_z @ dz)
+            dz = known["Z"][i] + z_x @ dx[i] + z_z @ dz
+        return dx, before, dz
 
     def _point(
         self, x: FloatArray, u: FloatArray, z: FloatArray, du: FloatArray, dz: FloatArray
@@ -208,8 +215,3 @@ class _Differentiator:
             out.append(np.concatenate([dy_start[None], dy]))
             dy_start = out[-1][-1]
         return tuple(out)
-
-
-def _halves(columns: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """The first `count` columns, which the parameters move, and the others, which earlier states move."""
-    return columns[..., :count], columns[..., count:]

@@ -1,7 +1,4 @@
-"""Predicted variances made true: scaled per output until left-out residuals lie where they should.
-
-Reference: split conformal prediction, J. Lei et al., J. Am. Stat. Assoc. 113(523), 2018.
-"""
+"""Predicted variances made true: scaled per output until left-out residuals are as large as they say."""
 
 from __future__ import annotations
 
@@ -9,6 +6,7 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
+from scipy.special import stdtrit
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted, LeftOut
@@ -19,20 +17,26 @@ LEAST_VARIANCE_RATIO = 1e-12
 
 
 def calibration_factors(left_out: LeftOut) -> FloatArray:
-    """(m,) factors of the variance that put 95 % of the left-out rows inside their 95 % interval.
+    """(m,) factors of the variance: mean of the squared residuals over their variances.
 
-    The quantile is the ceil(0.95 (n + 1))-th smallest standardised residual, the largest for n < 39 rows.
+    The likelihood's estimate for Gaussian errors, times (t / 1.96)² of Student's t for as many degrees of
+    freedom as half the rows have: errors over designs have tails, and a variance from n of them is uncertain.
     """
     ratio = _standardised(left_out)
-    rank = min(len(ratio), int(np.ceil(NOMINAL * (len(ratio) + 1)))) - 1
-    return np.asarray(np.maximum(np.sort(ratio, axis=0)[rank] / NOMINAL_WIDTH**2, LEAST_VARIANCE_RATIO))
+    width = student_width(len(ratio))
+    return np.asarray(np.maximum(ratio.mean(axis=0) * (width / NOMINAL_WIDTH) ** 2, LEAST_VARIANCE_RATIO))
+
+
+def student_width(rows: int) -> float:
+    """Standard deviations to either side of a 95 % interval whose variance was estimated from `rows` rows."""
+    return float(stdtrit(max(rows / 2.0, 1.0), 0.5 + NOMINAL / 2.0))
 
 
 def _standardised(left_out: LeftOut) -> FloatArray:
     """(n, m) squared residuals over their variances; 1 for an output that is known exactly."""
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.square(left_out.residual) / left_out.variance
-    return np.where(np.isfinite(ratio), ratio, NOMINAL_WIDTH**2)
+    return np.where(np.isfinite(ratio), ratio, 1.0)
 
 
 def scaled(left_out: LeftOut, factors: FloatArray) -> LeftOut:
@@ -40,16 +44,23 @@ def scaled(left_out: LeftOut, factors: FloatArray) -> LeftOut:
     return LeftOut(left_out.residual, left_out.variance * factors)
 
 
-def coverage_after(left_out: LeftOut, *, seed: int) -> FloatArray:
-    """(m,) honest coverage after calibration: factors from one half of the rows, counted on the other."""
-    order = np.random.default_rng(seed).permutation(len(left_out.residual))
-    inside = np.zeros_like(left_out.residual)
-    for part in (order[::2], order[1::2]):
-        other = np.setdiff1d(order, part)
-        factors = calibration_factors(LeftOut(left_out.residual[part], left_out.variance[part]))
-        limit = NOMINAL_WIDTH * np.sqrt(left_out.variance[other] * factors)
-        inside[other] = np.abs(left_out.residual[other]) <= limit
-    return np.asarray(inside.mean(axis=0))
+def coverage_after(left_out: LeftOut) -> FloatArray:
+    """(m,) share of the rows inside their interval, the factor taken from all other rows."""
+    ratio = _standardised(left_out)
+    n = len(ratio)
+    others = (ratio.sum(axis=0) - ratio) / (n - 1)
+    return np.asarray((ratio <= student_width(n - 1) ** 2 * others).mean(axis=0))
+
+
+def coverage_interval(coverage: FloatArray, rows: int) -> tuple[FloatArray, FloatArray]:
+    """(m,) lower and upper 95 % limit of a coverage counted on `rows` rows.
+
+    Reference: E. B. Wilson, J. Am. Stat. Assoc. 22, 1927.
+    """
+    square = NOMINAL_WIDTH**2 / rows
+    middle = (coverage + square / 2.0) / (1.0 + square)
+    half = np.sqrt(square * (coverage * (1.0 - coverage) + square / 4.0)) / (1.0 + square)
+    return middle - half, middle + half
 
 
 @final

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.parameter_influence.result import column_peaks
+from doe_kc.parameter_influence.study import column_peaks
 from doe_kc.surrogates.interface import Fitted
 from doe_kc.variables import Space
 

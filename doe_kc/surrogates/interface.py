@@ -116,10 +116,11 @@ class SurrogateModel(ABC):
     """A kind of surrogate with its options; one instance fits any number of data sets.
 
     id: name in studies and tables. label: name in figures. complexity: order among the models, 0 = simplest.
-    costly: a fit of many outputs takes minutes, so it is used on request only. interpolates: passes through
-    the training values. exact_folds: `cross_validate` is leave-one-out in closed form with the model's
-    hyper-parameters held. optimistic_loo: it learns so many of those that its left-out residuals come out too
-    small, and only refitting tells how good it is.
+    costly: takes longer than it is worth beside the others, so it is used on request only. interpolates:
+    passes through the training values. exact_folds: `cross_validate` is leave-one-out in closed form with the
+    model's hyper-parameters held. optimistic_loo: it learns so many of those that its left-out residuals come
+    out too small, and only refitting tells how good it is. most: rows above which it is used on request only.
+    uses_slopes: it is fitted about an exact first-order expansion, and cannot do without one.
     """
 
     id: ClassVar[str]
@@ -129,11 +130,18 @@ class SurrogateModel(ABC):
     interpolates: ClassVar[bool]
     exact_folds: ClassVar[bool]
     optimistic_loo: ClassVar[bool] = False
+    most: ClassVar[int | None] = None
+    uses_slopes: ClassVar[bool] = False
 
     def fewest(self, variables: int) -> int:
         """Rows below which the model cannot be fitted."""
         del variables
         return 5
+
+    def of(self, outputs: np.ndarray) -> SurrogateModel:
+        """The model for the outputs marked (m,): itself, unless it knows something of each."""
+        del outputs
+        return self
 
     @final
     def fit(self, x: FloatArray, y: FloatArray, *, seed: int = 0) -> Fitted:

@@ -10,7 +10,12 @@ from doe_kc.ground.fields import Strict
 
 
 class SurrogateOptions(Strict):
-    """models: ids of the registered models to choose from, none = those fit for the number of designs."""
+    """models: ids of the registered models to choose from, none = those fit for the number of designs.
+
+    folds: of the cross-validation, none = ten, five from 150 designs on. slopes: whether the package's own
+    solver gives exact sensitivities at the start for `gp_slopes`, at the cost of some ten designs.
+    """
 
     models: list[str] = Field(default=[])
-    folds: Annotated[int, Field(ge=2)] = 10
+    folds: Annotated[int, Field(ge=2)] | None = None
+    slopes: bool = True

@@ -22,26 +22,35 @@ def fit_ridge(x: FloatArray, y: FloatArray, penalties: FloatArray = RIDGE_PENALT
     """y = a + b x of x (n, d), y (n, m) with penalty |b|² times the best of `penalties`; a is free."""
     centre, level = x.mean(axis=0), y.mean(axis=0)
     u, s, vt = np.linalg.svd(x - centre, full_matrices=False)
-    residuals = [_left_out(u, s, y - level, float(p)) for p in penalties]
+    leverages = [_leverage(u, s, float(p)) for p in penalties]
+    residuals = [_left_out(u, s, y - level, float(p), h) for p, h in zip(penalties, leverages, strict=True)]
     best = np.argmin([(r**2).sum(axis=0) for r in residuals], axis=0)
     left_out = np.stack([residuals[k][:, j] for j, k in enumerate(best)], axis=1)
+    leverage = np.stack([leverages[k] for k in best], axis=1)
     penalty = penalties[best]
     slope = (vt.T @ (s[:, None] / (s[:, None] ** 2 + penalty) * (u.T @ (y - level)))).T
-    return FittedLinear(centre, level, slope, penalty, vt, s, left_out)
+    return FittedLinear(centre, level, slope, penalty, vt, s, left_out, leverage)
 
 
-def _left_out(u: FloatArray, s: FloatArray, rest: FloatArray, penalty: float) -> FloatArray:
+def _leverage(u: FloatArray, s: FloatArray, penalty: float) -> FloatArray:
+    """(n,) diagonal of H = 11' / n + U s² / (s² + penalty) U', below 1."""
+    diagonal = 1.0 / len(u) + (u**2) @ (s**2 / (s**2 + penalty))
+    return np.asarray(np.minimum(diagonal, 1.0 - 1e-12))
+
+
+def _left_out(
+    u: FloatArray, s: FloatArray, rest: FloatArray, penalty: float, leverage: FloatArray
+) -> FloatArray:
     """(n, m) residuals y - Hy over 1 - diag H."""
     filtered = u * (s**2 / (s**2 + penalty))
-    leverage = 1.0 / len(u) + (filtered * u).sum(axis=1)
-    return np.asarray((rest - filtered @ (u.T @ rest)) / np.maximum(1.0 - leverage, 1e-12)[:, None])
+    return np.asarray((rest - filtered @ (u.T @ rest)) / (1.0 - leverage)[:, None])
 
 
 @final
 @dataclass(frozen=True)
 class FittedLinear(Fitted):
     """centre: (d,). level: (m,) there. slope: (m, d). penalty: (m,). directions (k, d), singular (k,):
-    of the centred rows. left_out: (n, m) residuals.
+    of the centred rows. left_out: (n, m) residuals. leverage: (n, m) of the rows.
     """
 
     centre: FloatArray
@@ -51,6 +60,7 @@ class FittedLinear(Fitted):
     directions: FloatArray
     singular: FloatArray
     left_out: FloatArray
+    leverage: FloatArray
 
     @property
     def variables(self) -> int:
@@ -64,12 +74,12 @@ class FittedLinear(Fitted):
 
     @property
     def noise(self) -> FloatArray:
-        """(m,) mean square of the left-out residuals."""
-        return np.asarray((self.left_out**2).mean(axis=0))
+        """(m,) variance of a single row: a left-out residual has this over 1 - leverage."""
+        return np.asarray((self.left_out**2 * (1.0 - self.leverage)).mean(axis=0))
 
     def cross_validate(self) -> LeftOut:
-        """Leave-one-out with the penalties held, closed form."""
-        return LeftOut(self.left_out.copy(), np.tile(self.noise, (len(self.left_out), 1)))
+        """Leave-one-out with the penalties held, closed form, with the variance that `variance` predicts."""
+        return LeftOut(self.left_out.copy(), self.noise / (1.0 - self.leverage))
 
     def _mean(self, x: FloatArray) -> FloatArray:
         return self.level + (x - self.centre) @ self.slope.T
@@ -79,7 +89,7 @@ class FittedLinear(Fitted):
 
     def _variance(self, x: FloatArray) -> FloatArray:
         along = (x - self.centre) @ self.directions.T
-        return self.noise * (1.0 + along**2 @ self._certainty())
+        return self.noise * (1.0 + 1.0 / len(self.left_out) + along**2 @ self._certainty())
 
     def _variance_gradient(self, x: FloatArray) -> FloatArray:
         along = (x - self.centre) @ self.directions.T

@@ -1,4 +1,4 @@
-"""What scikit-learn lends: the lasso's path and the likelihood of a Gaussian process; typed and silent."""
+"""What scikit-learn lends: the lasso's path; typed and silent."""
 
 from __future__ import annotations
 
@@ -8,12 +8,8 @@ from importlib import import_module
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
 
 from doe_kc.ground.typing import FloatArray
-
-LENGTHS = (0.05, 1e3)
-VARIANCES = (1e-6, 1e4)
 
 
 def _library(part: str) -> Any:
@@ -50,40 +46,3 @@ def lasso_path(features: FloatArray, y: FloatArray, *, least: float, steps: int)
             copy_X=False,
         )  # fmt: skip
     return PenaltyPath(np.asarray(penalties), np.asarray(coefficients))
-
-
-@dataclass(frozen=True)
-class ArdParameters:
-    """Variances of bend exp(-½ sum (dx / length)²) + slope x'x' + offset; lengths (d,)."""
-
-    bend: float
-    lengths: FloatArray
-    slope: float
-    offset: float
-
-
-def train_ard(z: FloatArray, y: FloatArray, *, nugget: float, iterations: int) -> ArdParameters:
-    """Maximum likelihood of centred points z (n, d) and standardised values y (n,)."""
-    process, kernels = _library("gaussian_process"), _library("gaussian_process.kernels")
-    d = z.shape[1]
-    bend = kernels.ConstantKernel(1.0, VARIANCES) * kernels.RBF(np.full(d, np.sqrt(d)), LENGTHS)
-    slope = kernels.ConstantKernel(1.0, VARIANCES) * kernels.DotProduct(1.0, (1e-3, 1e3))
-    model = process.GaussianProcessRegressor(bend + slope, alpha=nugget, optimizer=None).fit(z, y)
-
-    def objective(theta: FloatArray) -> tuple[float, FloatArray]:
-        value, gradient = model.log_marginal_likelihood(theta, eval_gradient=True, clone_kernel=False)
-        return -float(value), -np.asarray(gradient)
-
-    kernel = model.kernel_
-    found = minimize(
-        objective, kernel.theta, jac=True, bounds=kernel.bounds, method="L-BFGS-B",
-        options={"maxiter": iterations},
-    )  # fmt: skip
-    best = kernel.clone_with_theta(found.x)
-    straight = best.k2.k1.constant_value
-    return ArdParameters(
-        float(best.k1.k1.constant_value),
-        np.array(best.k1.k2.length_scale, dtype=float).reshape(d),
-        float(straight),
-        float(straight * best.k2.k2.sigma_0**2),
-    )

@@ -24,7 +24,9 @@ def fit_varying(model: SurrogateModel, x: FloatArray, y: FloatArray, *, seed: in
         return model.fit(x, y, seed=seed)
     if fixed.all():
         raise InputError(f"surrogate {model.id}: no output changes over the designs; vary other parameters.")
-    return Varying(model.fit(x, values[:, ~fixed], seed=seed), np.flatnonzero(~fixed), values.mean(axis=0))
+    return Varying(
+        model.of(~fixed).fit(x, values[:, ~fixed], seed=seed), np.flatnonzero(~fixed), values.mean(axis=0)
+    )
 
 
 @final

@@ -5,8 +5,7 @@ from __future__ import annotations
 from doe_kc.targets.build import build_targets
 from doe_kc.targets.improvement import Improvement, improvements, mean_improvement
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
-from doe_kc.targets.rating import LIMIT_WEIGHT, Rating, rate
-from doe_kc.targets.score import Score, score
+from doe_kc.targets.rating import LIMIT_WEIGHT, Rating, Score, rate, score
 from doe_kc.targets.target import Constraint, CurveTarget, MisfitTerm, Objective, Target, Targets
 
 __all__ = [

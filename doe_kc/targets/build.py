@@ -18,8 +18,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement import Measurement
 from doe_kc.targets.comparison.interval import constraint_interval
-from doe_kc.targets.names import check_names
-from doe_kc.targets.options import CharacteristicOptions, CurveOptions
+from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
 from doe_kc.targets.target import Constraint, CurveTarget, Objective, Target, Targets
 
 STATIC = "static"
@@ -234,8 +233,8 @@ def reached(axle: Axle, case: CaseCurves) -> NDArray[np.bool_]:
 
 def last(options: Sequence[CharacteristicOptions] | Sequence[CurveOptions], key: str) -> Any:
     """The last given value of a key, None when no entry gives it."""
-    found = [getattr(o, key) for o in options if getattr(o, key) is not None]
-    return found[-1] if found else None
+    values = [getattr(o, key) for o in options if getattr(o, key) is not None]
+    return values[-1] if values else None
 
 
 def first(value: Any, default: Any) -> Any:

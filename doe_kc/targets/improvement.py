@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from doe_kc.targets.score import Score
+from doe_kc.targets.rating import Score
 from doe_kc.targets.target import Target, Targets
 
 SIGNIFICANT = 3.0

@@ -1,4 +1,4 @@
-"""The performance rating of a design (thesis, equation 2.2).
+"""What a design reaches of its targets, and its performance rating (thesis, equation 2.2).
 
 sum_i (LinWt_i S_i Obj_i / Norm_i + QuadWt_i S_i Obj_i^2 / Norm_i^2)
 - sum_j (LinWt_j ConViol_j / Norm_j + QuadWt_j ConViol_j^2 / Norm_j^2)
@@ -12,9 +12,34 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from doe_kc.curves import CurveSet
 from doe_kc.ground.typing import FloatArray
-from doe_kc.targets.score import Score
-from doe_kc.targets.target import Constraint, Objective, Targets
+from doe_kc.targets.comparison.deviation import rms_deviation
+from doe_kc.targets.target import Constraint, Objective, Targets, sampled
+
+
+@dataclass(frozen=True)
+class Score:
+    """values: (k,) characteristics in the order of the targets. rms: (c,) in each response's unit.
+
+    misfit: mean square of the residuals against the records, 1 is noise; 0 where it does not count.
+    """
+
+    values: FloatArray
+    rms: FloatArray
+    misfit: float = 0.0
+
+
+def score(targets: Targets, characteristics: FloatArray, curves: CurveSet | None) -> Score:
+    """Score of one design; characteristics: all registered ones, in their order.
+
+    ValueError when a curve target meets a model without curves.
+    """
+    if targets.curves and curves is None:
+        raise ValueError("the model gives no curves, so curve targets cannot be judged")
+    rms = [rms_deviation(sampled(t, curves), t.curve) for t in targets.curves] if curves else []
+    return Score(np.asarray(characteristics)[targets.rows], np.array(rms))
+
 
 LIMIT_WEIGHT = 1e6
 """QuadWt of a limit: a hundred times that of a constraint, which is not to be met at the cost of what was

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
+import signal
+import subprocess
 import tempfile
 import time
 from collections.abc import Mapping, Sequence
@@ -13,14 +16,70 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameter_kinds import KINDS
+from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.axle.parameters import with_values
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.true_solver.answer import Unreadable, read_characteristics, read_curves
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
 from doe_kc.true_solver.own import describe_axle
-from doe_kc.true_solver.process import Ended, run_command
 from doe_kc.true_solver.protocol import Values, digest
+
+OUTPUT_TAIL = 4096
+LONGEST_LINE = 300
+
+
+@dataclass(frozen=True)
+class Ended:
+    """failure: "ended with exit code 3", empty when it went well. last_line: of its standard error."""
+
+    failure: str
+    last_line: str
+
+
+def run_command(words: Sequence[str], *, cwd: Path, place: Path, timeout: float) -> Ended:
+    """Runs without a shell, both streams to files in `place`; OSError when it cannot be started.
+
+    A command that takes longer than `timeout` seconds ends with everything it started.
+    """
+    with (place / "stdout.txt").open("wb") as out, (place / "stderr.txt").open("wb") as err:
+        process = subprocess.Popen(
+            words, cwd=cwd, stdin=subprocess.DEVNULL, stdout=out, stderr=err, start_new_session=True
+        )
+        try:
+            code = process.wait(timeout)
+            failure = _in_words(code)
+        except subprocess.TimeoutExpired:
+            failure = f"was ended: it took longer than {timeout:g} s"
+        finally:
+            _end(process)
+    return Ended(failure, last_line(place / "stderr.txt"))
+
+
+def _in_words(code: int) -> str:
+    if code == 0:
+        return ""
+    return f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Kill the whole process group of a command that still runs."""
+    if process.returncode is not None:
+        return
+    if os.name == "nt":
+        process.kill()
+    else:
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+
+
+def last_line(file: Path) -> str:
+    """Last line of a text file that is not blank, of at most 300 characters; empty when there is none."""
+    with file.open("rb") as stream:
+        stream.seek(max(0, file.stat().st_size - OUTPUT_TAIL))
+        text = stream.read().decode("utf-8", "replace")
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    return "".join(c if c.isprintable() else "?" for c in lines[-1][:LONGEST_LINE]) if lines else ""
+
 
 PARAMETERS = "parameters.json"
 
@@ -120,13 +179,13 @@ class CommandSolver:
         curves = read_curves(place / "curves.csv", model, self.load_cases, self.windows)
         if curves is None and given is None:
             raise Unreadable("wrote neither curves.csv nor characteristics.csv nor characteristics.json")
-        found = np.full_like(given, np.nan) if curves is None and given is not None else None
+        characteristics = np.full_like(given, np.nan) if curves is None and given is not None else None
         if curves is not None:
-            found = reduced(curves, self.windows)
-        assert found is not None
+            characteristics = reduced(curves, self.windows)
+        assert characteristics is not None
         if given is not None:
-            found = np.where(np.isnan(found), given, found)
-        return checked(Outcome(curves, found, "", 0.0))
+            characteristics = np.where(np.isnan(characteristics), given, characteristics)
+        return checked(Outcome(curves, characteristics, "", 0.0))
 
 
 def parameters_document(values: Values) -> str:
@@ -138,8 +197,8 @@ def parameters_document(values: Values) -> str:
 
 def unit_of(path: str) -> str:
     """Unit of a parameter; "-" for a factor, empty when it is none of the design parameters."""
-    name = path.split(".", 1)[1] if path.startswith(("left.", "right.")) else path
-    return KINDS[name].unit if name in KINDS else ""
+    kind = kind_of(path)
+    return kind.unit if kind is not None else ""
 
 
 def _replaced(word: str, marks: Mapping[str, str]) -> str:

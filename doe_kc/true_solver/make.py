@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from doe_kc.axle.model import Axle
-from doe_kc.true_solver.command import CommandSolver
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.true_solver.protocol import TrueSolver
@@ -21,6 +20,8 @@ def solver_for(
     """
     if not options.command:
         return AxleSolver(axle, dict(windows or {}))
+    from doe_kc.true_solver.command import CommandSolver  # its answers are read by pandas
+
     return CommandSolver(
         command=tuple(options.command),
         axle=axle,

@@ -70,10 +70,11 @@ def fault(curves: CurveSet) -> str:
     for name, value in (curves.static or {}).items():
         if not np.isfinite(value).all():
             return f"response not finite: static {name}"
-    for case in curves.cases.values():
-        everything = [*case.mean.values(), *case.half_width.values()]
-        if np.isfinite(sum(float(curve.sum()) for curve in everything)):  # so each number is
-            continue
+    cases = list(curves.cases.values())
+    everything = [c.ravel() for case in cases for c in (*case.mean.values(), *case.half_width.values())]
+    if not everything or np.isfinite(np.concatenate(everything)).all():
+        return ""
+    for case in cases:
         for response, curve in [*case.mean.items(), *case.half_width.items()]:
             if not np.isfinite(curve).all():
                 return f"response not finite: load case {case.load_case}, {_place(case, response, curve)}"

@@ -186,8 +186,8 @@ def _bounds(
 
 
 def _last(changes: Sequence[Change], key: str) -> Any:
-    found = [getattr(c, key) for c in changes if getattr(c, key) is not None]
-    return found[-1] if found else None
+    values = [getattr(c, key) for c in changes if getattr(c, key) is not None]
+    return values[-1] if values else None
 
 
 def _check(axle: Axle, space: Space, source: str) -> None:

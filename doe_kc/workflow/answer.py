@@ -1,28 +1,36 @@
-"""The answer of a study: one axle, whether it can be used, and what stands behind it."""
+"""The answer of a study: one axle, whether it can be used, and what stands behind it; and its files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from datetime import date
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from doe_kc.correlation.answer_record import AnswerRecord, GapRecord
+from doe_kc.axle_file.write import write_axle
+from doe_kc.characteristics import reduce_all
+from doe_kc.correlation.answer_record import AnswerRecord, EffectWords, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
-from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import CurveSet
-from doe_kc.discovery.model import NO_CHARACTERISTICS
-from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.discovery_words import effect_label, size_words
+from doe_kc.report.effect_words import effect_words
+from doe_kc.report.names import case_label, response_name
+from doe_kc.report.overview import Overview
+from doe_kc.report.overview_sheet import write_overview
+from doe_kc.report.page.answer import files_there, write_answer_page
+from doe_kc.report.page.links import link_pages
+from doe_kc.report.page.simulation import write_simulation_page
 from doe_kc.report.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
-from doe_kc.workflow.discover import recorded
 from doe_kc.workflow.discovery_document import effect_entry
+from doe_kc.workflow.gap import answer_gap
+from doe_kc.workflow.write_correlation import AXLE, axle_note
 
 
 @dataclass(frozen=True)
@@ -62,37 +70,6 @@ def answered(
     return Answer(correlation, assessment, discovery, adoption, gap, tuple(further))
 
 
-def answer_gap(
-    study: Study, measurement: Measurement, correlation: Correlation, discovery: Discovery | None
-) -> GapRecord | None:
-    """The gap of the records before and after. A discovery's calibrations of the rig and differences between
-    the wheels are taken as it found them."""
-    before, after = correlation.baseline.outcome.curves, correlation.best.outcome.curves
-    if before is None or after is None:
-        return None
-    if discovery is not None:
-        fitted, known = discovery.fitted, discovery.gap
-        if correlation.problem.exact:
-            final = fitted.model.residual_of(recorded(correlation.axle, measurement), fitted.z)
-        else:
-            final = fitted.model.likelihood.residual(after, NO_CHARACTERISTICS)
-        return GapRecord(
-            nominal=known.nominal, tuned=known.tuned, final=_rms(final), noise_floor=known.noise_floor
-        )
-    data = record_likelihood(study.axle, measurement)
-
-    def left(curves: CurveSet) -> float:
-        return _rms(data.residual(curves, NO_CHARACTERISTICS))
-
-    if not data.curves:
-        return None
-    return GapRecord(nominal=left(before), tuned=None, final=left(after), noise_floor=1.0)
-
-
-def _rms(residual: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(residual**2)))
-
-
 def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | None) -> Iterator[Objection]:
     """What the discovery leaves open."""
     if discovery is None:
@@ -110,7 +87,9 @@ def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | 
             )
     left = [f for f in discovery.findings if f.hypothesis.effect not in taken]
     if discovery.verdict == "unexplained":
-        places = sorted({f"{c.load_case} {c.response}" for c, _ in discovery.unexplained})
+        places = sorted(
+            {f"{case_label(c.load_case)} ({response_name(c.response)})" for c, _ in discovery.unexplained}
+        )
         where = f": {', '.join(places)}" if places else ""
         leads = ", ".join(effect_label(f.hypothesis.effect).lower() for f in left)
         hint = f"; the best lead, not adopted, is {leads}" if leads else ""
@@ -130,13 +109,30 @@ def answer_record(answer: Answer, seconds: float) -> AnswerRecord:
         added=[] if adoption is None else [_effect_line(answer, e) for e in adoption.effects],
         gap=answer.gap,
         seconds=seconds,
+        sentence=discovery.sentences[0] if discovery is not None else "",
+        words=[] if discovery is None else list(_effect_words(discovery, adoption)),
+    )
+
+
+def _effect_words(discovery: Discovery, adoption: Adoption | None) -> Iterator[EffectWords]:
+    """Of every finding, and of traces that were adopted."""
+    for finding in (*discovery.findings, *discovery.traces):
+        taken = _taken(finding, adoption)
+        if taken or finding in discovery.findings:
+            yield effect_words(discovery, finding).model_copy(update={"adopted": taken})
+
+
+def _taken(finding: Finding, adoption: Adoption | None) -> bool:
+    """Whether the axle handed over has it."""
+    adopted = adoption.effects if adoption is not None else ()
+    return any(
+        (e.id, e.location) == (finding.hypothesis.effect, finding.hypothesis.location) for e in adopted
     )
 
 
 def _effect_entries(discovery: Discovery, adoption: Adoption | None) -> Iterator[dict[str, Any]]:
-    adopted = {(e.id, e.location) for e in adoption.effects} if adoption is not None else set()
     for finding in (*discovery.findings, *discovery.traces):
-        taken = (finding.hypothesis.effect, finding.hypothesis.location) in adopted
+        taken = _taken(finding, adoption)
         named = discovery.verdict in ("named", "class") and finding in discovery.findings
         if named or taken:
             yield effect_entry(finding) | {"adopted": taken}
@@ -162,13 +158,13 @@ def summary_document(
 
 def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     """Name, place and sizes with their standard deviations."""
-    found = answer.discovery
-    if found is None:
+    discovery = answer.discovery
+    if discovery is None:
         return effect.label
     place = (effect.id, effect.location)
-    for finding in (*found.findings, *found.traces):
+    for finding in (*discovery.findings, *discovery.traces):
         if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
-            return f"{effect.label}: {size_words(found, finding)}"
+            return f"{effect.label}: {size_words(discovery, finding)}"
     return effect.label
 
 
@@ -181,5 +177,55 @@ def answer_lines(assessment: Assessment, record: AnswerRecord) -> list[str]:
         if gap.tuned is not None:
             steps.append(f"{gap.tuned:.2f} re-tuned without an effect")
         steps.append(f"{gap.final:.2f} now")
-        lines.append(f"Deviation from the records: {' -> '.join(steps)} ({gap.noise_floor:.2f} is noise)")
+        lines.append(f"Deviation from the records: {' → '.join(steps)} ({gap.noise_floor:.2f} is noise)")
     return lines
+
+
+SUMMARY = "summary.json"
+PAGE = "index.html"
+SHEET = "summary.pdf"
+
+
+def write_answer(
+    study: Study,
+    correlation: Correlation,
+    assessment: Assessment,
+    record: AnswerRecord,
+    measurement: Measurement,
+) -> list[Path]:
+    """axle.toml, summary.json, index.html and summary.pdf, the page as one A4 sheet, in the study's folder,
+    and the page of the axle handed in; returns the paths. All pages of the study are linked with each other.
+
+    RunError when the folder cannot be written.
+    """
+    axle = write_axle(
+        correlation.axle, study.axle_path, study.out / AXLE, note=axle_note(correlation, assessment)
+    )
+    given = _write_given(study, correlation)
+    document = summary_document(correlation, assessment, record, str(study.out / AXLE))
+    summary = write_json(study.out / SUMMARY, document)
+    overview = Overview(study.name, date.today().isoformat(), correlation, assessment, record)
+    others = {name: words for name, words in files_there(study.out).items() if name != SHEET}
+    sheet = write_overview(study.out / SHEET, overview, others)
+    page = write_answer_page(
+        study.out / PAGE,
+        overview,
+        notes={
+            "Axle": f"{AXLE}, from {study.axle_path.name}",
+            "Measurement": measurement.manifest.name,
+            "Run time": f"{record.seconds:.0f} s",
+        },
+        files=files_there(study.out),
+    )
+    link_pages(study.out)
+    return [axle, summary, page, sheet, *given]
+
+
+def _write_given(study: Study, correlation: Correlation) -> list[Path]:
+    """The page of the axle handed in, where its solver gives curves."""
+    curves = correlation.baseline.outcome.curves
+    if curves is None:
+        return []
+    values, today = reduce_all(curves, study.windows), date.today().isoformat()
+    path = study.out / "simulate" / "report.html"
+    return [write_simulation_page(path, curves, values, study=study.name, date=today)]

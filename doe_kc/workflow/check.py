@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict, dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 
 from doe_kc.axle.plausibility import axle_warnings
-from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_one
 from doe_kc.correlation.methods import check_method
 from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import DoeKcError, InputError, RunError
@@ -20,10 +17,14 @@ from doe_kc.measurement.branches import RunCurves, reduce_case
 from doe_kc.measurement.reduction import case_records, check_window_points, measured_cases, measured_curves
 from doe_kc.sampling._base import find_sampler
 from doe_kc.study import Study, read_study
-from doe_kc.targets.build import first, last
-from doe_kc.targets.comparison.interval import constraint_interval
+from doe_kc.workflow.check_targets import (
+    aimless_constraints,
+    empty_intervals,
+    missed_targets,
+    stated_intervals,
+)
+from doe_kc.workflow.measure import setup_differences
 from doe_kc.workflow.rig_checks import axle_curves, rig_findings
-from doe_kc.workflow.setup import setup_differences
 
 
 @dataclass(frozen=True)
@@ -70,24 +71,30 @@ class _Collector:
 
 
 def check_study(path: Path, *, measurement: Path | None = None, out: Path | None = None) -> StudyCheck:
-    """Every fault of a study that can be told without fitting anything.
+    """Every fault of a study file that can be told without fitting anything.
 
-    measurement, out: in place of the study's own. Faults that do not follow from one another are all told;
-    of a study file or an axle that cannot be read, the first.
+    measurement, out: in place of the study's own. Of a study file or an axle that cannot be read, the first
+    fault; of others as `check_read_study`.
     """
     try:
         study = read_study(path, measurement=measurement, out=out)
     except InputError as error:
         return StudyCheck(None, None, (_fault("study", str(error)),), ())
+    return check_read_study(study)
+
+
+def check_read_study(study: Study) -> StudyCheck:
+    """Every fault of a study that was read. Those that do not follow from one another are all told."""
     collect = _Collector()
     manifest, curves = _check_measurement(study, collect)
     _check_work(study, collect)
-    intervals = list(_stated_intervals(study, curves))
-    for sentence in (*_empty(study, intervals), *_aimless_constraints(study, manifest)):
+    intervals = list(stated_intervals(study, curves))
+    for sentence in (*empty_intervals(study, intervals), *aimless_constraints(study, manifest)):
         collect.errors.append(_fault("targets", sentence))
     collect("out", lambda: _check_out(study.out))
     collect("out", lambda: _check_store(study))
-    warnings = (*collect.warnings, *_warnings(study, manifest), *_missed_targets(study, intervals))
+    missed = (_fault("targets", sentence) for sentence in missed_targets(study, intervals))
+    warnings = (*collect.warnings, *_warnings(study, manifest), *missed)
     return StudyCheck(study, manifest, tuple(collect.errors), warnings)
 
 
@@ -180,82 +187,6 @@ def _check_work(study: Study, collect: _Collector) -> None:
         collect("surrogates", lambda model=model: make(model))  # type: ignore[misc]
 
 
-@dataclass(frozen=True)
-class _StatedInterval:
-    """A constraint of which the study types an end, the other end that of equations 5.1 and 5.2; nan where
-    there is no target to take it from. aimed: whether the rating counts the distance to the target."""
-
-    entry: Characteristic
-    target: float
-    low: float
-    high: float
-    aimed: bool
-
-    @property
-    def words(self) -> str:
-        return f"[{self.low:g}, {self.high:g}] {self.entry.unit}"
-
-
-def _stated_intervals(study: Study, curves: CurveSet | None) -> Iterator[_StatedInterval]:
-    """About typed targets, else about those measured."""
-    for ident, entry in CHARACTERISTICS.items():
-        own = [o for o in study.characteristics if fnmatchcase(ident, o.match)]
-        if last(own, "low") is None and last(own, "high") is None:
-            continue
-        target = last(own, "target")
-        if target is None and curves is not None:
-            target = reduce_one(entry, curves, window=study.windows.get(entry.load_case))
-        implied = constraint_interval(first(target, math.nan))
-        yield _StatedInterval(
-            entry,
-            first(target, math.nan),
-            first(last(own, "low"), implied[0]),
-            first(last(own, "high"), implied[1]),
-            first(last(own, "objective"), entry.objective) and first(last(own, "goal"), "target") == "target",
-        )
-
-
-def _empty(study: Study, intervals: Sequence[_StatedInterval]) -> Iterator[str]:
-    """Intervals whose low is not below high."""
-    for interval in intervals:
-        if interval.low >= interval.high:
-            yield (
-                f"{study.source}: characteristics {interval.entry.id}: the interval {interval.words} is "
-                "empty; low must be below high."
-            )
-
-
-def _missed_targets(study: Study, intervals: Sequence[_StatedInterval]) -> Iterator[Fault]:
-    """Targets that their own interval excludes: a correlation ends between the two."""
-    for interval in intervals:
-        low, high, target = interval.low, interval.high, interval.target
-        if interval.aimed and low < high and (target < low or target > high):
-            yield _fault(
-                "targets",
-                f"{study.source}: characteristics {interval.entry.id}: the interval {interval.words} does "
-                f"not hold the target {target:g}, so that no design meets both; correct low and high, or "
-                "give objective = false.",
-            )
-
-
-def _aimless_constraints(study: Study, manifest: Manifest | None) -> Iterator[str]:
-    """Constraints of which nothing that they match is measured or typed."""
-    cases = {"static", *(manifest.records if manifest is not None else ())}
-    for option in study.characteristics:
-        stated = option.constraint or option.low is not None or option.high is not None
-        matched = [e for i, e in CHARACTERISTICS.items() if fnmatchcase(i, option.match)]
-        typed = any(
-            o.target is not None and any(fnmatchcase(e.id, o.match) for e in matched)
-            for o in study.characteristics
-        )
-        if stated and not typed and not any(e.load_case in cases for e in matched):
-            yield (
-                f"{study.source}: characteristics: match = {option.match!r} states a constraint, but no "
-                "record is of its load case and no target is given; add target = VALUE or the record, or "
-                "drop the entry."
-            )
-
-
 def _check_out(out: Path) -> None:
     """That results can be written, by a file that vanishes; nothing is made that is not there."""
     place = out
@@ -294,3 +225,25 @@ def _warnings(study: Study, manifest: Manifest | None) -> Iterator[Fault]:
             f"{study.source}: names neither a measurement nor a typed target; correlate, discover and reduce "
             "need one.",
         )
+
+
+def check_lines(check: StudyCheck) -> list[str]:
+    """What the study names, for a terminal; nothing of one that cannot be read."""
+    study, manifest = check.study, check.manifest
+    if study is None:
+        return []
+    if manifest is not None:
+        count = sum(len(files) for files in manifest.records.values())
+        records = f"{manifest.name}: {count} records, {len(manifest.records)} load cases"
+    else:
+        records = "none named" if study.measurement is None else f"{study.measurement}: cannot be read"
+    return [
+        f"study        {study.name} ({study.source})",
+        f"axle         {study.axle.name} ({study.axle_path})",
+        f"load cases   {', '.join(study.axle.load_cases)}",
+        f"effects      {', '.join(study.axle.effects) or 'none'}",
+        f"parameters   {len(study.parameters)} selected",
+        f"variables    {study.space.dimension}, method {study.correlation.method}",
+        f"measurement  {records}",
+        f"results      {study.out}",
+    ]

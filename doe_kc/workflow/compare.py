@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.curves import CurveSet
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
 from doe_kc.report.comparison_tables import compared_characteristic_table, compared_curve_table
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
 from doe_kc.study import Study
@@ -27,11 +27,18 @@ def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Co
 def write_comparison(
     comparison: Comparison, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
-    """characteristics.csv, curves.csv (RMS) and one figure a load case."""
+    """characteristics.csv, curves.csv (RMS), report.html and one figure a load case."""
+    from doe_kc.report.page.comparison import write_comparison_page
+    from doe_kc.report.page.links import link_pages
+
     written = [
-        write_csv(folder / "characteristics.csv", table_frame(compared_characteristic_table(comparison))),
-        write_csv(folder / "curves.csv", table_frame(compared_curve_table(comparison))),
+        write_columns(
+            folder / "characteristics.csv", table_columns(compared_characteristic_table(comparison))
+        ),
+        write_columns(folder / "curves.csv", table_columns(compared_curve_table(comparison))),
+        write_comparison_page(folder / "report.html", comparison),
     ]
+    link_pages(folder.parent)
     if pictures == "none":
         return written
     from doe_kc.report.comparison_figures import write_comparison_figures

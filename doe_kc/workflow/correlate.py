@@ -3,26 +3,114 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
+import numpy as np
+
 from doe_kc.campaign.runner import Campaign
-from doe_kc.correlation.loop import Evaluate, run_method
+from doe_kc.correlation.advice import conflict_sentences, level_sentences, reach_sentences
+from doe_kc.correlation.linearization import Linearization
+from doe_kc.correlation.loop import Evaluate, Run, run_method
 from doe_kc.correlation.methods import Method, MethodSettings, method_class
-from doe_kc.correlation.problem import Candidate, Evaluated
+from doe_kc.correlation.posterior import ParameterPosterior, posterior
+from doe_kc.correlation.problem import Candidate, Evaluated, Problem
+from doe_kc.correlation.reach import Relaxation
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.parameter_influence.selection_result import Selection
+from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
+from doe_kc.true_solver.outcome import Outcome
+from doe_kc.variables import Space
 from doe_kc.workflow.adopt import Adoption
-from doe_kc.workflow.correlation_diagnostics import expansion_at, notes_on, posterior_at
-from doe_kc.workflow.correlation_problem import given_outcome, sought_problem, study_problem
-from doe_kc.workflow.correlation_space import correlation_space
-from doe_kc.workflow.known_designs import refit_proposal, sampled
+from doe_kc.workflow.correlation_problem import (
+    correlation_space,
+    given_outcome,
+    sought_problem,
+    study_problem,
+)
 from doe_kc.workflow.measure import Reduced
 from doe_kc.workflow.set_first import set_first
+
+
+def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
+    """Exact first-order expansion at a design; None where there is none."""
+    if not problem.exact:
+        return None
+    try:
+        return problem.linearize(design.point)
+    except NotConverged:
+        return None
+
+
+@one_thread()
+def posterior_at(
+    problem: Problem, expansion: Linearization | None, best: Evaluated
+) -> ParameterPosterior | None:
+    """What the data say of each variable; None without exact sensitivities."""
+    if expansion is None or best.outcome.failed or not problem.likelihood.size:
+        return None
+    jacobian = problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
+    residual = problem.likelihood.residual(best.outcome.curves, best.outcome.characteristics)
+    return posterior(jacobian, problem.space.prior_sd, residual=residual, point=best.point)
+
+
+@one_thread()
+def notes_on(
+    problem: Problem, run: Run, at_best: Linearization | None, relaxed: Relaxation | None
+) -> tuple[str, ...]:
+    """Targets out of reach, constraints in conflict and levels too coarse, in sentences."""
+    best = run.evaluated[run.best]
+    said = reach_sentences(problem, relaxed) if relaxed is not None else []
+    if at_best is None:
+        return tuple(said)
+    return (*said, *conflict_sentences(problem, best, at_best), *level_sentences(problem, best, at_best))
+
+
+NEAREST = 160
+"""Sampled designs that count as known, those nearest the start."""
+NEAREST_WITH_SLOPES = 16
+"""The same beside exact slopes. On the example 200 of them made a run ten times as long and no better."""
+
+
+def sampled(campaign: Campaign, problem: Problem) -> list[tuple[Candidate, Outcome]]:
+    """Stored designs of sampling campaigns that lie in the problem's space, those nearest the start.
+
+    Beside exact slopes they say little, and surrogates slow down with the cube of their number.
+    """
+    start, most = problem.space.start, NEAREST_WITH_SLOPES if problem.exact else NEAREST
+    designs = [
+        (candidate, record.key)
+        for record in campaign.store.records("sample:*")
+        if (candidate := inside(problem.space, record.parameters)) is not None
+    ]
+    designs.sort(key=lambda d: float(np.linalg.norm(d[0].point - start)))
+    windows = campaign.solver.windows
+    return [(c, campaign.store.outcome(key, windows)) for c, key in designs[:most]]
+
+
+def inside(space: Space, values: Mapping[str, float]) -> Candidate | None:
+    """The design as a point of the space; None when it is not one of it."""
+    if not set(space.paths) <= set(values):
+        return None
+    point = space.unit(values)
+    same = space.values(point)
+    if set(same) != set(values) or any(abs(same[p] - v) > 1e-9 * max(1.0, abs(v)) for p, v in values.items()):
+        return None
+    return Candidate(point, "sample") if bool(((point >= 0.0) & (point <= 1.0)).all()) else None
+
+
+def refit_proposal(problem: Problem, adoption: Adoption | None) -> list[Candidate]:
+    """The design that a discovery fitted, within the bounds; none without one."""
+    if adoption is None or not adoption.refit:
+        return []
+    space = problem.space
+    point = np.array([v.place(adoption.refit.get(v.path, v.start)) for v in space.variables])
+    return [Candidate(space.snapped(point), "discovery refit")]
+
 
 Watch = Callable[[Sequence[Evaluated]], None]
 

@@ -8,6 +8,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.places import places_of
 from doe_kc.campaign.executors import processes
 from doe_kc.campaign.processes import available_cores
 from doe_kc.correlation.likelihood import record_likelihood
@@ -75,13 +76,15 @@ def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis,
             raise InputError(
                 f"--exclude {ident}: is no effect; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"
             )
-    wanted = [e for e in EFFECTS.values() if e.id not in exclude and not e.present(axle)]
-    return tuple(h for e in wanted for h in e.hypotheses())
+    places = places_of(axle)
+    wanted = [e for e in EFFECTS.values() if e.id not in exclude and e.possible(places)]
+    return tuple(h for e in wanted if not e.present(axle) for h in e.hypotheses(places))
 
 
 def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
     """The study's variables but those that are an effect in other words: they would absorb it wholly."""
-    held = {path for e in EFFECTS.values() for path in e.replaces}
+    places = places_of(axle)
+    held = {path for e in EFFECTS.values() if e.possible(places) for path in e.replaces}
     named = set() if options.use == "selection" else set(options.use)
     changes = [c for c in options.change if not any(fnmatchcase(path, c.match) for path in held & {c.match})]
     use = [glob for glob in named if glob not in held] or ["*"]
@@ -115,5 +118,5 @@ def discover_folder(
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
     model = EffectModel(axle, space, record_likelihood(axle, measurement))
     with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as cache:
-        found = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
-    return dict(discovery_document(found, None))
+        discovery = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
+    return dict(discovery_document(discovery, None))

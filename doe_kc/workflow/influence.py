@@ -11,13 +11,13 @@ from typing import Any
 
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.correlation.options import ObjectiveKind
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.parameter_influence.study import influence_study
+from doe_kc.parameter_influence.study import Influence, influence_study
 from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
@@ -89,7 +89,7 @@ def influence_runs(study: Study) -> int:
 def write_influence(
     study: Study, study_influence: StudyInfluence, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
-    """influence.xlsx, heat map and top-ten bars, and the three matrices as CSV."""
+    """influence.xlsx, report.html, heat map and top-ten bars, and the three matrices as CSV."""
     matrix = study_influence.matrix
     book = write_influence_workbook(
         folder / "influence.xlsx",
@@ -107,22 +107,37 @@ def write_influence(
     )
     tables = {"percent": matrix.percent, "absolute": matrix.absolute, "exact": matrix.exact}
     csv = [
-        write_csv(folder / f"influence_{name}.csv", matrix.frame(values).reset_index(names="parameter"))
+        write_columns(folder / f"influence_{name}.csv", matrix.columns(values))
         for name, values in tables.items()
     ]
+    from doe_kc.report.page.influence import write_influence_page
+    from doe_kc.report.page.links import link_pages
+
+    page = write_influence_page(
+        folder / "report.html", matrix, study=study.name, date=date.today().isoformat()
+    )
+    link_pages(folder.parent)
     if study.pictures == "none":
-        return [book, *csv]
+        return [book, page, *csv]
     from doe_kc.report.influence_figures import write_influence_figures
 
     pictures = write_influence_figures(
         matrix, folder, study=study.name, workers=workers, pictures=study.pictures
     )
-    return [book, *pictures, *csv]
+    return [book, page, *pictures, *csv]
 
 
 def influence_document(influence: Influence) -> dict[str, Any]:
     """`{"percent": {characteristic: {parameter: number}}, "absolute": ..., "exact": ..., "seconds"}`."""
     tables = {"percent": influence.percent, "absolute": influence.absolute, "exact": influence.exact}
-    document: dict[str, Any] = {name: influence.frame(values).to_dict() for name, values in tables.items()}
+    document: dict[str, Any] = {
+        name: _by_characteristic(influence, values) for name, values in tables.items()
+    }
     steps = {p.path: p.step for p in influence.parameters}
     return document | {"steps": steps, "failures": influence.failures, "seconds": influence.seconds}
+
+
+def _by_characteristic(influence: Influence, values: FloatArray) -> dict[str, dict[str, float]]:
+    columns = influence.columns(values)
+    paths = columns.pop("parameter")
+    return {ident: dict(zip(paths, column.tolist(), strict=True)) for ident, column in columns.items()}

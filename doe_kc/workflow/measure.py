@@ -1,29 +1,75 @@
-"""Reduce: rig records to curves, noise, gradients, targets, ride height and pictures."""
+"""Reduce: rig records to curves, noise, gradients, targets, ride height and pictures; the rig's set-up."""
 
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from doe_kc.curves import CurveSet
-from doe_kc.ground.output import write_csv
+import numpy as np
+
+from doe_kc.axle import Axle, design_parameters
+from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
+from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
-from doe_kc.measurement import (
-    Measurement,
-    RideHeight,
-    infer_ride_height,
-    measurement_to_frames,
-    reduce_measurement,
+from doe_kc.ground.typing import FloatArray
+from doe_kc.measurement import Manifest, Measurement, RideHeight, infer_ride_height, reduce_measurement
+from doe_kc.report.measurement_tables import (
+    gradient_table,
+    measured_characteristic_table,
+    measured_curve_columns,
+    noise_table,
 )
-from doe_kc.solver.curve_set import curve_set
+from doe_kc.report.render.csv import table_columns
+from doe_kc.report.render.json import table_records
+from doe_kc.solver.curve_set import curve_set, mean_and_half_width, rising
 from doe_kc.solver.result import Solution
+from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
 from doe_kc.workflow.rig_checks import axle_curves, refuse_faulty, rig_findings
-from doe_kc.workflow.scatter import vertical_scatter
-from doe_kc.workflow.setup import setup_differences
+
+
+def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
+    """Where the rig's set-up is not the model's, in sentences."""
+    setup, offset = manifest.setup, getattr(axle.load_cases.get("lateral_offset"), "offset", None)
+    pairs = [
+        ("rack_mm_per_rev", setup.rack_mm_per_rev, axle.rack_mm_per_rev, "[steering] rack_mm_per_rev"),
+        ("lateral_offset_mm", setup.lateral_offset_mm, offset, "[load_cases.lateral_offset] offset"),
+        (
+            "reference_wheel_load_N",
+            setup.reference_wheel_load_N,
+            axle.values["tyre.static_load"],
+            "[tyre] static_load",
+        ),
+    ]
+    return [
+        f"{manifest.name}: the rig's {key} is {rig:g}, the model's {ours:g}; set {where} of the axle file."
+        for key, rig, ours, where in pairs
+        if rig is not None and ours and abs(rig - ours) > 1e-6 * abs(ours)
+    ]
+
+
+def vertical_scatter(axle: Axle, solution: Solution) -> dict[str, FloatArray]:
+    """Response -> (n, p) one-sigma changes of the left `vertical` curves on their rising input grid.
+
+    Angles and wheel centre as change from static; columns: scattering parameters. From the exact
+    sensitivities.
+    """
+    scattering = [p for p in design_parameters(axle) if p.production_sd > 0]
+    case = solution.cases["vertical"]
+    alone = replace(solution, cases={"vertical": case})
+    exact = sensitivities(axle, alone, [p.path for p in scattering])
+    mean, _ = mean_and_half_width(case, list(exact.branches["vertical"]))
+    sigma = np.array([p.production_sd for p in scattering])
+    zero = int(np.argmin(np.abs(rising(case))))
+    out = {}
+    for response in RIG_RESPONSES:
+        curve = mean[:, solution.column(f"{response}@L")] * sigma
+        out[response] = curve if response == TYRE_LOAD else curve - curve[zero]
+    return out
+
 
 log = logging.getLogger("doe_kc")
 
@@ -77,32 +123,36 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
 def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
-    """curves.csv, characteristics.csv, gradients.csv, noise.csv and one picture a load case."""
-    frames = measurement_to_frames(reduced.measurement)
+    """curves.csv, characteristics.csv, gradients.csv, noise.csv, report.html and one picture a load case."""
+    measurement = reduced.measurement
     tables = {
-        "curves.csv": frames.curves,
-        "characteristics.csv": frames.characteristics,
-        "gradients.csv": frames.gradients,
-        "noise.csv": frames.noise,
+        "curves.csv": measured_curve_columns(measurement),
+        "characteristics.csv": table_columns(measured_characteristic_table(measurement)),
+        "gradients.csv": table_columns(gradient_table(measurement)),
+        "noise.csv": table_columns(noise_table(measurement)),
     }
-    written = [write_csv(folder / name, frame) for name, frame in tables.items()]
+    from doe_kc.report.page.links import link_pages
+    from doe_kc.report.page.measurement import write_measurement_page
+
+    written = [write_columns(folder / name, table) for name, table in tables.items()]
+    written.append(write_measurement_page(folder / "report.html", measurement))
+    link_pages(folder.parent)
     if pictures == "none":
         return written
     from doe_kc.report.rig_figures import write_rig_figures
 
-    return written + write_rig_figures(reduced.measurement, folder, workers=workers, pictures=pictures)
+    return written + write_rig_figures(measurement, folder, workers=workers, pictures=pictures)
 
 
 def reduced_document(reduced: Reduced) -> dict[str, Any]:
     """What `reduce --json` writes: characteristics with standard errors, ride height, noise."""
-    frames = measurement_to_frames(reduced.measurement)
+    characteristics = measured_characteristic_table(reduced.measurement)
     height = reduced.ride_height
     return {
         "name": reduced.measurement.manifest.name,
-        "characteristics": {
-            row["name"]: {k: row[k] for k in ("value", "sd", "unit", "load_case")}
-            for row in frames.characteristics.to_dict("records")
-        },
+        "characteristics": dict(
+            zip((r.entry.id for r in characteristics.rows), table_records(characteristics), strict=True)
+        ),
         "ride_height_mm": None
         if height is None
         else {
@@ -113,5 +163,5 @@ def reduced_document(reduced: Reduced) -> dict[str, Any]:
                 c.response: {"estimate": c.estimate, "sd": c.sd, "used": c.used} for c in height.contributions
             },
         },
-        "noise": frames.noise.to_dict("records"),
+        "noise": table_records(noise_table(reduced.measurement)),
     }

@@ -88,13 +88,15 @@ def recall(study: Study, reduced: Reduced | None, folder: Path) -> Recalled:
         answers = recalled_answers(record, plain, store, str(path))
     given = None if axle is study.axle else given_outcome(study)
     problem, relaxed = sought_problem(study, plain, answers[0][1], given)
-    found = replace(recalled(record, problem, answers), relaxation=relaxed)
+    correlation = replace(recalled(record, problem, answers), relaxation=relaxed)
     if given is not None:
-        found = replace(found, given=problem.judged(-1, Candidate(space.start, "given axle"), given))
-    same = found.run.best == record.best
+        correlation = replace(
+            correlation, given=problem.judged(-1, Candidate(space.start, "given axle"), given)
+        )
+    same = correlation.run.best == record.best
     further = [Objection(o.sentence, o.fatal) for o in record.objections]
-    assessment = assess(found, misfit=record.misfit if same else None, further=further)
+    assessment = assess(correlation, misfit=record.misfit if same else None, further=further)
     answer = record.answer
     if answer is not None and not same:  # the gap is that of the axle that was handed over then
         answer = answer.model_copy(update={"gap": None})
-    return Recalled(found, assessment, answer)
+    return Recalled(correlation, assessment, answer)

@@ -5,19 +5,27 @@ from __future__ import annotations
 import re
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from doe_kc.axle.parameters import parameter_value
 from doe_kc.campaign.export import Format, designs_frame, export_store, write_table
 from doe_kc.campaign.runner import Campaign
 from doe_kc.campaign.store import read_store
 from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.ground.errors import InputError
+from doe_kc.ground.typing import FloatArray
+from doe_kc.report.render.json import table_records
+from doe_kc.report.render.terminal import table_lines
+from doe_kc.report.sample_tables import CharacteristicSpan, span_table
+from doe_kc.report.table import Table
 from doe_kc.sampling import Design, find_sampler, sample
 from doe_kc.study import Study
+from doe_kc.surrogates.designs import place
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
 
@@ -41,27 +49,65 @@ class SampleResult:
         return len(self.outcomes) - self.runs
 
     @property
+    def counts(self) -> str:
+        """Runs, what was there, failures, and the time, in words."""
+        return f"{self.runs} run, {self.kept} already there, {len(self.failed)} failed; {self.seconds:.1f} s"
+
+    @property
+    def spans(self) -> Table[CharacteristicSpan]:
+        """Of every characteristic over the designs that were solved."""
+        values = [o.characteristics for o in self.outcomes if not o.failed]
+        return span_table(np.array(values).reshape(len(values), len(CHARACTERISTICS)))
+
+    @property
     def failed(self) -> list[Outcome]:
         """Rows without a result."""
         return [o for o in self.outcomes if o.failed]
 
 
-def study_design(study: Study, *, method: str | None, n: int | None) -> Design:
+def study_design(study: Study, *, method: str | None, n: int | None, extend: bool = False) -> Design:
     """Designs of the study's space; method and n in place of the study's own.
 
-    InputError for an unknown method, a table that does not fit, or a full factorial too large.
+    extend: stored designs of the space count among the n, and only what is missing is drawn, to complete
+    them. InputError for an unknown method, a table that does not fit, a full factorial too large, or nothing
+    to add.
     """
     options = study.sampling
     chosen = method or options.method
     find_sampler(chosen, "--method" if method else f"{study.source}: sampling.method")
-    return sample(
+    wanted = n or options.n
+    stored = _stored(study) if extend else []
+    if stored and len(stored) >= wanted:
+        raise InputError(
+            f"{study.store}: holds {len(stored)} designs of the study's variables already, --n {wanted} adds "
+            f"none; give --n above {len(stored)}."
+        )
+    new = sample(
         study.space,
-        n or options.n,
+        wanted - len(stored),
         seed=study.seed,
         method=chosen,
         levels=options.levels,
         table=study.folder / options.table if options.table is not None else None,
+        existing=np.array([point for point, _ in stored]) if stored else None,
     )
+    return _joined(study, stored, new) if stored else new
+
+
+def _stored(study: Study) -> list[tuple[FloatArray, Mapping[str, float]]]:
+    """Point and parameters of every stored design of the space, failed ones too."""
+    if not study.store.is_file():
+        return []
+    with read_store(study.store) as store:
+        records = [(place(r.parameters, study.space, study.axle), r.parameters) for r in store.records()]
+    return [(point, parameters) for point, parameters in records if point is not None]
+
+
+def _joined(study: Study, stored: Sequence[tuple[FloatArray, Mapping[str, float]]], new: Design) -> Design:
+    """Stored designs with the digits they are stored with, so that none is run again, then the new ones."""
+    rows = [[kept.get(p, parameter_value(study.axle, p)) for p in new.paths] for _, kept in stored]
+    labels = [f"stored {i + 1}" for i in range(len(rows))]
+    return replace(new, values=np.vstack([rows, new.values]), labels=(*labels, *new.labels))
 
 
 def run_sample(
@@ -79,8 +125,8 @@ def run_sample(
     with Campaign(
         solver, study.store, workers=workers, scheduler=scheduler, retry_failed=retry_failed
     ) as campaign:
-        found = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
-    return SampleResult(design, tuple(found), campaign.runs, time.perf_counter() - started)
+        outcomes = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
+    return SampleResult(design, tuple(outcomes), campaign.runs, time.perf_counter() - started)
 
 
 def write_sample(study: Study, sampled: SampleResult, folder: Path, form: Format | None = None) -> list[Path]:
@@ -111,8 +157,7 @@ def sample_document(study: Study, sampled: SampleResult) -> dict[str, Any]:
 
     `{"method", "n", "seed", "runs", "kept", "failed", "reasons", "characteristics", "store", "seconds"}`.
     """
-    values = np.array([o.characteristics for o in sampled.outcomes if not o.failed])
-    known = [(i, c) for i, c in enumerate(CHARACTERISTICS.values()) if values.size and _known(values[:, i])]
+    spans = sampled.spans
     return {
         "method": sampled.design.method,
         "n": len(sampled.outcomes),
@@ -121,33 +166,16 @@ def sample_document(study: Study, sampled: SampleResult) -> dict[str, Any]:
         "kept": sampled.kept,
         "failed": len(sampled.failed),
         "reasons": [{"count": count, "reason": reason} for count, reason in reasons(sampled.failed)],
-        "characteristics": {
-            c.id: {
-                "low": np.nanmin(values[:, i]),
-                "mean": np.nanmean(values[:, i]),
-                "high": np.nanmax(values[:, i]),
-                "unit": c.unit,
-            }
-            for i, c in known
-        },
+        "characteristics": dict(zip((s.entry.id for s in spans.rows), table_records(spans), strict=True)),
         "store": str(study.store),
         "seconds": sampled.seconds,
     }
 
 
-def _known(column: Any) -> bool:
-    return bool(np.isfinite(column).any())
-
-
-def sample_lines(document: dict[str, Any]) -> list[str]:
-    """For a terminal: the span of every characteristic, the counts, the reasons of failures."""
-    lines = [f"{'characteristic':32}{'lowest':>12}{'mean':>12}{'highest':>12}"]
-    for name, span in document["characteristics"].items():
-        numbers = "".join(f"{span[key]:12.5g}" for key in ("low", "mean", "high"))
-        lines.append(f"{name:32}{numbers}  {span['unit']}")
-    lines += [f"{entry['count']} x {entry['reason']}" for entry in document["reasons"]]
-    lines.append(
-        f"{document['n']} designs ({document['method']}): {document['runs']} run, {document['kept']} already "
-        f"there, {document['failed']} failed; {document['seconds']:.1f} s"
-    )
-    return lines
+def sample_lines(sampled: SampleResult) -> list[str]:
+    """For a terminal: the span of every characteristic, the reasons of failures, the counts."""
+    return [
+        *table_lines(sampled.spans),
+        *(f"{count} x {reason}" for count, reason in reasons(sampled.failed)),
+        f"{len(sampled.outcomes)} designs ({sampled.design.method}): {sampled.counts}",
+    ]

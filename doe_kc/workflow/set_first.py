@@ -65,13 +65,13 @@ def _ride_height(study: Study, reduced: Reduced) -> RideHeight:
 
 def _angle(study: Study, reduced: Reduced, path: str) -> float:
     static = reduced.measurement.curves.static or {}
-    found = static.get(path.removeprefix("static."))
-    if found is None or not np.isfinite(found).any():
+    sides = static.get(path.removeprefix("static."))
+    if sides is None or not np.isfinite(sides).any():
         raise InputError(
             f"{study.source}: correlation.set_first: {path} needs [alignment] in the records' test.toml; add "
             "it or drop the entry."
         )
-    return float(np.nanmean(found))
+    return float(np.nanmean(sides))
 
 
 def _aligned(

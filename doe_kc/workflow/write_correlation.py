@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from datetime import date
 from pathlib import Path
 from typing import Any
@@ -11,16 +11,18 @@ from doe_kc.axle_file.write import write_axle
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.correlation_evaluations import evaluation_table
 from doe_kc.report.correlation_parameters import parameter_table, remark_sentences
 from doe_kc.report.correlation_summary import summary
-from doe_kc.report.correlation_terms import curve_table, term_frame
+from doe_kc.report.correlation_terms import curve_table, term_columns
 from doe_kc.report.correlation_workbook import write_correlation_workbook
+from doe_kc.report.hysteresis import hysteresis_table, loop_widths
 from doe_kc.report.page import write_correlation_page
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.page.links import link_pages
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
 from doe_kc.report.table import Table
@@ -33,6 +35,7 @@ CORRELATION_TABLES: Mapping[str, Callable[[Correlation], Table[Any]]] = {
     "evaluations.csv": evaluation_table,
 }
 AXLE = "axle.toml"
+AXLE_PICTURE = "correlation_axle"
 
 
 def write_correlation(
@@ -44,7 +47,7 @@ def write_correlation(
     assessment: Assessment | None = None,
     workers: int | None = None,
 ) -> list[Path]:
-    """axle.toml, five tables, correlation.xlsx, report.html and the figures; returns the paths.
+    """axle.toml, the tables, correlation.xlsx, report.html and the figures; returns the paths.
 
     measurement: for the measured curves; None with typed targets. assessment: by default the correlation's
     own. workers: processes that draw. RunError when the folder cannot be written.
@@ -62,13 +65,31 @@ def write_correlation(
         "notes": notes,
         "assessment": verdict,
     }
+    page = write_correlation_page(folder / "report.html", correlation, measurement, **words)
+    link_pages(folder.parent)
+    loops = [] if measurement is None else loop_widths(correlation, measurement)
+    figures = _write_figures(study, correlation, measurement, folder, workers)
     return [
         axle,
-        *(write_csv(folder / name, table_frame(of(correlation))) for name, of in CORRELATION_TABLES.items()),
-        write_csv(folder / "rating_terms.csv", term_frame(correlation)),
-        write_correlation_workbook(folder / "correlation.xlsx", correlation, **words),
-        write_correlation_page(folder / "report.html", correlation, measurement, **words),
-        *_write_figures(study, correlation, measurement, folder, workers),
+        *(
+            write_columns(folder / name, table_columns(of(correlation)))
+            for name, of in CORRELATION_TABLES.items()
+        ),
+        write_columns(folder / "rating_terms.csv", term_columns(correlation)),
+        *(
+            [write_columns(folder / "hysteresis.csv", table_columns(hysteresis_table(loops)))]
+            if loops
+            else ()
+        ),
+        write_correlation_workbook(
+            folder / "correlation.xlsx",
+            correlation,
+            **words,
+            loops=loops,
+            axle_picture=_axle_picture(figures),
+        ),
+        page,
+        *figures,
         *(_write_front(correlation, folder, study) if correlation.method == "pareto" else ()),
     ]
 
@@ -85,6 +106,12 @@ def _write_figures(
     )
 
 
+def _axle_picture(figures: Sequence[Path]) -> bytes | None:
+    """The drawn axle, for the workbook; None where it is not drawn as PNG."""
+    drawn = [path for path in figures if path.name == f"{AXLE_PICTURE}.png"]
+    return drawn[0].read_bytes() if drawn else None
+
+
 def axle_note(correlation: Correlation, assessment: Assessment) -> str:
     """First line of the axle file: status, effects, rating."""
     effects = ", ".join(correlation.axle.effects) or "none"
@@ -95,7 +122,7 @@ def axle_note(correlation: Correlation, assessment: Assessment) -> str:
 def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[Path]:
     """pareto_front.csv and its picture: the confirmed trade-offs between the load cases."""
     front = front_of(correlation.problem.search, correlation.run.evaluated)
-    table = write_csv(folder / "pareto_front.csv", front.to_frame().reset_index())
+    table = write_columns(folder / "pareto_front.csv", front.columns())
     if study.pictures == "none":
         return [table]
     from doe_kc.report.pareto_figure import write_pareto_figure

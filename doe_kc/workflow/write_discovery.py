@@ -9,17 +9,19 @@ from typing import Any
 
 from doe_kc.axle_file.write import write_axle
 from doe_kc.discovery.result import Discovery
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.report.discovery_effects import effect_table
 from doe_kc.report.discovery_figures import write_discovery_figures
+from doe_kc.report.discovery_isolability import isolability_table
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_table
 from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.report.discovery_words import HEADLINES, hypothesis_label
+from doe_kc.report.discovery_words import HEADLINES, hypothesis_words
 from doe_kc.report.discovery_workbook import write_discovery_workbook
 from doe_kc.report.page import write_discovery_page
-from doe_kc.report.render.csv import table_frame
+from doe_kc.report.page.links import link_pages
+from doe_kc.report.render.csv import table_columns
 from doe_kc.report.table import Table
 from doe_kc.study import Study
 from doe_kc.workflow.write_correlation import AXLE
@@ -28,6 +30,7 @@ DISCOVERY_TABLES: Mapping[str, Callable[[Discovery], Table[Any]]] = {
     "disagreement.csv": disagreement_table,
     "effects.csv": effect_table,
     "library.csv": library_table,
+    "groups.csv": isolability_table,
     "gap.csv": gap_table,
     "held_out.csv": held_out_table,
     "parameters.csv": tuned_table,
@@ -43,7 +46,7 @@ def write_discovery(
     *,
     workers: int | None = None,
 ) -> list[Path]:
-    """axle.toml (refitted, with the effects), six tables, discovery.xlsx, report.html and the figures.
+    """axle.toml (refitted, with the effects), seven tables, discovery.xlsx, report.html and the figures.
 
     Where there are effects, axle_effects_only.toml is the study's axle with them, and with friction the
     loops driven before the record; nothing else changed.
@@ -60,11 +63,16 @@ def write_discovery(
     }
     words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
     known = {"Measurement": measurement.manifest.name, **notes}
+    page = write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words)
+    link_pages(folder.parent)
     return [
         *written,
-        *(write_csv(folder / name, table_frame(of(discovery))) for name, of in DISCOVERY_TABLES.items()),
+        *(
+            write_columns(folder / name, table_columns(of(discovery)))
+            for name, of in DISCOVERY_TABLES.items()
+        ),
         write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
-        write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words),
+        page,
         *write_discovery_figures(
             discovery, folder, study=study.name, workers=workers, pictures=study.pictures
         ),
@@ -73,6 +81,6 @@ def write_discovery(
 
 def axle_note(discovery: Discovery) -> str:
     """First line of the axle file: the verdict, and what the file holds beyond the nominal axle."""
-    members = ", ".join(hypothesis_label(h).lower() for h in discovery.fitted.model.members)
+    members = ", ".join(hypothesis_words(h) for h in discovery.fitted.model.members)
     lead = "leads, not confirmed: " if discovery.verdict == "unexplained" else ""
     return f"{HEADLINES[discovery.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")

@@ -25,7 +25,7 @@ from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.answer import Answer
-from doe_kc.workflow.chain import Steps, follow_chain
+from doe_kc.workflow.chain import Correlate, Discover, follow_chain
 from doe_kc.workflow.discover import discover_study, effect_library
 from doe_kc.workflow.measure import Reduced, study_measurement
 from tests.measurement.synthetic import RESOLUTION, csv_text, triangle
@@ -94,10 +94,10 @@ def discovery_once(
 _ANSWERS: dict[Path, Answer] = {}
 
 
-def chain_once(study: Study, reduced: Reduced, steps: Steps) -> Answer:
+def chain_once(study: Study, reduced: Reduced, discover: Discover, correlate: Correlate) -> Answer:
     """In place of `follow_chain` of the small study, which the examples ask for three times."""
     if study.folder.resolve() not in _ANSWERS:
-        _ANSWERS[study.folder.resolve()] = follow_chain(study, reduced, steps)
+        _ANSWERS[study.folder.resolve()] = follow_chain(study, reduced, discover, correlate)
     return _ANSWERS[study.folder.resolve()]
 
 

@@ -19,6 +19,13 @@ def test_what_replaces_the_studys_own(folder: Path, tmp_path: Path) -> None:
         kc.read_study(tmp_path)
 
 
+def test_the_example_to_edit(tmp_path: Path) -> None:
+    study = kc.init(tmp_path / "new")
+    assert study.source == tmp_path / "new" / "study.toml" and study.measurement is not None
+    with pytest.raises(kc.InputError, match="not an empty folder"):
+        kc.init(tmp_path / "new")
+
+
 def test_where_evaluations_are_kept(folder: Path, tmp_path: Path) -> None:
     study = kc.read_study(folder)
     with stored(study, None) as kept:

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
 from doe_kc.axle.parameters import internal_gradient, settable_paths
-from doe_kc.effects import EFFECTS, apply_effect
+from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 from tests.reference import nominal
 
 PATHS = settable_paths(nominal())

@@ -15,13 +15,14 @@ from doe_kc.axle.model import strut_clamp
 from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import AXLE_HEADER, write_axle
 from doe_kc.characteristics import reduce_all
-from doe_kc.effects import EFFECTS, apply_effect
+from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.files import read_toml
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.variables import VariableOptions, build_space
 from tests.reference import EXAMPLE
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 AXLE = EXAMPLE / "axle.toml"
 PLAIN = AXLE.read_text(encoding="utf-8")

@@ -11,14 +11,14 @@ import pytest
 
 from doe_kc.axle import Axle, with_values
 from doe_kc.axle_file import read_axle
-from doe_kc.axle_file.effect_tables import unit_beside
-from doe_kc.axle_file.write import write_axle
-from doe_kc.effects import EFFECTS, apply_effect
+from doe_kc.axle_file.write import unit_beside, write_axle
+from doe_kc.effects import apply_effect
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.variables import VariableOptions, build_space
 from tests.reference import EXAMPLE
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 AXLE = EXAMPLE / "axle.toml"
 PLAIN = AXLE.read_text(encoding="utf-8")

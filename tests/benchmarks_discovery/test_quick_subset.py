@@ -16,7 +16,7 @@ from benchmarks.discovery.car import CleanRecords
 from benchmarks.discovery.generator import HiddenCar, hidden_car
 from benchmarks.discovery.scoring import Score, score
 from benchmarks.discovery.truth import read_truth
-from doe_kc.effects import EFFECTS
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 LOAD_CASES = ("vertical", "lateral", "drive")
 LIBRARY = (

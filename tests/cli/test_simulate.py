@@ -14,7 +14,7 @@ import pytest
 
 from doe_kc.axle import parameter_value, with_values
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.cli.changes import apply_effects, apply_settings
+from doe_kc.cli.commands.simulate import apply_effects, apply_settings
 from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import CASE_ORDER
 from tests.cli.runner import AXLE, succeeds

@@ -198,11 +198,20 @@ def test_run_does_the_whole_chain(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     check_influence(document["influence"], outcome.out)
     assert len(document["simulate"]["characteristics"]) == 30
     out = study / "out"
-    assert {p.name for p in out.iterdir() if p.is_file()} == {"axle.toml", "index.html", "summary.json"}
+    assert {p.name for p in out.iterdir() if p.is_file()} == {
+        "axle.toml",
+        "index.html",
+        "summary.json",
+        "summary.pdf",
+    }
     files = {str(p.relative_to(out)) for p in out.rglob("*") if p.is_file()}
     assert {
         "simulate/curves.csv",
         "simulate/characteristics.csv",
+        "simulate/report.html",
+        "reduce/report.html",
+        "compare/report.html",
+        "influence/report.html",
         "reduce/curves.csv",
         "compare/characteristics.csv",
         "influence/influence.xlsx",
@@ -229,7 +238,14 @@ def test_run_does_the_whole_chain(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def the_report_rebuilds_the_answer(study: Path, run: Outcome) -> None:
     """Byte for byte, from what is stored."""
     out = study / "out"
-    names = ("axle.toml", "summary.json", "index.html", "correlate/axle.toml", "compare/characteristics.csv")
+    names = (
+        "axle.toml",
+        "summary.json",
+        "index.html",
+        "summary.pdf",
+        "correlate/axle.toml",
+        "compare/characteristics.csv",
+    )
     written = {name: (out / name).read_bytes() for name in names}
     store = {p.name: p.read_bytes() for p in (out / "store").glob("*.sqlite")}
     for name in names:

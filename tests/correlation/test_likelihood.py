@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.correlation.likelihood import build_likelihood, corner_error, rewhitened
-from doe_kc.measurement.smoothing import local_weights
+from doe_kc.correlation.likelihood import _interpolated_rows, build_likelihood, corner_error, rewhitened
+from doe_kc.measurement.branches import local_weights
 from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
 
@@ -118,3 +118,12 @@ def test_rows_keep_their_curves_between_errors() -> None:
     np.testing.assert_allclose(found[:curves], rows[:curves] / 2.0)
     np.testing.assert_array_equal(found[curves:], rows[curves:])
     assert rewhitened(rows, before, before) is rows
+
+
+def test_curves_are_interpolated_together_as_one_by_one() -> None:
+    rng = np.random.default_rng(4)
+    for points in (2, 3, 17):
+        grid, rows = np.sort(rng.standard_normal(points)), rng.standard_normal((5, points))
+        at = np.concatenate([2.0 * rng.standard_normal(20), grid])
+        one_by_one = np.array([np.interp(at, grid, row) for row in rows])
+        np.testing.assert_array_equal(_interpolated_rows(at, grid, rows), one_by_one)

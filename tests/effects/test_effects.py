@@ -10,12 +10,14 @@ from typing import Any
 import pytest
 
 from doe_kc.axle import parameter_value, with_values
+from doe_kc.axle.model import BUSHINGS
 from doe_kc.axle.topology import Topology
 from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
-from doe_kc.effects import EFFECTS, Option, apply_effect
+from doe_kc.effects import Option, apply_effect
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE, nominal
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 TEXT = (EXAMPLE / "axle.toml").read_text()
 
@@ -37,6 +39,8 @@ DEFAULTS: dict[str, dict[str, float]] = {
     "rig_channel_offset": {},
     "rig_input_gain": {},
     "roll_technique": {},
+    "rubber_hysteresis": {"llr.rubber.share": 0.2, "right.upb.rubber.yield": 0.2, "sff.rubber.spread": 0.8}
+    | {f"{b}.rubber.share": 0.2 for b in ("llf", "sff", "sfr", "upb")},
     "steer_arm_compliance": {"steer_arm.radius": 14.0},
     "steering_friction": {"steering_friction.force": 250.0, "steering_friction.presliding": 0.05},
     "steering_ratio": {"steering.rack_mm_per_rev": 1.03 * 52.0},
@@ -52,6 +56,7 @@ TOPOLOGIES: dict[str, dict[str, Any]] = {
     "hub_compliance": {"hub": True},
     "power_assist": {"power_assist": True},
     "rack_mount_compliance": {"rack_mount": True},
+    "rubber_hysteresis": {"rubber": tuple(BUSHINGS)},
     "steer_arm_compliance": {"steer_arm": True},
     "steering_friction": {"steering_friction": "dahl"},
     "strut_bending": {"strut_bending": True},
@@ -74,6 +79,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "rig_channel_offset": {"camber_deg": -0.2},
     "rig_input_gain": {"brake": 1.1},
     "roll_technique": {"technique": "wheel_to_ground"},
+    "rubber_hysteresis": {"bushings": ["LLR", "UPB"], "share": {"LLR": 0.3, "UPB": 0.1}, "spread": 0.5},
     "steer_arm_compliance": {"radius_mm": 11.0},
     "steering_friction": {"force_N": 99.0, "law": "iwan"},
     "steering_ratio": {"factor": 0.97},
@@ -180,6 +186,16 @@ def test_the_near_key_is_suggested() -> None:
     [
         ("steering_friction", {"law": "coulomb"}),
         ("strut_friction", {"law": ["dahl"]}),
+        ("steering_friction", {"law": "lognormal", "spread": 0.0}),
+        ("strut_friction", {"law": "backbone", "shares": [1.0, 1.0]}),
+        ("strut_friction", {"law": "backbone", "shares": [1.0, 1.0, 0.0, 1.0, 1.0, 1.0, 1.0]}),
+        ("strut_friction", {"law": "backbone", "shares": "1111111"}),
+        ("rubber_hysteresis", {"bushings": ["LLX"]}),
+        ("rubber_hysteresis", {"bushings": []}),
+        ("rubber_hysteresis", {"bushings": 3}),
+        ("rubber_hysteresis", {"share": {"LLR": 0.2}}),
+        ("rubber_hysteresis", {"bushings": ["LLR"], "yield_mm": {"LLR": 0.2, "LLF": 0.2}}),
+        ("rubber_hysteresis", {"bushings": ["LLR"], "yield_mm": {"LLR": 0.0}}),
         ("subframe_flexibility", {"mode": "soft"}),
         ("tie_rod_free_play", {"joints": ["ROB"]}),
         ("tie_rod_free_play", {"joints": []}),
@@ -276,6 +292,9 @@ def test_the_ride_height_offset_is_on_top_of_the_file_s() -> None:
         ("bushing_preload", {"LLR": [1.0, 2.0, 3.0]}, {"LLR": [4.0, 5.0, 6.0], "added": True}),
         ("bushing_progression", {"LLR": [0.1, 0.0, 0.0], "added": True}, {"UPB": [0.1, 0.0, 0.0]}),
         ("left_right_asymmetry", {"LLR_R": 1.2}, {"scale": {"LLR_R": 1.1, "LLF_L": 0.9}}),
+        ("rubber_hysteresis", {"bushings": ["LLR"]}, {"bushings": ["UPB"], "share": 0.1}),
+        ("rubber_hysteresis", {}, {"bushings": ["LLR"], "yield_mm": 0.3}),
+        ("steering_friction", {"law": "lognormal", "spread": 0.5}, {"law": "backbone"}),
         ("steering_ratio", {"factor": 1.02}, {"factor": 1.05}),
         ("ride_height_offset", {"offset_mm": 2.0}, {"offset_mm": -5.0}),
         ("hub_compliance", {"camber_Nm_deg": 5000.0}, {"toe_Nm_deg": 5000.0}),
@@ -295,6 +314,30 @@ def test_faults_of_several_channels_add_up() -> None:
         applied("rig_channel_gain", {"toe": 1.1}), "rig_channel_gain", {"wc_x": 0.9}, source="t"
     )
     assert axle.effects["rig_channel_gain"] == {"toe": 1.1, "wc_x": 0.9}
+
+
+@pytest.mark.parametrize(
+    ("ident", "options"),
+    [
+        ("steering_friction", {}),
+        ("strut_friction", {"law": "backbone", "shares": [0.1, 0.1, 0.2, 0.2, 0.2, 0.1, 0.1]}),
+        ("steering_friction", {"law": "lognormal", "spread": 0.4}),
+        ("rubber_hysteresis", {"bushings": ["LLR", "UPB"], "share": {"LLR": 0.3, "UPB": 0.1}}),
+        ("rubber_hysteresis", {}),
+    ],
+    ids=str,
+)
+def test_a_friction_is_written_and_read_back(ident: str, options: dict[str, Any], tmp_path: Path) -> None:
+    """With a value of the axle moved that no key of the file holds: an option of the effect follows."""
+    path = {"rubber_hysteresis": "llr.rubber.share"}.get(ident, f"{ident}.presliding")
+    axle = applied(ident, options)
+    changed = with_values(axle, {path: 1.1 * parameter_value(axle, path), "LLF.z": 213.0})
+    tried = [axle, changed] if options != {} or ident != "rubber_hysteresis" else [axle]
+    for i, each in enumerate(tried):
+        written = write_axle(each, EXAMPLE / "axle.toml", tmp_path / f"{i}.toml")
+        again = read_axle(written)
+        assert again.topology == each.topology
+        assert again.values == pytest.approx(dict(each.values), rel=1e-12)
 
 
 def test_the_table_name_of_a_file_is_the_effect_too() -> None:

@@ -11,10 +11,11 @@ import pytest
 from doe_kc.axle import Axle
 from doe_kc.axle.parameters import design_parameters, settable_paths
 from doe_kc.curves import CurveSet
-from doe_kc.effects import EFFECTS, apply_effect, observed
+from doe_kc.effects import apply_effect, observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 from tests.reference import nominal
 
 HYPOTHESES = [h for e in EFFECTS.values() for h in e.hypotheses()]
@@ -162,3 +163,18 @@ def test_values_of_sizes() -> None:
     assert Size("g", 0.2, "mm").value(-1.0) == Size("g", 0.2, "mm").value(0.0) == pytest.approx(2e-5)
     assert Size("g", 0.2, "mm", signed=True).value(-2.0) == -0.4
     assert Size("z", 0.3, "mm", "shape").value(0.0) == 0.3
+
+
+def test_variants_of_a_friction_are_its_laws() -> None:
+    (own,) = EFFECTS["strut_friction"].hypotheses()
+    variants = EFFECTS["strut_friction"].variants(own)
+    assert [v.law for v in variants] == ["", "iwan", "duhem", "lognormal", "backbone"]
+    assert {v.name for v in variants} == {own.name}
+    for variant in variants:
+        assert variant.sizes[: len(own.sizes)] == own.sizes
+        assert all(size.shape for size in variant.sizes[1:])
+        axle = apply_effect(nominal(), own.effect, options(variant, 1.0), source="test")
+        assert axle.topology.strut_friction == (variant.law or "dahl")
+        assert axle.effects[own.effect].get("law", "dahl") == axle.topology.strut_friction
+        assert axle.values["strut_friction.share2@L"] == pytest.approx(0.10)
+    assert EFFECTS["hub_compliance"].variants(EFFECTS["hub_compliance"].hypotheses()[0])[1:] == ()

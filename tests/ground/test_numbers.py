@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from doe_kc.ground.numbers import number, sd_format, short, signed, unit_words, with_sd
+from doe_kc.ground.numbers import at_sd, number, sd_format, short, signed, unit_words, with_sd
 
 
 def test_four_significant_digits_without_an_exponent() -> None:
@@ -20,6 +20,15 @@ def test_no_digit_that_the_uncertainty_does_not_bear() -> None:
     assert with_sd(3195.2, 22.4) == "3195 ± 22"
     assert with_sd(0.05061, 0.00213) == "0.0506 ± 0.0021"
     assert with_sd(0.5, 1e-9) == "0.500000 ± 0.000000"
+
+
+def test_a_value_alone_has_the_digits_of_its_deviation() -> None:
+    assert [at_sd(0.0059985, 0.01), at_sd(-0.00001, 0.36), at_sd(5643.7, 1146.2)] == [
+        "0.006",
+        "0.00",
+        "5600",
+    ]
+    assert [at_sd(1.25, math.nan), at_sd(math.nan, 0.1)] == ["1.250", "–"]
 
 
 def test_a_value_without_a_sd_stands_alone() -> None:

@@ -11,8 +11,7 @@ from doe_kc.characteristics import reduce_all
 from doe_kc.curves import RIG_RESPONSES
 from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
-from doe_kc.measurement import Measurement, measurement_to_frames, reduce_measurement
-from doe_kc.measurement.frames import CHARACTERISTIC_COLUMNS, CURVE_COLUMNS
+from doe_kc.measurement import Measurement, reduce_measurement
 from tests.measurement.synthetic import EXAMPLE, Errors, csv_text, record_columns, reference, write_rig
 
 
@@ -123,18 +122,6 @@ def test_a_noise_free_single_run_is_reduced_exactly(tmp_path: Path) -> None:
     expected = reduce_all(reference("nominal"))
     for ident in ("brake.wind_up", "lateral.camber_change", "roll.camber_change"):
         assert m.characteristics[ident].value == pytest.approx(expected[ident], rel=0.01)
-
-
-def test_frames_are_tidy(car_a: Measurement) -> None:
-    frames = measurement_to_frames(car_a)
-    assert tuple(frames.curves.columns) == CURVE_COLUMNS
-    assert tuple(frames.characteristics.columns) == CHARACTERISTIC_COLUMNS
-    points = sum(c.input.size for c in car_a.curves.cases.values())
-    assert len(frames.curves) == points * 14
-    assert not frames.curves.isna().any().any()
-    row = frames.characteristics.set_index("name").loc["vertical.ride_rate"]
-    assert row["unit"] == "N/mm" and row["value"] == pytest.approx(26.26, abs=0.01)
-    assert len(frames.gradients) == 112 and len(frames.noise) == 56
 
 
 def test_a_missing_record_is_named_with_its_path(tmp_path: Path) -> None:

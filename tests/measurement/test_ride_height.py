@@ -8,8 +8,7 @@ import pytest
 from doe_kc.curves import RIG_RESPONSES, CurveSet
 from doe_kc.ground.errors import InputError
 from doe_kc.measurement import Measurement, infer_ride_height
-from doe_kc.measurement.kinked_interpolation import KinkedCurve
-from doe_kc.measurement.shifted_curves import ShiftedCurves
+from doe_kc.measurement.shifted_curves import KinkedCurve, ShiftedCurves
 from tests.measurement.synthetic import reference
 
 

@@ -9,8 +9,7 @@ import numpy as np
 
 from doe_kc.axle.parameters import Parameter, design_parameters
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.parameter_influence.result import Influence
-from doe_kc.parameter_influence.study import influence_study
+from doe_kc.parameter_influence.study import Influence, influence_study
 from tests.reference import nominal
 
 PATHS = (

@@ -12,7 +12,7 @@ from doe_kc.report.correlation_characteristics import characteristic_rows, chara
 from doe_kc.report.correlation_evaluations import evaluation_table, history
 from doe_kc.report.correlation_parameters import parameter_rows, parameter_table, remark_sentences
 from doe_kc.report.correlation_summary import summary
-from doe_kc.report.correlation_terms import curve_table, term_frame
+from doe_kc.report.correlation_terms import curve_table, term_columns
 from doe_kc.report.render.csv import table_frame
 from tests.report.correlations import all_three, odd, real, typed
 
@@ -94,9 +94,9 @@ def test_normalised_values_are_ratios_away_from_zero_and_soft_near_it() -> None:
 
 
 def test_terms_sum_to_the_rating(found: Correlation) -> None:
-    terms = term_frame(found)
-    assert terms["final_term"].sum() == pytest.approx(found.rating, rel=1e-12)
-    assert terms["baseline_term"].sum() == pytest.approx(found.baseline.merit, rel=1e-12)
+    terms = term_columns(found)
+    assert sum(terms["final_term"]) == pytest.approx(found.rating, rel=1e-12)
+    assert sum(terms["baseline_term"]) == pytest.approx(found.baseline.merit, rel=1e-12)
 
 
 def test_curves_come_with_their_noise() -> None:

@@ -5,30 +5,41 @@ from __future__ import annotations
 import shutil
 import subprocess
 import warnings
+from base64 import b64decode
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from openpyxl import load_workbook
+from openpyxl.chart import BarChart
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.report.correlation_rating_sheet import FINAL_RATING, HEADS, RATING_FIRST_ROW
 from doe_kc.report.correlation_workbook import write_correlation_workbook
+from doe_kc.report.hysteresis import loop_widths
 from doe_kc.targets import Targets
-from tests.report.correlations import EVIL, all_three, odd, real
+from tests.correlation.cases import measured
+from tests.report.correlations import CAR, EVIL, all_three, odd, real
 
-SHEETS = ["Summary", "Characteristics", "Parameters", "Curves", "Evaluations", "Rating terms", "Legend"]
+SHEETS = [
+    "Summary", "DNA", "Axle", "Characteristics", "Parameters", "Curves", "Hysteresis", "Evaluations",
+    "Rating terms", "Legend",
+]  # fmt: skip
+PIXEL = b64decode(
+    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+)
 OFFICE = shutil.which("soffice")
 
 
 def written(tmp_path: Path, name: str = "odd", study: str = "Study") -> Workbook:
-    path = tmp_path / f"{name}.xlsx"
-    return load_workbook(
-        write_correlation_workbook(
-            path, all_three()[name], study=study, date="2026-01-31", notes={"Axle": EVIL}
-        )
-    )
+    path, found = tmp_path / f"{name}.xlsx", all_three()[name]
+    seen: dict[str, Any] = {}
+    if name == "real":
+        seen = {"loops": loop_widths(found, measured(CAR)), "axle_picture": PIXEL}
+    write_correlation_workbook(path, found, study=study, date="2026-01-31", notes={"Axle": EVIL}, **seen)
+    return load_workbook(path)
 
 
 def column(ws: Worksheet, head: str, row: int) -> list[object]:
@@ -39,10 +50,11 @@ def column(ws: Worksheet, head: str, row: int) -> list[object]:
 @pytest.mark.parametrize("name", ["real", "odd", "typed"])
 def test_sheets_and_rows(name: str, tmp_path: Path) -> None:
     book, found = written(tmp_path, name), all_three()[name]
-    assert book.sheetnames == SHEETS
+    drawn = SHEETS if name == "real" else [s for s in SHEETS if s not in ("Axle", "Hysteresis")]
+    assert book.sheetnames == drawn
     values = column(book["Characteristics"], "Final", 4)
     assert sorted(map(float, values)) == pytest.approx(sorted(e.final for e in found.improvements))  # type: ignore[arg-type]
-    paths = column(book["Parameters"], "Path", 4)
+    paths = [str(v).partition(":")[0] for v in column(book["Parameters"], "Parameter", 4)]
     assert paths == list(found.values)
     assert len(column(book["Evaluations"], "Origin", 4)) == len(found.run.evaluated)
 
@@ -59,10 +71,44 @@ def test_text_never_becomes_a_formula(tmp_path: Path) -> None:
 def test_bounds_and_the_design_handed_over_are_shaded(tmp_path: Path) -> None:
     book = written(tmp_path)
     ws = book["Parameters"]
-    shaded = [ws.cell(r, 3).value for r in range(5, ws.max_row + 1) if ws.cell(r, 3).fill.fill_type]
-    assert shaded == ["llf.Fy", "llr.Fy"]
+    shaded = [ws.cell(r, 2).value for r in range(5, ws.max_row + 1) if ws.cell(r, 2).fill.fill_type]
+    assert [str(v).partition(":")[0] for v in shaded] == ["llf.Fy", "llr.Fy"]
     ws = book["Evaluations"]
     assert [r - 4 for r in range(5, ws.max_row + 1) if ws.cell(r, 1).fill.fill_type] == [odd().run.best + 1]
+
+
+def test_the_dna_chart_shows_the_characteristics_about_their_targets(tmp_path: Path) -> None:
+    book = written(tmp_path, "real")
+    (chart,) = book["DNA"]._charts
+    last = 4 + len(real().improvements)
+    assert isinstance(chart, BarChart) and chart.x_axis.crossesAt == 1.0
+    data, heads = book["Characteristics"], []
+    for series in chart.series:
+        letter = series.val.numRef.f.split("$")[1]
+        assert series.val.numRef.f == f"'Characteristics'!${letter}$5:${letter}${last}"
+        heads.append(data[f"{letter}4"].value)
+    assert heads == ["Baseline, normalised", "Final, normalised"]
+    assert len(book["Axle"]._images) == 1
+
+
+def test_every_sheet_prints_on_a4_with_its_title(tmp_path: Path) -> None:
+    for ws in written(tmp_path, "real"):
+        setup, sense = ws.page_setup, "portrait" if ws.title == "Axle" else "landscape"
+        assert (setup.orientation, int(setup.paperSize)) == (sense, 9)
+        assert ws.sheet_properties.pageSetUpPr.fitToPage
+        if ws.auto_filter.ref:
+            assert ws.print_title_rows.startswith("$1:")
+
+
+def test_no_number_is_shown_as_minus_zero(tmp_path: Path) -> None:
+    for ws in written(tmp_path, "real"):
+        for cell in (c for row in ws.iter_rows() for c in row if isinstance(c.value, float)):
+            number = cell.number_format
+            if number in ("General", "0") or '"' in number or ";" in number:
+                continue
+            decimals = len(number.rstrip("%").partition(".")[2])
+            value = cell.value * (100.0 if number.endswith("%") else 1.0)
+            assert round(value, decimals) or value >= 0.0, (ws.title, cell.coordinate)
 
 
 def test_inside_and_outside_are_coloured_by_rule(tmp_path: Path) -> None:

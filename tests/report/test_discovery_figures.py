@@ -16,11 +16,13 @@ from doe_kc.report.discovery_figures import discovery_jobs, write_discovery_figu
 from doe_kc.report.discovery_gaps import gap_figure
 from doe_kc.report.discovery_heat_map import discovery_grids, heat_map_figure, signed
 from doe_kc.report.discovery_held_out import gain_words, held_out_figure
-from doe_kc.report.discovery_isolability import isolability, isolability_figure
+from doe_kc.report.discovery_isolability import isolability
+from doe_kc.report.discovery_isolability_figure import isolability_figure
 from doe_kc.report.discovery_parameter_figure import moved_parameters, parameter_figure
 from doe_kc.report.discovery_parameters import tuned_parameters
 from doe_kc.report.discovery_tables import gap_rows
 from doe_kc.report.sheet import Sheet
+from doe_kc.report.style import A4
 from tests.discovery.cases import LOAD_CASES, discovery
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
@@ -101,18 +103,20 @@ def test_worst_curves_come_first_and_have_units() -> None:
 def test_friction_shows_as_half_width_of_the_loop() -> None:
     worst = worst_views(discovery("two"))
     assert worst[0].view.branches == "half_width"
-    assert worst[0].label == "tyre load, half-width of the loop [N]"
+    assert worst[0].label == "tyre load, half-width [N]" and ", loop\n" in worst[0].title
     assert worst[0].half is None
 
 
-def test_isolability_bars_and_matrix_share_their_rows() -> None:
+def test_isolability_has_a_bar_a_hypothesis_under_the_name_of_its_group() -> None:
     table = isolability(discovery("named"))
-    fig = isolability_figure(table, "S")
-    matrix, sizes = fig.panels[:2]
-    assert matrix.y.limits == sizes.y.limits == (len(table.labels), 0.0)
-    assert matrix.y.ticks(9).words[0] == f"{table.labels[0]}  1"
-    (bars,) = sizes.areas
-    assert isinstance(bars, PolyCollection) and len(bars.get_paths()) == len(table.labels)
+    page = isolability_figure(table, "S")
+    (panel,) = page.panels
+    bars = next(a for a in panel.areas if isinstance(a, PolyCollection))
+    assert len(bars.get_paths()) == len(table.labels)
+    words = [t.text for t in panel.texts]
+    assert set(table.labels) <= set(words)
+    assert sum(w.startswith(("A  ", "B  ")) for w in words) == min(2, len(table.groups))
+    assert (page.width, page.height) <= (A4[0] * 72.0 + 1e-6, A4[1] * 72.0 + 1e-6)
 
 
 def test_held_out_has_a_row_a_load_case() -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from doe_kc.report.effect_words import effect_words
 from doe_kc.report.page import (
     correlation_sections,
     discovery_sections,
@@ -20,8 +22,13 @@ from tests.report.chromium import BROWSER, Page
 from tests.report.correlations import CAR, EVIL, real
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
-FIRST = ["Verdict", "Where they disagree", "Candidates"]
-LAST = ["Parameters with and without the effect", "Library of effects", "What to test next"]
+ALWAYS = [
+    "Verdict", "What to test next", "Where they disagree", "Curves with and without the effect",
+    "Deviation of every curve", "Parameters with and without the effect", "Library of effects", "Candidates",
+    "Words",
+]  # fmt: skip
+OPTIONAL = {"Load cases held out", "Without the library"}
+STATISTICS = ("odds", "evidence", "whitened", "adequacy", "decoy", "RMS", "prior")
 LEGIBLE = 9.0
 without_browser = pytest.mark.skipif(
     BROWSER is None, reason="Chromium is not installed, so no page can be opened"
@@ -76,7 +83,7 @@ def set_input(page: Page, selector: str, value: str) -> None:
 def test_sections_follow_an_engineers_questions(car: str) -> None:
     found = discovery(car)
     titles = [s.title for s in discovery_sections(found, records(car))]
-    assert titles[:3] == FIRST and titles[-3:] == LAST
+    assert [t for t in titles if t not in OPTIONAL] == ALWAYS
     assert ("Load cases held out" in titles) is bool(found.held_out)
     assert ("Without the library" in titles) is (found.scan is not None)
     assert len({s.ident for s in discovery_sections(found, None)}) == len(titles)
@@ -102,6 +109,45 @@ def test_opens_without_errors_or_network(browser: Page, pages: dict[str, Path], 
     sizes = page.run(f"Array.from({small}, e => parseFloat(getComputedStyle(e).fontSize))")
     assert min(sizes) >= LEGIBLE
     assert page.run("document.querySelectorAll('svg[role=img]:not([aria-label])').length") == 0
+
+
+@pytest.mark.parametrize("car", CARS)
+def test_the_first_screen_has_no_words_of_statistics(car: str) -> None:
+    section = discovery_sections(discovery(car), records(car))[0]
+    open_text = re.sub(r"<details>.*?</details>|<[^>]*>", " ", str(section.html), flags=re.DOTALL)
+    assert not [w for w in STATISTICS if w.lower() in open_text.lower()]
+    for finding in discovery(car).findings:
+        words = effect_words(discovery(car), finding)
+        assert all(part in open_text for part in (words.label, words.sure, words.confirm))
+
+
+@browsed
+def test_every_curve_is_printed_with_title_and_legend(browser: Page, pages: dict[str, Path]) -> None:
+    page = opened(browser, pages["two"])
+    page.run("dispatchEvent(new Event('beforeprint'))")
+    blocks = "document.querySelectorAll('#effect-curves-printed .printed-case')"
+    assert page.run(f"{blocks}.length") == len(LOAD_CASES)
+    legends = page.run(f"Array.from({blocks}, b => b.querySelector('.controls').textContent)")
+    assert all("measured" in text and "re-tuned with the effect" in text for text in legends)
+    charts = "document.querySelectorAll('#effect-curves-printed svg')"
+    assert page.run(f"{charts}.length") == 14 * len(LOAD_CASES)
+    titles = page.run(f"Array.from({charts}, c => c.querySelectorAll('text.title').length)")
+    assert set(titles) == {2}
+    assert page.run(f"Array.from({charts}).every(c => c.querySelector('path.layer'))")
+    assert page.run("new Set(Array.from(document.querySelectorAll('[id]'), e => e.id)).size") == page.run(
+        "document.querySelectorAll('[id]').length"
+    )
+    page.run("dispatchEvent(new Event('afterprint'))")
+    assert page.run(f"{charts}.length") == 0 and page.errors == []
+
+
+@browsed
+@pytest.mark.parametrize("car", ["two", "unexplained"])
+def test_nothing_is_cut_off_on_a_desk(browser: Page, pages: dict[str, Path], car: str) -> None:
+    page = opened(browser, pages[car], 1400)
+    page.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    wide = "Array.from(document.querySelectorAll('.scroll')).filter(e => e.scrollWidth > e.clientWidth + 1)"
+    assert page.run(f"{wide}.map(e => e.getAttribute('aria-label'))") == []
 
 
 @browsed

@@ -7,14 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.verdict.exclusion import HypothesisStatus
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.report.discovery_curves import model_values, model_views, view_gaps
 from doe_kc.report.discovery_effects import effect_rows, effect_table
 from doe_kc.report.discovery_evidence import evidence_steps
 from doe_kc.report.discovery_heat_map import discovery_grids
-from doe_kc.report.discovery_isolability import isolability
+from doe_kc.report.discovery_isolability import (
+    Isolability,
+    common_name,
+    isolability,
+    isolability_rows,
+)
 from doe_kc.report.discovery_library import library_table
 from doe_kc.report.discovery_parameters import tuned_parameters, tuned_table
 from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
@@ -146,6 +151,26 @@ def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
     np.testing.assert_allclose(np.diag(table.correlation)[seen], 1.0)
     np.testing.assert_array_equal(table.correlation, table.correlation.T)
     assert "found" in table.statuses
+
+
+def test_effects_of_which_every_pair_is_alike_are_one_group() -> None:
+    r = np.eye(6)
+    for i, j, value in ((0, 1, 0.95), (1, 2, 0.9), (0, 2, 0.3), (3, 4, 0.99)):
+        r[i, j] = r[j, i] = value
+    r[5, :] = r[:, 5] = np.nan
+    labels = ("Gain, toe", "Gain, camber", "c", "d", "e", "f")
+    statuses: tuple[Status, ...] = ("excluded", "excluded", "excluded", "found", "excluded", "not testable")
+    table = Isolability(labels, statuses, np.array([0.1, 0.1, 2.0, 0.1, 0.1, np.inf]), r, tuple("uvwxyz"))
+    assert table.groups == ((3, 4), (0, 1))
+    assert (table.alone, table.hidden) == ((2,), (5,))
+    assert table.least_correlation((0, 1)) == 0.95
+    rows = isolability_rows(table)
+    assert [row.group for row in rows] == ["A", "A", "B", "B", "told apart", "hidden"]
+    assert [row.test for row in rows] == ["x", "y", "u", "v", "w", "z"]
+    assert (rows[4].nearest, rows[4].nearest_label) == (0.9, "Gain, camber")
+    assert np.isnan(rows[5].nearest)
+    assert common_name(labels[:2]) == "Gain, toe or camber"
+    assert common_name(labels[2:4]) == "c or d"
 
 
 @pytest.mark.parametrize(

@@ -6,16 +6,21 @@ from pathlib import Path
 
 import pytest
 from openpyxl import load_workbook
+from openpyxl.chart import LineChart
 from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.errors import RunError
 from doe_kc.report.discovery_words import STATUS_WORDS
 from doe_kc.report.discovery_workbook import verdict_lines, write_discovery_workbook
+from doe_kc.report.render.charts import DATA_COLUMN
 from tests.discovery.cases import discovery
 from tests.report.correlations import EVIL
 
-SHEETS = ["Verdict", "Disagreement", "Effects", "Library", "Gap", "Held out", "Parameters", "Legend"]
+SHEETS = [
+    "Verdict", "Disagreement", "Effects", "Library", "Groups", "Gap chart", "Gap", "Held out", "Parameters",
+    "Legend",
+]  # fmt: skip
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 
 
@@ -40,7 +45,8 @@ def test_sheets_and_rows(car: str, tmp_path: Path) -> None:
     assert len(status) == len(found.statuses)
     assert set(status) <= set(STATUS_WORDS.values())
     assert len(column(book["Gap"], "Re-tuned")) == 1 + len(found.gaps)
-    assert column(book["Parameters"], "Path") == list(found.fitted.model.space.paths)
+    paths = [str(v).partition(":")[0] for v in column(book["Parameters"], "Parameter")]
+    assert paths == list(found.fitted.model.space.paths)
     text = [row[1].value for row in book["Verdict"].iter_rows(min_row=4)]
     assert found.sentences[0] in str(text[0])
 
@@ -55,6 +61,19 @@ def test_what_is_beyond_noise_comes_first_and_is_printed_the_worst_on_top(tmp_pa
         assert part == sorted(part, reverse=True)
     assert str(ws.print_area).endswith(f"$H${4 + beyond}")
     assert "re-tuned" in str(column(ws, "Beyond noise")[0])
+
+
+def test_the_gap_chart_has_a_series_a_model_and_a_category_a_row(tmp_path: Path) -> None:
+    for car, models in (("named", 4), ("none", 2)):
+        ws, gaps = written(tmp_path, car)["Gap chart"], discovery(car).gaps
+        (chart,) = ws._charts
+        assert isinstance(chart, LineChart) and len(chart.series) == models
+        assert chart.y_axis.scaling.logBase == 2
+        heads = [ws.cell(5, c).value for c in range(DATA_COLUMN, DATA_COLUMN + 2 + models)]
+        assert heads[:4] == ["Load case", "Response", "Nominal", "Re-tuned"]
+        tuned = [ws.cell(r, DATA_COLUMN + 3).value for r in range(7, 7 + len(gaps))]
+        assert tuned == pytest.approx([g.gap.tuned for g in gaps])
+        assert chart.series[1].val.numRef.f.endswith(f"${6 + len(gaps)}")
 
 
 def test_text_never_becomes_a_formula(tmp_path: Path) -> None:

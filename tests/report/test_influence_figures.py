@@ -16,7 +16,7 @@ from doe_kc.report.influence_figures import (
     influence_heat_map,
     write_influence_figures,
 )
-from tests.parameter_influence.studies import study
+from tests.parameter_influence.studies import parameter, study
 
 
 def test_files_are_written(tmp_path: Path) -> None:
@@ -39,6 +39,30 @@ def test_numbers_stand_from_five_percent_on() -> None:
     panel = influence_heat_map(study([[100.0], [-5.0], [4.9], [0.0]]), study="S").panels[0]
     numbers = [t.text for t in panel.texts if t.text.lstrip("-").isdigit()]
     assert numbers == ["100", "-5"]
+
+
+def test_it_says_its_steps_and_what_a_blank_means() -> None:
+    parameters = (
+        parameter("LLF.x"), parameter("LLF.y"),
+        parameter("llr.Fx", unit="-", nominal=1.0, step=0.1, group="BUSHINGS"),
+        parameter("static.toe", unit="deg", nominal=0.05, step=0.1, group="OTHER"),
+        parameter("spring.rate", unit="N/mm", nominal=28.0, step=2.8, group="OTHER"),
+        parameter("arb.radius", unit="N/mm", nominal=10.0, step=2.0, group="OTHER"),
+    )  # fmt: skip
+    page = influence_heat_map(study([[1.0]] * 6, parameters=parameters), study="S")
+    (words,) = [w.text for w in page.words if w.text.startswith("One parameter")]
+    assert "hardpoints ±1 mm, bushings ±10 %, others as beside their name" in words
+    assert "Blank: below 5 %" in words
+    rows = page.panels[0].y.ticks(9).words
+    assert rows[:3] == ("LLF.x", "LLF.y", "llr.Fx")
+    assert set(rows[3:]) == {"static.toe (±0.1 deg)", "spring.rate (±10 %)", "arb.radius (±20 %)"}
+
+
+def test_numbers_have_true_minus_signs() -> None:
+    page = influence_heat_map(study([[100.0], [-50.0]]), study="run-2 of 2026-11-22")
+    words = [w.text for w in page.words]
+    assert "\N{MINUS SIGN}50" in words and "-50" not in words
+    assert any(w.endswith("run-2 of 2026-11-22") for w in words)
 
 
 def test_load_cases_head_their_columns() -> None:

@@ -20,11 +20,10 @@ from openpyxl.worksheet.worksheet import Worksheet
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.ground.errors import RunError
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.report.influence_layout import FIRST_MATRIX_ROW, LABELS, layout
-from doe_kc.report.influence_sheets import step_text
+from doe_kc.parameter_influence.study import Influence
+from doe_kc.report.influence_layout import FIRST_MATRIX_ROW, LABELS, layout, step_text
 from doe_kc.report.influence_workbook import write_influence_workbook
 from doe_kc.report.render.cells import clean
 from tests.parameter_influence.studies import parameter, real_study, study
@@ -72,7 +71,7 @@ def test_cells_hold_the_matrix_as_numbers(book: Workbook) -> None:
         ("Exact", real.exact, 1e-12),
     ):
         for r, i in enumerate(at.rows, start=FIRST_MATRIX_ROW):
-            assert book[sheet].cell(r, 3).value == real.parameters[i].path
+            assert book[sheet].cell(r, 2).value == real.parameters[i].path
             for c, j in enumerate(at.columns, start=LABELS + 1):
                 assert book[sheet].cell(r, c).value == pytest.approx(values[i, j], abs=tolerance)
 
@@ -110,10 +109,10 @@ def test_heads_are_those_of_appendix_c(tmp_path: Path) -> None:
 
 def test_sums_and_ranks(tmp_path: Path) -> None:
     ws = write(tmp_path / "s.xlsx", study([[10.0, 1.0], [-5.0, 4.0], [0.0, 0.0]]))["Influence"]
-    assert [ws.cell(r, 7).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 3)] == [125, 150, 0]
-    assert [ws.cell(r, 8).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 3)] == [2, 1, 3]
-    assert [ws.cell(FIRST_MATRIX_ROW + 3, c).value for c in (5, 6)] == [150, 125]
-    assert [ws.cell(FIRST_MATRIX_ROW + 4, c).value for c in (5, 6)] == [1, 2]
+    assert [ws.cell(r, 6).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 3)] == [125, 150, 0]
+    assert [ws.cell(r, 7).value for r in range(FIRST_MATRIX_ROW, FIRST_MATRIX_ROW + 3)] == [2, 1, 3]
+    assert [ws.cell(FIRST_MATRIX_ROW + 3, c).value for c in (4, 5)] == [150, 125]
+    assert [ws.cell(FIRST_MATRIX_ROW + 4, c).value for c in (4, 5)] == [1, 2]
 
 
 def test_groups_stand_in_every_row_for_the_filter(book: Workbook) -> None:
@@ -126,15 +125,15 @@ def test_groups_stand_in_every_row_for_the_filter(book: Workbook) -> None:
 def test_view_and_print_setup(book: Workbook) -> None:
     for name in SHEETS[:3]:
         ws = book[name]
-        assert ws.freeze_panes == "E9"
+        assert ws.freeze_panes == "D9"
         assert (ws.page_setup.orientation, ws.page_setup.fitToWidth, ws.page_setup.fitToHeight) == (
             "landscape",
             1,
-            1,
+            0,
         )
-        assert int(ws.page_setup.paperSize) == 8
+        assert int(ws.page_setup.paperSize) == 9
         assert ws.sheet_properties.pageSetUpPr.fitToPage
-        assert ws.print_title_rows == "$4:$8"
+        assert ws.print_title_rows == "$1:$8"
         assert ws.oddHeader.left.text == "Study"
 
 
@@ -143,26 +142,26 @@ def test_colour_scale_is_fixed(book: Workbook) -> None:
     scale = rules[0].colorScale
     assert [(p.type, p.val) for p in scale.cfvo] == [("num", -100), ("num", 0), ("num", 100)]
     assert scale.color[1].rgb.endswith("FFFFFF")
-    assert str(area.sqref).startswith("E9:")
+    assert str(area.sqref).startswith("D9:")
 
 
 def test_nonlinear_cells_are_marked(tmp_path: Path) -> None:
     book = write(tmp_path / "n.xlsx", study([[10.0, 4.0], [5.0, 8.0]], exact=[[10.0, 4.0], [4.0, 8.0]]))
     marked, plain = (
-        book["Influence"].cell(FIRST_MATRIX_ROW + 1, 5),
-        book["Influence"].cell(FIRST_MATRIX_ROW, 5),
+        book["Influence"].cell(FIRST_MATRIX_ROW + 1, 4),
+        book["Influence"].cell(FIRST_MATRIX_ROW, 4),
     )
     assert marked.font.italic and "exact 40.0 %" in marked.comment.text
     assert not plain.font.italic and plain.comment is None
-    assert book["Exact"].cell(FIRST_MATRIX_ROW + 1, 5).fill.fgColor.rgb.endswith("FBE3F0")
+    assert book["Exact"].cell(FIRST_MATRIX_ROW + 1, 4).fill.fgColor.rgb.endswith("FBE3F0")
     assert "(1 cells)" in book["Exact"]["A2"].value
 
 
 def test_failed_axle_leaves_empty_cells_and_its_reason(tmp_path: Path) -> None:
     failed = study([[np.nan], [1.0]], failures={"P0.x": "no equilibrium: load case roll"})
     ws = write(tmp_path / "f.xlsx", failed)["Influence"]
-    assert ws.cell(FIRST_MATRIX_ROW, 5).value is None
-    assert "no equilibrium: load case roll" in ws.cell(FIRST_MATRIX_ROW, 8).value
+    assert ws.cell(FIRST_MATRIX_ROW, 4).value is None
+    assert "no equilibrium: load case roll" in ws.cell(FIRST_MATRIX_ROW, 7).value
 
 
 @pytest.mark.parametrize(
@@ -211,7 +210,7 @@ def test_libreoffice_calculates_nothing(tmp_path: Path) -> None:
     if not (tmp_path / "evil.csv").exists():
         pytest.skip(f"LibreOffice does not run here: {done.stderr.decode()[:80]}")
     read = list(csv.reader(io.StringIO((tmp_path / "evil.csv").read_text(encoding="utf-8"))))
-    assert [line[2] for line in read[FIRST_MATRIX_ROW - 1 : FIRST_MATRIX_ROW + 3]] == list(EVIL[:4])
+    assert [line[1] for line in read[FIRST_MATRIX_ROW - 1 : FIRST_MATRIX_ROW + 3]] == list(EVIL[:4])
 
 
 def test_control_characters_are_replaced(tmp_path: Path) -> None:

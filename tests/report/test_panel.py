@@ -80,3 +80,10 @@ def test_panels_that_share_their_axis_have_the_same_limits() -> None:
     assert panels[0, 0].x.limits == panels[1, 0].x.limits == pytest.approx((-0.5, 10.5))
     assert panels[0, 0].y.limits != panels[1, 0].y.limits
     assert not panels[0, 0].numbers["x"] and panels[1, 0].numbers["x"]
+
+
+def test_one_bar_with_an_edge_reaches_the_pixels(tmp_path: Path) -> None:
+    page, panels = sheet(1, 1, size=(2.0, 2.0), margins={})
+    panels[0, 0].bars(0.0, 0.0, 1.0, 0.5, ["#0000FF"], edgecolors="#FF0000", linewidths=0.5)
+    with Image.open(save(page, tmp_path / "bar")) as image:
+        assert (0, 0, 255) in image.getdata()

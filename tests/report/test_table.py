@@ -25,6 +25,9 @@ from doe_kc.report.table import (
     SheetLayout,
     Table,
     TerminalCell,
+    four_digits,
+    row_digits,
+    zero_format,
 )
 
 
@@ -113,20 +116,20 @@ def test_colors_frozen_column_and_print_follow_the_keys() -> None:
             Scale("rate", "preload", ((-1, "000000"), (0, "FFFFFF"), (1, "FF0000"))),
         ),
         flagged=lambda r: r.preload < 0,
-        sheet=SheetLayout(frozen="rate", printed_to="used", paper="A3"),
+        sheet=SheetLayout(frozen="rate", printed_to="used"),
     )
     ws = sheet(table)
     ranges = {str(r.sqref): [(k.type, k.formula) for k in r.rules] for r in ws.conditional_formatting}
     inside = "AND($B5>=$C5,$B5<=$D5)"
     assert ranges["B5:B6"] == [("expression", [inside]), ("expression", [f"NOT({inside})"])]
     assert ranges["D5:D6"][0][0] == "dataBar" and ranges["B5:D6"][0][0] == "colorScale"
-    assert (ws.freeze_panes, ws.print_title_rows) == ("B5", "$4:$4")
+    assert (ws.freeze_panes, ws.print_title_rows) == ("B5", "$1:$4")
     assert str(ws.print_area).endswith("$A$1:$C$6")
     assert [bool(ws[f"A{r}"].fill.fill_type) for r in (5, 6)] == [False, True]
 
 
 def test_heads_are_on_every_printed_page() -> None:
-    assert sheet(TABLE).print_title_rows == "$4:$4"
+    assert sheet(TABLE).print_title_rows == "$1:$4"
 
 
 def test_a_sheet_without_rows_says_why() -> None:
@@ -145,3 +148,22 @@ def test_text_stays_text_and_a_second_table_has_no_filter() -> None:
 def test_two_columns_of_one_key_are_refused() -> None:
     with pytest.raises(ValueError, match="table Springs: more than one column is called rate"):
         replace(TABLE, columns=(*COLUMNS, COLUMNS[1]))
+
+
+def test_zero_has_neither_sign_nor_decimals() -> None:
+    shown = [zero_format(v, "0.00") for v in (-0.004, 0.004, -0.006, 0.0, -0.0)]
+    assert shown == ['"0.00"', "0.00", "0.00", "0", "0"]
+    assert zero_format(-0.1, "0") == '"0"' and zero_format(-0.1, "0.0%") == "0.0%"
+    assert zero_format("text", "0.0") == "0.0"
+
+
+def test_digits_follow_the_standard_deviation_or_the_size() -> None:
+    assert [row_digits(sd, 123.0) for sd in (0.012, 0.5, math.nan)] == ["0.000", "0.00", "0"]
+    assert [four_digits(v) for v in (-8507.02, -0.4051, 0.0, math.nan)] == ["0", "0.0000", "0", "0"]
+
+
+def test_a_cell_of_the_sheet_alone() -> None:
+    name = replace(COLUMNS[0], cell=lambda r: f"{r.name} (id)")
+    table = replace(TABLE, columns=(name, *COLUMNS[1:]))
+    assert sheet(table)["A5"].value == f"{TABLE.rows[0].name} (id)"
+    assert list(table_frame(table)["name"]) == [r.name for r in TABLE.rows]

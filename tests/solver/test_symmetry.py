@@ -187,6 +187,7 @@ LIMITS = {
     "tyre_horizontal_compliance": {"k_lat_N_mm": 1e11, "k_long_N_mm": 1e11},
     "steer_arm_compliance": {"radius_mm": 2000.0},
     "steering_friction": {"force_N": 1e-6},
+    "rubber_hysteresis": {"share": 1e-8},
     "strut_friction": {"force_N": 1e-6},
     "bushing_preload": {"LLR": [0.0, 0.0, 0.0]},
     "bushing_progression": {"LLR": [0.01, 0.01, 0.01]},

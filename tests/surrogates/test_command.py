@@ -14,7 +14,7 @@ from doe_kc.campaign.store import read_store
 from doe_kc.study import read_study
 from doe_kc.surrogates.designs import designs_in_space, place
 from doe_kc.surrogates.influence import agreement
-from doe_kc.workflow import write_surrogates as workflow
+from doe_kc.workflow import surrogates as workflow
 from tests.cli.runner import fails, leftovers, succeeds, write_study
 
 VARIABLES = """
@@ -72,7 +72,7 @@ def test_the_document_holds_everything(result: dict[str, object]) -> None:
 def test_tables_are_written(study: Path, result: dict[str, object]) -> None:
     folder = study / "out" / "surrogates"
     tables = {f"{name}.csv" for name in ("quality", "predictions", "influence", "shares")}
-    assert {p.name for p in folder.iterdir()} == {"surrogates.xlsx"} | tables
+    assert {p.name for p in folder.iterdir()} == {"surrogates.xlsx", "surrogate.npz", "evaluator"} | tables
     assert not leftovers(study)
     assert load_workbook(folder / "surrogates.xlsx").sheetnames == [
         "Quality",

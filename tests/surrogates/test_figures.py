@@ -9,7 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.report.surrogate_figures import model_quality, predicted_against_true, write_surrogate_figures
+from doe_kc.report.surrogate_figures import (
+    model_quality,
+    predicted_against_true,
+    residuals,
+    write_surrogate_figures,
+)
 from doe_kc.surrogates.designs import Designs
 from doe_kc.surrogates.influence import Agreement
 from doe_kc.surrogates.report import SurrogateReport
@@ -46,6 +51,14 @@ def test_one_panel_a_characteristic_with_its_unit_and_model() -> None:
     assert fig.outside == []
 
 
+def test_residuals_have_one_panel_a_characteristic() -> None:
+    fig = residuals(report(), study="small")
+    for panel, entry in zip(fig.panels, ENTRIES, strict=True):
+        assert f"[{entry.unit}]" in panel.title.text
+        assert "% inside" in panel.title.text
+    assert fig.outside == []
+
+
 def test_quality_names_models_and_characteristics() -> None:
     fig = model_quality(report(), study="small")
     labels = fig.panels[0].y.ticks(9).words
@@ -59,7 +72,7 @@ def test_equal_studies_give_equal_files(tmp_path: Path) -> None:
     one = write_surrogate_figures(report(), tmp_path / "a", study="small", workers=1)
     two = write_surrogate_figures(replace(report()), tmp_path / "b", study="small", workers=1)
     assert [p.name for p in one] == [p.name for p in two]
-    assert len(one) == 2
+    assert len(one) == 3
     for a, b in zip(one, two, strict=True):
         assert a.read_bytes() == b.read_bytes()
     assert one[0].stat().st_size > 10_000

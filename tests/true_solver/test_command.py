@@ -24,12 +24,11 @@ from doe_kc.ground.errors import InputError
 from doe_kc.report.simulation_tables import curves_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.true_solver.answer import read_characteristics
+from doe_kc.true_solver.answer import Unreadable, curves_from_frame, read_characteristics
 from doe_kc.true_solver.command import CommandSolver
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.true_solver.own import AxleSolver
-from doe_kc.true_solver.tidy_curves import Unreadable, curves_from_frame
 from tests.reference import EXAMPLE, nominal
 
 PAGE = (EXAMPLE.parents[1] / "docs" / "outside_solver.md").read_text(encoding="utf-8")

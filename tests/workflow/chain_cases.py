@@ -14,7 +14,7 @@ from doe_kc.discovery.options import DiscoveryOptions
 from doe_kc.measurement.reduction import GradientEstimate
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.answer import Answer
-from doe_kc.workflow.chain import Steps, follow_chain
+from doe_kc.workflow.chain import follow_chain
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.measure import Reduced
 from tests.discovery.cases import AXLE, TUNABLE, discovery, nominal, records
@@ -38,11 +38,12 @@ def study(folder: Path, adopt: str | list[str] = "auto") -> Study:
 def answer(car: str, adopt: str = "auto") -> Answer:
     """What the chain says of a car."""
     with tempfile.TemporaryDirectory() as folder:
-        steps = Steps(
+        return follow_chain(
+            study(Path(folder), adopt),
+            reduced(car),
             discover=lambda *_: discovery(car),
             correlate=lambda s, r, a: correlate(s, r, adoption=a, workers=1),
         )
-        return follow_chain(study(Path(folder), adopt), reduced(car), steps)
 
 
 def reduced(car: str) -> Reduced:

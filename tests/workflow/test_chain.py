@@ -12,11 +12,10 @@ import pytest
 from doe_kc.axle_file import read_axle
 from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.true_solver.options import SolverOptions
-from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document
-from doe_kc.workflow.chain import ADVICE, DIFFERENT, Steps, describes_the_same, follow_chain
+from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document, write_answer
+from doe_kc.workflow.chain import ADVICE, DIFFERENT, describes_the_same, follow_chain
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.correlation_problem import study_problem
-from doe_kc.workflow.write_answer import write_answer
 from tests.discovery.cases import discovery, nominal
 from tests.workflow.chain_cases import answer, reduced, study
 
@@ -85,6 +84,8 @@ def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
         "axle.toml",
         "summary.json",
         "index.html",
+        "summary.pdf",
+        "report.html",
     ]
     first = paths[0].read_text().splitlines()[0]
     assert first.startswith("# Written by doe_kc") and "Sound: " in first
@@ -94,7 +95,12 @@ def test_the_answer_at_the_top_of_the_folder(tmp_path: Path) -> None:
     summary = json.loads(paths[1].read_text())
     assert summary["status"] == "sound" and summary["effects"][0]["adopted"] is True
     assert all(set(c) == ENTRY for c in summary["characteristics"])
-    assert set(summary["gap"]) == {"nominal", "tuned", "final", "noise_floor"}
+    assert set(summary["gap"]) == {"nominal", "tuned", "final", "noise_floor", "cases"}
+    cases = summary["gap"]["cases"]
+    assert {"vertical", "lateral", "static"} <= set(cases)
+    assert all(case["final"] < 1.5 for case in cases.values())
+    assert paths[3].read_bytes().startswith(b"%PDF") and record.words[0].adopted
+    assert 'href="simulate/report.html"' in paths[2].read_text()
     assert (
         "Sound" in paths[2].read_text() and answer_lines(found.assessment, record)[0] == found.assessment.line
     )
@@ -128,7 +134,7 @@ def with_outside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, alike: bool
         made.append(f"correlate with {adoption}")
         return answer("named", "never").correlation
 
-    found = follow_chain(outside, reduced("named"), Steps(discover, correlated))
+    found = follow_chain(outside, reduced("named"), discover, correlated)
     return made, found.assessment.reasons
 
 

@@ -10,8 +10,8 @@ import pytest
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
-from doe_kc.workflow import correlation_space as module
-from doe_kc.workflow.correlation_space import correlation_space
+from doe_kc.workflow import correlation_problem as module
+from doe_kc.workflow.correlation_problem import correlation_space
 from doe_kc.workflow.influence import study_influence
 from doe_kc.workflow.measure import reduce_records
 from tests.cli.runner import write_study

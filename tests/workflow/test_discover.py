@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 
 from doe_kc.axle import with_values
-from doe_kc.effects import EFFECTS, apply_effect
+from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError
 from doe_kc.measurement import reduce_measurement
 from doe_kc.study import read_study
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discover_study, discovery_space, effect_library
 from tests.reference import EXAMPLE, nominal
+from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 RIG = Path(__file__).parents[1] / "data" / "rig"
 

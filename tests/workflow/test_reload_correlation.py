@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from doe_kc.campaign.key import design_key
@@ -19,7 +20,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_json
 from doe_kc.report.correlation_characteristics import characteristic_table
 from doe_kc.report.correlation_evaluations import evaluation_table
-from doe_kc.report.correlation_terms import term_frame
+from doe_kc.report.correlation_terms import term_columns
 from doe_kc.study import Study, read_study
 from doe_kc.targets import CharacteristicOptions
 from doe_kc.true_solver.make import solver_for
@@ -92,9 +93,9 @@ def test_standard_deviations_of_another_design_are_left_out(tmp_path: Path) -> N
 def test_other_weights_need_no_evaluation(tmp_path: Path) -> None:
     study = kept(odd(), tmp_path, CharacteristicOptions(match="*", linear=3.0, constraint=False))
     again = recall(study, REDUCED, tmp_path).correlation
-    plain = term_frame(odd())
+    plain = pd.DataFrame(term_columns(odd()))
     objectives = plain[(plain["kind"] == "objective") & (plain["goal"] == "target")]
-    now = term_frame(again)
+    now = pd.DataFrame(term_columns(again))
     assert again.feasible and set(objectives["id"]) <= set(now[now["kind"] == "objective"]["id"])
     assert again.rating == pytest.approx(now["final_term"].sum())
     assert len(evaluation_table(again).rows) == 10 and characteristic_table(again).rows

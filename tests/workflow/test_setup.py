@@ -5,8 +5,7 @@ from __future__ import annotations
 from doe_kc.axle import design_parameters, with_values
 from doe_kc.measurement import load_manifest
 from doe_kc.solver.suite import solve
-from doe_kc.workflow.scatter import vertical_scatter
-from doe_kc.workflow.setup import setup_differences
+from doe_kc.workflow.measure import setup_differences, vertical_scatter
 from tests.reference import EXAMPLE, nominal
 
 

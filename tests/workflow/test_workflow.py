@@ -20,8 +20,7 @@ from doe_kc.study import Study, read_study
 from doe_kc.targets.comparison import Comparison
 from doe_kc.workflow.compare import compare_model, comparison_document, comparison_lines
 from doe_kc.workflow.influence import influence_runs, study_influence
-from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document
-from doe_kc.workflow.scatter import vertical_scatter
+from doe_kc.workflow.measure import Reduced, reduce_records, reduced_document, vertical_scatter
 from tests.cli.runner import write_study
 from tests.reference import nominal
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from openpyxl import load_workbook
 
 from doe_kc.axle_file import read_axle
 from doe_kc.ground.output import write_json
@@ -41,8 +42,9 @@ def handed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_every_file_is_there(handed: Path) -> None:
     names = {p.name for p in handed.iterdir()}
-    assert names >= FILES and not any(n.startswith(".") for n in names)
-    assert [sum(n.endswith(end) for n in names) for end in (".png", ".svg")] == [12, 0]
+    assert names >= {*FILES, "hysteresis.csv", "hysteresis.png"} and not any(n.startswith(".") for n in names)
+    assert load_workbook(handed / "correlation.xlsx")["Axle"]._images
+    assert [sum(n.endswith(end) for n in names) for end in (".png", ".svg")] == [13, 0]
 
 
 def test_the_axle_handed_over_rates_the_same(handed: Path) -> None:

@@ -8,7 +8,7 @@ from doe_kc.cli._app import app
 from doe_kc.cli.options import JsonOption, MeasurementOption, OutOption, StudyArgument
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_json
-from doe_kc.workflow.check import StudyCheck, check_study
+from doe_kc.workflow.check import check_lines, check_study
 
 
 @app.command("check")
@@ -31,25 +31,3 @@ def check(
     if checked.errors:
         raise typer.Exit(InputError.exit_code)
     typer.echo("all sound")
-
-
-def check_lines(checked: StudyCheck) -> list[str]:
-    """What the study names; nothing of one that cannot be read."""
-    study, manifest = checked.study, checked.manifest
-    if study is None:
-        return []
-    if manifest is not None:
-        count = sum(len(files) for files in manifest.records.values())
-        records = f"{manifest.name}: {count} records, {len(manifest.records)} load cases"
-    else:
-        records = "none named" if study.measurement is None else f"{study.measurement}: cannot be read"
-    return [
-        f"study        {study.name} ({study.source})",
-        f"axle         {study.axle.name} ({study.axle_path})",
-        f"load cases   {', '.join(study.axle.load_cases)}",
-        f"effects      {', '.join(study.axle.effects) or 'none'}",
-        f"parameters   {len(study.parameters)} selected",
-        f"variables    {study.space.dimension}, method {study.correlation.method}",
-        f"measurement  {records}",
-        f"results      {study.out}",
-    ]

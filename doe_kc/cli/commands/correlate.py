@@ -7,9 +7,8 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.live import live_rating
-from doe_kc.cli.options import SchedulerOption
-from doe_kc.cli.study_options import StudyOptions, takes_study
+from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
+from doe_kc.cli.progress import correlation_bar
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import RunError
@@ -42,23 +41,23 @@ def correlate(
 
     The exit code is 1 where the axle is not usable, which the first line explains; all files are written.
     """
-    found = study_options.read()
-    reduced = study_records(found)
+    study = study_options.read()
+    reduced = study_records(study)
     correlation = correlated(
-        found, reduced, method=method, budget=budget, workers=study_options.workers, scheduler=scheduler
+        study, reduced, method=method, budget=budget, workers=study_options.workers, scheduler=scheduler
     )
-    folder, assessment = found.out / "correlate", assess(correlation)
+    folder, assessment = study.out / "correlate", assess(correlation)
     write_run(correlation, folder)
     records = reduced.measurement if reduced is not None else None
     written = write_correlation(
-        found, correlation, records, folder, assessment=assessment, workers=study_options.workers
+        study, correlation, records, folder, assessment=assessment, workers=study_options.workers
     )
     if study_options.json is not None:
         write_json(study_options.json, correlation_document(correlation, folder / AXLE, assessment))
     for line in correlation_lines(correlation, assessment):
         typer.echo(line)
     typer.echo(CORRELATED_AXLE.format(axle=folder / AXLE))
-    typer.echo(f"{len(written)} files in {folder}; store {found.store}", err=True)
+    typer.echo(f"{len(written)} files in {folder}; store {study.store}", err=True)
     leave_unless_usable(assessment)
 
 
@@ -80,7 +79,7 @@ def correlated(
     scheduler: str | None = None,
 ) -> Correlation:
     """The correlation, its progress shown."""
-    with live_rating(budget or study.correlation.budget) as watch:
+    with correlation_bar(budget or study.correlation.budget) as watch:
         return run_correlation(
             study,
             reduced,

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.cli.progress import described_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
@@ -35,11 +35,11 @@ def discover(
     ] = None,
 ) -> None:
     """Find where model and records disagree, name the missing effect, add it, show the gap shrink."""
-    found = study_options.read()
-    records = study_measurement(found)
-    discovery = discovered(found, records, exclude=exclude or (), workers=study_options.workers)
-    folder = found.out / "discover"
-    written = write_discovery(found, discovery, records, folder, workers=study_options.workers)
+    study = study_options.read()
+    records = study_measurement(study)
+    discovery = discovered(study, records, exclude=exclude or (), workers=study_options.workers)
+    folder = study.out / "discover"
+    written = write_discovery(study, discovery, records, folder, workers=study_options.workers)
     if study_options.json is not None:
         write_json(study_options.json, discovery_document(discovery, folder / AXLE))
     for line in discovery_lines(discovery):

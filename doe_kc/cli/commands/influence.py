@@ -5,38 +5,44 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
-from doe_kc.measurement import reduce_measurement
+from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.result import Influence
+from doe_kc.parameter_influence.study import Influence
+from doe_kc.study import Study
 from doe_kc.workflow.influence import (
+    StudyInfluence,
     influence_document,
     influence_runs,
     study_influence,
     write_influence,
 )
+from doe_kc.workflow.measure import study_measurement
 
 
 @app.command("influence")
 @takes_study
 def influence(study_options: StudyOptions) -> None:
     """One-at-a-time study: normalized influence matrix (workbook, pictures), exact sensitivities beside."""
-    found = study_options.read()
-    measured = None
-    if found.measurement is not None:
-        measured = reduce_measurement(
-            found.measurement, windows=found.windows, half_track=found.axle.half_track
-        )
-    with progress_bar("one at a time", influence_runs(found)) as advance:
-        result = study_influence(found, measured, workers=study_options.workers, progress=advance)
+    study = study_options.read()
+    measurement = None if study.measurement is None else study_measurement(study)
+    result = influence_shown(study, measurement, workers=study_options.workers)
     if study_options.json is not None:
         write_json(study_options.json, influence_document(result.matrix))
-    written = write_influence(found, result, found.out / "influence", workers=study_options.workers)
+    written = write_influence(study, result, study.out / "influence", workers=study_options.workers)
     for line in influence_lines(result.matrix):
         typer.echo(line)
-    typer.echo(f"{len(written)} files in {found.out / 'influence'}", err=True)
+    typer.echo(f"{len(written)} files in {study.out / 'influence'}", err=True)
+
+
+def influence_shown(
+    study: Study, measurement: Measurement | None, *, workers: int | None = None
+) -> StudyInfluence:
+    """The influence study, its progress shown."""
+    with progress_bar("one at a time", influence_runs(study)) as advance:
+        return study_influence(study, measurement, workers=workers, progress=advance)
 
 
 def influence_lines(matrix: Influence) -> list[str]:

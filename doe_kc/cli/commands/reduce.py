@@ -5,7 +5,7 @@ from __future__ import annotations
 import typer
 
 from doe_kc.cli._app import app
-from doe_kc.cli.study_options import StudyOptions, takes_study
+from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import RideHeight
 from doe_kc.solver.curve_set import curve_set
@@ -18,23 +18,23 @@ from doe_kc.workflow.measure import reduce_records, reduced_document, write_redu
 @takes_study
 def reduce(study_options: StudyOptions) -> None:
     """Reduce rig records to curves, noise and targets; show the model against them, with pictures."""
-    found = study_options.read()
-    solution = solve(found.axle)
-    reduced = reduce_records(found, solution)
+    study = study_options.read()
+    solution = solve(study.axle)
+    reduced = reduce_records(study, solution)
     if study_options.json is not None:
         write_json(study_options.json, reduced_document(reduced))
-    comparison = compare_model(found, curve_set(solution), reduced.measurement)
+    comparison = compare_model(study, curve_set(solution), reduced.measurement)
     written = write_reduced(
-        reduced, found.out / "reduce", workers=study_options.workers, pictures=found.pictures
+        reduced, study.out / "reduce", workers=study_options.workers, pictures=study.pictures
     )
     written += write_comparison(
-        comparison, found.out / "compare", workers=study_options.workers, pictures=found.pictures
+        comparison, study.out / "compare", workers=study_options.workers, pictures=study.pictures
     )
     for line in comparison_lines(comparison):
         typer.echo(line)
     if reduced.ride_height is not None:
         typer.echo(ride_height_line(reduced.ride_height))
-    typer.echo(f"{len(written)} files in {found.out / 'reduce'} and {found.out / 'compare'}", err=True)
+    typer.echo(f"{len(written)} files in {study.out / 'reduce'} and {study.out / 'compare'}", err=True)
 
 
 def ride_height_line(height: RideHeight) -> str:

@@ -8,9 +8,8 @@ import typer
 
 from doe_kc.campaign.export import require_format
 from doe_kc.cli._app import app
-from doe_kc.cli.options import SchedulerOption
+from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
-from doe_kc.cli.study_options import StudyOptions, takes_study
 from doe_kc.ground.output import write_json
 from doe_kc.workflow.sample import run_sample, sample_document, sample_lines, study_design, write_sample
 
@@ -23,6 +22,9 @@ def sample(
         str | None, typer.Option(help="lhs, sobol, one_at_a_time, full_factorial or table.")
     ] = None,
     n: Annotated[int | None, typer.Option("--n", min=1, help="Number of designs.")] = None,
+    extend: Annotated[
+        bool, typer.Option("--extend", help="Count stored designs among the n: run only what completes them.")
+    ] = False,
     scheduler: SchedulerOption = None,
     export: Annotated[
         str | None, typer.Option(help="Also export the whole store, curves included: csv or parquet.")
@@ -31,21 +33,20 @@ def sample(
 ) -> None:
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
     form = require_format(export) if export is not None else None
-    found = study_options.read()
-    design = study_design(found, method=method, n=n)
+    study = study_options.read()
+    design = study_design(study, method=method, n=n, extend=extend)
     with progress_bar(design.method, len(design.values)) as advance:
         sampled = run_sample(
-            found,
+            study,
             design,
             workers=study_options.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
             progress=advance,
         )
-    document = sample_document(found, sampled)
     if study_options.json is not None:
-        write_json(study_options.json, document)
-    written = write_sample(found, sampled, found.out / "sample", form)
-    for line in sample_lines(document):
+        write_json(study_options.json, sample_document(study, sampled))
+    written = write_sample(study, sampled, study.out / "sample", form)
+    for line in sample_lines(sampled):
         typer.echo(line)
-    typer.echo(f"{len(written)} files in {found.out / 'sample'}; store {found.store}", err=True)
+    typer.echo(f"{len(written)} files in {study.out / 'sample'}; store {study.store}", err=True)

@@ -1,25 +1,104 @@
-"""`doe-kc simulate`: K&C curves and characteristics of a model."""
+"""`doe-kc simulate`: K&C curves and characteristics of a model, changed by `--set` and `--effect`."""
 
 from __future__ import annotations
 
 import logging
+import re
 import time
+import tomllib
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from doe_kc.axle.model import Axle
+from doe_kc.axle import Axle, parameter_value, with_values
+from doe_kc.axle.geometry import check_geometry
 from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.axle.roll import with_roll
 from doe_kc.axle_file import read_axle
 from doe_kc.cli._app import app
-from doe_kc.cli.changes import apply_effects, apply_settings
-from doe_kc.cli.options import JsonOption
+from doe_kc.cli.options import JsonOption, PictureChoice
+from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_json
+from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.report.simulation_tables import characteristics_document, write_simulation
+from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
+
+SETTING = re.compile(r"\s*([^=+*\s]+)\s*([+*]?=)\s*(\S+)\s*$")
+
+
+def apply_settings(axle: Axle, settings: Iterable[str]) -> Axle:
+    """PATH=VALUE sets, PATH+=DELTA adds, PATH*=FACTOR scales; later ones see the earlier."""
+    values: dict[str, float] = {}
+    for text in settings:
+        match = SETTING.match(text)
+        if match is None:
+            raise InputError(
+                f"--set {text}: expected PATH=VALUE, PATH+=DELTA or PATH*=FACTOR, as in LLF.x+=1.0."
+            )
+        path, operator, number = match.groups()
+        now = values.get(path)
+        now = parameter_value(axle, path, source="--set") if now is None else now
+        values[path] = _changed(now, operator, _number(number, text))
+    changed = with_values(axle, values, source="--set") if values else axle
+    check_geometry(changed, "--set")
+    return changed
+
+
+def _changed(now: float, operator: str, operand: float) -> float:
+    if operator == "+=":
+        return now + operand
+    return now * operand if operator == "*=" else operand
+
+
+def _number(text: str, setting: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"--set {setting}: {text!r} is not a number.") from None
+
+
+def apply_effects(axle: Axle, effects: Iterable[str]) -> Axle:
+    """ID or ID:key=value,...; values as in TOML, lists in brackets, plain words without quotes."""
+    for text in effects:
+        ident, _, rest = text.partition(":")
+        options = dict(_options(rest, text)) if rest else {}
+        axle = apply_effect(axle, ident.strip(), options, source="--effect")
+    return axle
+
+
+def _options(text: str, argument: str) -> Iterator[tuple[str, Any]]:
+    for part in _split(text):
+        key, equals, value = part.partition("=")
+        if not equals or not key.strip():
+            raise InputError(f"--effect {argument}: {part!r}, expected key=value.")
+        yield key.strip(), _value(value.strip())
+
+
+def _split(text: str) -> Iterator[str]:
+    """At commas outside brackets."""
+    depth, start = 0, 0
+    for i, letter in enumerate(text):
+        depth += (letter in "[{") - (letter in "]}")
+        if letter == "," and depth == 0:
+            yield text[start:i]
+            start = i + 1
+    yield text[start:]
+
+
+def _value(text: str) -> Any:
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except RecursionError:
+        return text
+    except ValueError:  # TOMLDecodeError; plain for a number of 5000 digits
+        if text.startswith("[") and text.endswith("]"):
+            return [_value(part.strip()) for part in _split(text[1:-1])]
+        return text
+
 
 log = logging.getLogger("doe_kc")
 
@@ -37,12 +116,19 @@ def simulate(
     ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Load case; all by default.")] = None,
     roll: Annotated[str | None, typer.Option(help="Roll technique: body or counter_phase.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for curves.csv, characteristics.csv.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for curves.csv, characteristics.csv and pictures.")
+    ] = None,
+    pictures: Annotated[
+        PictureChoice, typer.Option(help="Format in which the deformed shapes are drawn, into --out.")
+    ] = PictureChoice.NONE,
     json: JsonOption = None,
 ) -> None:
     """Solve the K&C load cases of an axle: curves (tidy CSV) and characteristics."""
     model = apply_settings(apply_effects(read_axle(axle), effects or []), settings or [])
     model = with_roll(model, roll, source="--roll")
+    if pictures is not PictureChoice.NONE and out is None:
+        raise InputError("--pictures: needs a folder to draw into; add --out DIR.")
     for sentence in axle_warnings(model):
         log.warning(sentence)
     started = time.perf_counter()
@@ -52,10 +138,18 @@ def simulate(
     if json is not None:
         write_json(json, document)
     if out is not None:
-        for path in write_simulation(solution, out):
+        for path in (*write_simulation(solution, out), *_shapes(model, solution, out, pictures.value)):
             typer.echo(f"wrote {path}", err=True)
     for name, entry in document["characteristics"].items():
         typer.echo(f"{name:36}{entry['value']:>14.6g}  {entry['unit']}")
+
+
+def _shapes(axle: Axle, solution: Solution, folder: Path, pictures: PictureFormat) -> list[Path]:
+    if pictures == "none":
+        return []
+    from doe_kc.report.axle_shapes import write_shape_figures
+
+    return write_shape_figures(axle, solution, folder, pictures=pictures)
 
 
 def checked_cases(axle: Axle, cases: list[str] | None) -> list[str] | None:

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.correlation.modelled.output_model import level_steps
+from doe_kc.correlation.modelled.unit_samples import latin_hypercube
 from doe_kc.correlation.problem import Candidate
+from doe_kc.ground.typing import FloatArray
 from doe_kc.variables import Space
 
 
@@ -37,14 +39,14 @@ class InitialDesign:
         The bounds are drawn in towards the start, but to a level beside it at least: none of them is passed,
         and a start beside its bound has as many designs as another.
         """
-        from scipy.stats import qmc  # half a second that searches without a sample need not wait for
-
-        sampler = qmc.LatinHypercube(
-            space.dimension,
-            rng=np.random.default_rng(seed),
-            optimization="random-cd" if self.evened else None,
-        )
-        drawn = space.drawn(sampler.random(n))
+        drawn = space.drawn((_evened if self.evened else latin_hypercube)(n, space.dimension, seed))
         half_width = np.clip(level_steps(space), self.half_width, 0.5)
         points = space.snapped(space.start + 2.0 * half_width * (drawn - space.start))
         return [Candidate(p, "opening sample") for p in points]
+
+
+def _evened(n: int, dimension: int, seed: int) -> FloatArray:
+    from scipy.stats import qmc  # takes half a second
+
+    engine = qmc.LatinHypercube(dimension, rng=np.random.default_rng(seed), optimization="random-cd")
+    return np.asarray(engine.random(n))

@@ -56,7 +56,7 @@ def _line_search(
 ) -> tuple[FloatArray, float]:
     """The first share of the step that gains, and its gain; no step and 0 when none does."""
     for share in (1.0, 0.5, 0.25, 0.1, 0.02):
-        found = merit(point + share * step)
-        if found > value:
-            return point + share * step, found - value
+        trial_value = merit(point + share * step)
+        if trial_value > value:
+            return point + share * step, trial_value - value
     return point, 0.0

@@ -68,8 +68,8 @@ def levelled(
     """(d,) design on levels near a continuous optimum (d,); start, doubt: as in `best_predicted`."""
     space = problem.space
     starts = space.snapped(start)[None]
-    found = on_levels(model, composite, point, level_steps(space), starts, problem.prior, doubt=doubt)
-    return space.snapped(found)
+    nearest = on_levels(model, composite, point, level_steps(space), starts, problem.prior, doubt=doubt)
+    return space.snapped(nearest)
 
 
 def forecast(

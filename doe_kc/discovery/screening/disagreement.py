@@ -31,7 +31,7 @@ class Map:
         drawn = rng.standard_normal((NOISE_DRAWS, self.root.shape[1])) @ self.root.T
         return np.asarray(np.abs(drawn).max(axis=1))
 
-    @property
+    @cached_property
     def threshold(self) -> float:
         """Largest |z| that noise alone passes in 5 % of maps."""
         return float(np.quantile(self._largest_by_noise, 1.0 - FALSE_ALARM_CHANCE))

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
+from doe_kc.axle.model import FORCE_AXES, Axle
+from doe_kc.axle.structure import of_side
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.thresholds import COLUMN_SHARE, PLACE_PROBABILITY
 from doe_kc.ground.typing import FloatArray
@@ -23,6 +25,9 @@ from doe_kc.solver.probe import Probe
 
 SIGNED = ("offset", "stiffness")
 """Laws whose amplitude may be negative."""
+ALL_BUSHINGS = "all bushings"
+RUBBER_YIELD = 0.2
+"""mm over which the friction of rubber builds up."""
 AXIS_WORDS = {
     "x": "along x",
     "y": "along y",
@@ -38,7 +43,7 @@ class Place:
     """A law at an interface."""
 
     interface: str
-    """Names of its two bodies as `one|other`, or of a bushing."""
+    """Names of its two bodies as `one|other`, or of a bushing, or `all bushings`."""
     law: str
     """compliance, offset, clearance, stiffness, progression or friction."""
     side: str
@@ -81,6 +86,7 @@ def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
     scored: list[tuple[Place, float]] = []
     for law in LAWS:
         scored += _of_law(law, influences, tuned)
+    scored += _of_rubber(influences, tuned)
     scored.sort(key=lambda item: -item[1])
     logs = np.array([gain for _, gain in scored]) / temper
     shares = np.exp(logs - logs.max()) / np.exp(logs - logs.max()).sum()
@@ -113,6 +119,29 @@ def _of_law(law: str, influences: Influences, tuned: Fit) -> Iterator[tuple[Plac
             dofs, block = _block(chosen, members, columns, side)
             if dofs:
                 yield _place(interface, law, side, dofs, block, tuned)
+
+
+def _of_rubber(influences: Influences, tuned: Fit) -> Iterator[tuple[Place, float]]:
+    """Friction of every bushing along its axes, in proportion to their stiffness: as rubber has it.
+
+    No axis of a single bushing explains what all of them do together.
+    """
+    gradients = law_columns(influences, "friction", RUBBER_YIELD)
+    axle = tuned.model.axle_at(tuned.z)
+    probes = {p.name: p for p in influences.probes}
+    weights = np.array([_stiffness(axle, probes[name]) for name in gradients.paths])
+    if not weights.any():
+        return
+    columns = tuned.model.likelihood.jacobian(gradients, np.zeros((0, weights.size)))
+    block = (columns @ (weights / weights.max()))[:, None]
+    yield _place(ALL_BUSHINGS, "friction", "both", ["along x, y and z"], block, tuned)
+
+
+def _stiffness(axle: Axle, probe: Probe) -> float:
+    """N/mm of a bushing's axis, 0 of any other probe and of a tabulated axis."""
+    axis = dict(zip("xyz", FORCE_AXES, strict=True)).get(probe.dof, "")
+    names = [of_side(f"{probe.interface}.{key}{axis}", probe.side) for key in ("", "stiffness.")]
+    return float(np.prod([axle.values.get(name, 0.0) for name in names]))
 
 
 def _block(

@@ -13,7 +13,7 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.extra_test import ExtraTest
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.effects import EFFECTS
-from doe_kc.ground.numbers import unit_words, with_sd
+from doe_kc.ground.numbers import number, unit_words, with_sd
 
 
 def sentences(
@@ -60,7 +60,7 @@ def _outside(beyond: Sequence[str], widened: float) -> str:
 
 
 def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str]) -> str:
-    names = " and ".join(_label(f) for f in findings)
+    names = _listed([_label(f) for f in findings])
     if verdict.kind == "named":
         return f"The model lacks {names}."
     if verdict.kind == "class":
@@ -72,6 +72,11 @@ def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str
     if findings:
         return f"Something is missing that the library does not name for sure; the best lead is {names}."
     return "Something is missing that no effect of the library explains."
+
+
+def _listed(names: Sequence[str]) -> str:
+    """`a, b and c`."""
+    return " and ".join(n for n in (", ".join(names[:-1]), *names[-1:]) if n)
 
 
 def _label(finding: Finding) -> str:
@@ -127,7 +132,7 @@ def adequacy_words(adequacy: Adequacy) -> str:
 
 
 def _share(chance: float) -> str:
-    return "less than 0.1 %" if chance <= 1.0 / NOISE_DRAWS else f"{100.0 * chance:.2g} %"
+    return "less than 0.1 %" if chance <= 1.0 / NOISE_DRAWS else f"{number(100.0 * chance, 2)} %"
 
 
 def next_tests(

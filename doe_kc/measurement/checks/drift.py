@@ -8,8 +8,8 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
+from doe_kc.measurement.noise import white_sd
 from doe_kc.measurement.records import RigRecord
-from doe_kc.measurement.white_noise import white_sd
 
 END_SAMPLES = 10
 """Samples at each end of the record that are compared on their common line over the input."""

@@ -9,8 +9,8 @@ import numpy as np
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
+from doe_kc.measurement.noise import white_sd
 from doe_kc.measurement.records import RigRecord
-from doe_kc.measurement.white_noise import white_sd
 
 LONGEST = 8
 """Equal neighbouring samples that noise and resolution may bring about."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
-from doe_kc.measurement.white_noise import white_sd
+from doe_kc.measurement.noise import white_sd
 
 TIMES = 5.0
 """Of the usual noise of the response over all records and both wheels."""

@@ -10,7 +10,7 @@ from doe_kc.measurement.records import RigRecord
 
 MOST = 0.02
 """Share of a channel's samples beyond which its outliers are no single ones."""
-LISTED = 4
+LISTED_OUTLIERS = 4
 
 
 @rig_check
@@ -24,8 +24,8 @@ def outliers(test: RigTest) -> Iterator[RecordFinding]:
 
 def _finding(case: str, record: RigRecord, role: str) -> RecordFinding:
     own = [o for o in record.outliers if o.role == role]
-    listed = ", ".join(f"{o.value:g} at sample {o.sample + 1}" for o in own[:LISTED])
-    more = f" and {len(own) - LISTED} more" if len(own) > LISTED else ""
+    listed = ", ".join(f"{o.value:g} at sample {o.sample + 1}" for o in own[:LISTED_OUTLIERS])
+    more = f" and {len(own) - LISTED_OUTLIERS} more" if len(own) > LISTED_OUTLIERS else ""
     many = len(own) > MOST * record.input.size
     response, _, side = role.rpartition("_")
     channel = record.case.channel if role == "input" else f"{RIG_NAMES.get(response, role)}_{side}"

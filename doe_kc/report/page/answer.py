@@ -1,58 +1,107 @@
-"""The first page of a study: the answer, the characteristics, and where everything else is."""
+"""The first page of a study: what is read in a minute, on one sheet of paper, and links to the rest."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
-from doe_kc.correlation.assessment import STATUS_LABELS, Assessment
-from doe_kc.correlation.result import Correlation
-from doe_kc.report.page.axle import axle_section
-from doe_kc.report.page.correlation import characteristics_section
-from doe_kc.report.render.page import Section, render, write_page
+from markupsafe import Markup
+
+from doe_kc.report.overview import AGREEMENT_LEAD, Overview, agreement_table, change_table
+from doe_kc.report.page.axle import strip_section
+from doe_kc.report.page.glossary import glossary_section
+from doe_kc.report.render.page import Section, render, significant, table_html, write_page
+from doe_kc.report.table import Column, PageCell, PageLayout, Table, ink_on
 
 RESULT_FILES: Mapping[str, str] = {
+    "axle.toml": "the axle to use",
+    "summary.pdf": "this page to print or mail",
     "discover/report.html": "what the model lacks, how that was found, what to test next",
-    "discover/discovery.xlsx": "the same as a workbook",
-    "correlate/report.html": "the correlation: curves, convergence, parameters with their uncertainty",
-    "correlate/correlation.xlsx": "the same as a workbook, with the rating as live formulas",
-    "influence/influence.xlsx": "parameter-influence matrix of the axle as it was handed in",
-    "influence/influence_heat_map.png": "the same as a picture",
-    "compare/characteristics.csv": "the axle handed over beside the records",
-    "reduce/characteristics.csv": "targets from the records, with their standard deviations",
+    "correlate/report.html": "characteristics, curves, parameters with their uncertainty",
+    "compare/report.html": "the axle to use beside the records, load case by load case",
+    "influence/report.html": "which parameter moves which characteristic",
+    "reduce/report.html": "the rig records: curves, noise, targets",
+    "simulate/report.html": "the axle as it was handed in",
+    "discover/discovery.xlsx": "what the model lacks, as a workbook",
+    "correlate/correlation.xlsx": "the correlation as a workbook, the rating as live formulas",
+    "influence/influence.xlsx": "the influences as a workbook",
+    "summary.json": "the answer for programs",
 }
 """File under the study's folder -> what is in it."""
 
 
+ANSWER_TERMS = ("times the noise", "± uncertainty", "sure (98 %)", "interval", "rating", "improvement")
+
+
+@dataclass(frozen=True)
+class ResultFile:
+    """name: path under the study's folder."""
+
+    name: str
+    words: str
+
+
+def _link(file: ResultFile) -> Markup:
+    return Markup('<a href="{0}">{0}</a>').format(file.name)
+
+
+FILE_COLUMNS: tuple[Column[ResultFile], ...] = (
+    Column("name", "File", lambda f: f.name, page=PageCell(style="first", text=_link)),
+    Column("words", "What is in it", lambda f: f.words, page=PageCell(style="wide")),
+)
+
+
+def files_there(folder: Path) -> dict[str, str]:
+    """Those of the result files that there are."""
+    return {name: words for name, words in RESULT_FILES.items() if (folder / name).is_file()}
+
+
 def write_answer_page(
-    path: Path,
-    correlation: Correlation,
-    assessment: Assessment,
-    *,
-    study: str,
-    date: str,
-    lines: Sequence[str],
-    notes: Mapping[str, str],
-    folder: Path,
+    path: Path, overview: Overview, *, notes: Mapping[str, str], files: Mapping[str, str]
 ) -> Path:
-    """Write the page; RunError when it cannot be written. lines: further sentences on the answer. folder: in
-    which the files are that it links to, those that are there."""
-    html = render(
-        "answer.html",
-        status=assessment.status,
-        status_label=STATUS_LABELS[assessment.status],
-        reasons=assessment.reasons,
-        lines=lines,
-        mean=correlation.mean_improvement,
-        rating=correlation.rating,
-        baseline_rating=correlation.baseline_rating,
-        notes=notes,
+    """Write the page; RunError when it cannot be written. files: to link to, and what is in each."""
+    return write_page(
+        path,
+        overview.study,
+        answer_sections(overview, notes, files),
+        subtitle=overview.date,
+        paper="portrait",
     )
-    places = {name: words for name, words in RESULT_FILES.items() if (folder / name).is_file()}
-    sections = [
-        Section("Answer", html),
-        characteristics_section(correlation),
-        axle_section(correlation),
-        Section("Everything else", render("answer_files.html", places=places)),
+
+
+def answer_sections(overview: Overview, notes: Mapping[str, str], files: Mapping[str, str]) -> list[Section]:
+    """Answer, what was lacking, agreement, numbers, axle, files; folded: figures and words of the method."""
+    layout = PageLayout[ResultFile]("files-table", "Pages and files")
+    rows = [ResultFile(name, words) for name, words in files.items()]
+    changes, agreement = change_table(overview), agreement_table(overview)
+    return [
+        Section("Answer", render("answer.html", overview=overview, ink=ink_on(overview.status_fill))),
+        Section("What the model lacked", render("answer_lacked.html", overview=overview)),
+        Section(
+            "Agreement",
+            table_html(agreement) if agreement.rows else Markup("<p>Not known of the axle handed over.</p>"),
+            AGREEMENT_LEAD if agreement.rows else "",
+        ),
+        Section("Numbers to act on", table_html(changes) if changes.rows else Markup(), changes.remark),
+        strip_section(overview.view),
+        Section("Where to find the rest", table_html(Table("Files", "", FILE_COLUMNS, rows, page=layout))),
+        Section("More figures", _more(overview, notes), folded="Figures of the method, and what was read"),
+        glossary_section(*ANSWER_TERMS),
     ]
-    return write_page(path, study, sections, subtitle=date)
+
+
+def _more(overview: Overview, notes: Mapping[str, str]) -> Markup:
+    correlation, gap = overview.correlation, overview.record.gap
+    mean, before = correlation.mean_improvement, significant(correlation.baseline_rating)
+    figures = {
+        "Rating": f"{before} → {significant(correlation.rating)}, 0 is best",
+        "Mean improvement": f"{mean:.1f} %" if math.isfinite(mean) else "none counts",
+    }
+    if gap is not None and gap.tuned is not None:
+        figures["Deviation"] = (
+            f"{gap.nominal:.2f} × the noise as handed in → {gap.tuned:.2f} re-tuned without an effect → "
+            f"{gap.final:.2f} now; {gap.noise_floor:.2f} is noise"
+        )
+    return render("answer_more.html", notes={**figures, **notes})

@@ -5,13 +5,15 @@ from __future__ import annotations
 import base64
 import io
 
-from matplotlib import rc_context
-from matplotlib.backends.backend_svg import FigureCanvasSVG
+from markupsafe import Markup
 
+from doe_kc.axle.model import HARDPOINTS
 from doe_kc.correlation.result import Correlation
+from doe_kc.report.axle_strip import strip_figure
 from doe_kc.report.axle_views import AxleView, axle_figure, correlation_view
 from doe_kc.report.render.page import Section, render
-from doe_kc.report.style import RC
+from doe_kc.report.sheet import Sheet
+from doe_kc.report.style import write_svg
 
 AXLE_LEAD = (
     "Arrows show how far each hardpoint of the left side moved, drawn longer by the factor in the key; the "
@@ -22,15 +24,22 @@ AXLE_LEAD = (
 def axle_section(correlation: Correlation) -> Section:
     """The axle that was given and how far its hardpoints moved."""
     view = correlation_view(correlation, "left side")
-    return Section("Axle", render("axle.html", picture=svg_data(view), words=_words(view)), AXLE_LEAD)
+    return Section("Axle", _drawing(axle_figure(view), view), AXLE_LEAD)
 
 
-def svg_data(view: AxleView) -> str:
-    """The drawing as a data URL, the same for the same axles."""
+def strip_section(view: AxleView) -> Section:
+    """The same beside each other, for the first page."""
+    return Section("The axle", _drawing(strip_figure(view), view), AXLE_LEAD)
+
+
+def _drawing(page: Sheet, view: AxleView) -> Markup:
+    return render("axle.html", picture=svg_data(page), words=_words(view), points=HARDPOINTS)
+
+
+def svg_data(page: Sheet) -> str:
+    """A drawing as a data URL, the same for the same axles."""
     stream = io.BytesIO()
-    page = axle_figure(view)
-    with rc_context(dict(RC)):  # type: ignore[arg-type]  # matplotlib types the keys as literals
-        FigureCanvasSVG(page).print_svg(stream, metadata={"Date": None})  # type: ignore[no-untyped-call]
+    write_svg(page, stream)
     return "data:image/svg+xml;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
 
 

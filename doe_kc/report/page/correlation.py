@@ -22,6 +22,7 @@ from doe_kc.report.correlation_parameters import ParameterRow, parameter_table, 
 from doe_kc.report.correlation_summary import summary
 from doe_kc.report.page.axle import axle_section
 from doe_kc.report.page.curves import curves_section
+from doe_kc.report.page.glossary import glossary_section
 from doe_kc.report.render.page import Section, embedded, render, significant, table_html, write_page
 from doe_kc.report.table import Column, PageCell
 
@@ -63,7 +64,8 @@ def bar(row: CharacteristicRow) -> Markup:
         }
     words = (
         f"{row.load_case}, {row.label}: target {significant(entry.target.value)}, baseline "
-        f"{significant(entry.baseline)}, final {significant(entry.final)} {row.unit}"
+        f"{significant(entry.baseline)}, final {significant(entry.final)} {row.unit}; interval "
+        f"{significant(row.interval[0])} to {significant(row.interval[1])}"
     )
     return render("bar.svg", **values, row=row, words=words)
 
@@ -174,7 +176,11 @@ def write_correlation_page(
 ) -> Path:
     """Write the page; RunError when it cannot be written."""
     sections = correlation_sections(correlation, measurement, notes=notes, assessment=assessment)
-    return write_page(path, f"Correlation: {study}", sections, subtitle=date)
+    terms = glossary_section(*CORRELATION_TERMS)
+    return write_page(path, f"Correlation: {study}", [*sections, terms], subtitle=date)
+
+
+CORRELATION_TERMS = ("noise", "± uncertainty", "interval", "rating", "improvement", "not visible", "prior")
 
 
 def _summary(correlation: Correlation, notes: Mapping[str, str], assessment: Assessment) -> Section:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from markupsafe import Markup
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCurves, CurveSet
+from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.report.correlation_curves import BAND_SDS, CaseView, case_views
-from doe_kc.report.names import case_label, response_axis
+from doe_kc.report.names import case_label, input_label, response_axis
 from doe_kc.report.render.page import Section, embedded, render
 from doe_kc.targets.comparison.deviation import rms_deviation
 
@@ -33,9 +34,7 @@ CORRELATION_MODELS = (
     ShownModel("baseline", "baseline", "#e69f00", "7 4"),
     ShownModel("final", "final", "#0072b2"),
 )
-CURVES_LEAD = (
-    "Angles and wheel centre are changes from static. Drag in the chart to zoom, double-click to see all."
-)
+CURVES_LEAD = "Angles and wheel centre are changes from static."
 
 
 def curves_section(correlation: Correlation, measurement: Measurement | None) -> list[Section]:
@@ -62,9 +61,11 @@ def curves_html(
     """
     shown = [vars(m) for m in models]
     data = {"cases": cases, "responses": responses, "models": shown, "band": BAND_SDS}
+    measured = any(case["measured"] for case in cases.values())
     return render(
-        "curves.html", prefix=prefix, data=embedded(data), cases=cases, responses=responses, models=models
-    )
+        "curves.html", prefix=prefix, data=embedded(data), cases=cases, responses=responses, models=models,
+        measured=measured,
+    )  # fmt: skip
 
 
 def _response(response: str) -> dict[str, str]:
@@ -76,15 +77,47 @@ def _response(response: str) -> dict[str, str]:
 
 
 def _case(view: CaseView) -> dict[str, Any]:
+    models = {"baseline": view.baseline, "final": view.final}
+    return case_data(view.load_case, view.input_label, view.measured, view.sd, models)
+
+
+def case_data(
+    load_case: str,
+    label: str,
+    measured: CaseCurves | None,
+    sd: Mapping[str, FloatArray],
+    models: Mapping[str, CaseCurves | None],
+) -> dict[str, Any]:
+    """A load case of a chart. label: of its input. sd: response -> (2, n) of the measured curve. models: by
+    the ids of the chart's; one at least, or a measured curve."""
+    units = [c.input_unit for c in (measured, *models.values()) if c is not None]
     return {
-        "label": case_label(view.load_case),
-        "input": view.input_label,
-        "unit": view.any.input_unit,
-        "measured": None if view.measured is None else _measured(view, view.measured),
-        "baseline": _model(view.baseline),
-        "final": _model(view.final),
-        "rms": {r: _rms(view, r) for r in RIG_RESPONSES},
+        "label": case_label(load_case),
+        "input": label,
+        "unit": units[0],
+        "measured": None if measured is None else _measured(measured, sd),
+        **{name: _model(curves) for name, curves in models.items()},
+        "rms": {r: _rms(measured, list(models.values()), r) for r in RIG_RESPONSES},
     }
+
+
+def curve_set_section(
+    measured: CurveSet | None,
+    sd: Mapping[str, Mapping[str, FloatArray]],
+    model: CurveSet | None,
+    label: str = "model",
+) -> Section:
+    """Curves of a model, of the records, or of both. sd: load case -> response -> (2, n)."""
+    sets = [s.cases for s in (measured, model) if s is not None]
+    models = () if model is None else (replace(CORRELATION_MODELS[1], id="model", label=label),)
+    cases = {}
+    for name in dict.fromkeys(case for cases_of in sets for case in cases_of):
+        rig = measured.cases.get(name) if measured is not None else None
+        ours = {} if model is None else {"model": model.cases.get(name)}
+        unit = next(c[name].input_unit for c in sets if name in c)
+        cases[name] = case_data(name, input_label(name, unit), rig, sd.get(name, {}), ours)
+    responses = {r: _response(r) for r in RIG_RESPONSES}
+    return Section("Curves", curves_html("curves", cases, responses, models), CURVES_LEAD)
 
 
 def _model(case: CaseCurves | None) -> dict[str, Any] | None:
@@ -93,24 +126,25 @@ def _model(case: CaseCurves | None) -> dict[str, Any] | None:
     return {"x": case.input, "y": {r: case.mean[r] for r in RIG_RESPONSES if r in case.mean}}
 
 
-def _measured(view: CaseView, case: CaseCurves) -> dict[str, Any]:
+def _measured(case: CaseCurves, sd: Mapping[str, FloatArray]) -> dict[str, Any]:
     present = [r for r in RIG_RESPONSES if r in case.mean]
     nothing = np.zeros((2, case.input.size))
     return {
         "x": case.input,
         "y": {r: case.mean[r] for r in present},
         "half": {r: case.half_width[r] for r in present},
-        "sd": {r: view.sd.get(r, nothing) for r in present},
+        "sd": {r: sd.get(r, nothing) for r in present},
     }
 
 
-def _rms(view: CaseView, response: str) -> list[list[float | None]]:
-    """[baseline, final] of the left and of the right wheel, where both curves reach."""
-    return [[_deviation(view, c, response, s) for c in (view.baseline, view.final)] for s in (0, 1)]
+def _rms(
+    rig: CaseCurves | None, models: Sequence[CaseCurves | None], response: str
+) -> list[list[float | None]]:
+    """Of each model, of the left and of the right wheel, where both curves reach."""
+    return [[_deviation(rig, c, response, s) for c in models] for s in (0, 1)]
 
 
-def _deviation(view: CaseView, model: CaseCurves | None, response: str, side: int) -> float | None:
-    rig = view.measured
+def _deviation(rig: CaseCurves | None, model: CaseCurves | None, response: str, side: int) -> float | None:
     if model is None or rig is None or response not in rig.mean or response not in model.mean:
         return None
     inside = (rig.input >= model.input[0]) & (rig.input <= model.input[-1])

@@ -11,12 +11,9 @@ from typing import Any
 from markupsafe import Markup
 from matplotlib.colors import LogNorm, to_hex
 
-from doe_kc.discovery.result import Discovery, Finding
-from doe_kc.discovery.verdict.sentences import against_words, odds_number
-from doe_kc.effects import EFFECTS
+from doe_kc.discovery.result import Discovery, VerdictKind
 from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import Measurement
-from doe_kc.report.discovery_effects import kind_of, rival_words
 from doe_kc.report.discovery_gaps import MODEL_COLOURS
 from doe_kc.report.discovery_heat_map import (
     DISAGREEMENT_MAP,
@@ -35,11 +32,13 @@ from doe_kc.report.discovery_words import (
     HEADLINES,
     contrast_words,
     effect_label,
-    found_sizes,
-    hypothesis_label,
     own_sentences,
 )
+from doe_kc.report.effect_words import effect_words, effect_words_table
+from doe_kc.report.gap_steps import gap_steps
+from doe_kc.report.gap_steps_figure import gap_steps_figure
 from doe_kc.report.names import case_label, response_name
+from doe_kc.report.page.axle import svg_data
 from doe_kc.report.page.discovery_candidates import (
     candidates_section,
     held_out_section,
@@ -47,54 +46,70 @@ from doe_kc.report.page.discovery_candidates import (
     tests_section,
 )
 from doe_kc.report.page.discovery_curves import curves_section, gap_section
+from doe_kc.report.page.glossary import glossary_section
 from doe_kc.report.render.page import Section, render, table_html, write_page
-from doe_kc.report.table import Column, PageCell
+from doe_kc.report.table import Column, PageCell, ink_on
 
 
 def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:
-    """Tiles, sentences, a row for each effect, what stays open."""
-    better = sum(h.gain > 0.0 for h in discovery.held_out)
+    """The answer in one sentence, a line for each effect, the gap step by step, what remains; the statistics
+    behind it folded."""
+    words = [effect_words(discovery, f) for f in (*discovery.findings, *discovery.traces)]
+    steps = gap_steps(discovery)
     html = render(
         "discovery_verdict.html",
-        headline=HEADLINES[discovery.verdict],
-        clear=discovery.verdict in ("named", "none"),
-        top=discovery.findings[0] if discovery.findings else None,
-        top_odds=odds_number(discovery.findings[0].log10_odds) if discovery.findings else "",
-        top_label=effect_label(discovery.findings[0].hypothesis.effect) if discovery.findings else "",
+        headline=_headline(discovery),
+        fill=VERDICT_FILLS[discovery.verdict],
+        ink=ink_on(VERDICT_FILLS[discovery.verdict]),
+        sentence=discovery.sentences[0],
         gap=discovery.gap,
         has_effect=bool(discovery.fitted.model.members),
-        better=better,
+        better=sum(h.gain > 0.0 for h in discovery.held_out),
         cases=len(discovery.held_out),
-        sentences=own_sentences(discovery),
-        effects=[_effect(discovery, f) for f in (*discovery.findings, *discovery.traces)],
-        alike=[" or ".join(effect_label(e) for e in group) for group in discovery.classes],
-        unexplained=[(contrast_words(c), z) for c, z in discovery.unexplained],
+        effects=table_html(effect_words_table(words)) if words else "",
+        picture=svg_data(gap_steps_figure(steps, discovery.gap.noise_floor)),
+        steps=steps,
+        remains=_remains(discovery),
+        statistics=own_sentences(discovery)[1:],
         notes=notes,
     )
     return Section("Verdict", html)
 
 
-def _effect(discovery: Discovery, finding: Finding) -> dict[str, Any]:
-    ident = finding.hypothesis.effect
-    kind = kind_of(discovery, finding)
-    return {
-        "label": hypothesis_label(finding.hypothesis),
-        "kind": "seen, too small to matter" if kind == "trace" else kind,
-        "quiet": kind == "trace",
-        "odds": odds_number(finding.log10_odds),
-        "log10_odds": finding.log10_odds,
-        "against": against_words(finding),
-        "sizes": [s.sentence for s in found_sizes(discovery, finding)],
-        "rivals": rival_words(finding) or "–",
-        "physics": EFFECTS[ident].physics,
-        "shown_by": EFFECTS[ident].shown_by,
-    }
+def _headline(discovery: Discovery) -> str:
+    several = discovery.verdict == "named" and len(discovery.findings) > 1
+    return "Effects named" if several else HEADLINES[discovery.verdict]
+
+
+VERDICT_FILLS: Mapping[VerdictKind, str] = {
+    "named": "0072B2",
+    "none": "0072B2",
+    "class": "E69F00",
+    "unexplained": "D55E00",
+}
+"""RRGGBB behind the verdict's headline."""
+
+
+def _remains(discovery: Discovery) -> list[str]:
+    """What the records leave open, in sentences."""
+    out = [
+        f"These records do not tell {' from '.join(effect_label(e).lower() for e in group)}."
+        for group in discovery.classes
+    ]
+    out += [
+        f"Unexplained: {contrast_words(c)}, {signed(z)} times the noise." for c, z in discovery.unexplained
+    ]
+    if discovery.beyond:
+        out.append(f"Outside their bounds: {', '.join(discovery.beyond)}; check the nominal axle.")
+    return out or [
+        f"Nothing: {discovery.gap.with_effect:.2f} times the noise of the rig are left, which is noise."
+    ]
 
 
 MAPS_LEAD = (
-    "The largest disagreement of each load case and response in standard deviations of the noise, and its "
-    "shape. +: the model's value is above the measured one; grey: within the noise; L−R: the wheels disagree "
-    "in opposite ways. After re-tuning, only what no re-tuning within production scatter can absorb counts."
+    "The largest disagreement of each load case and response as a multiple of its noise, and its shape. +: "
+    "the model's value is above the measured one; grey: within the noise; L−R: the wheels disagree in "
+    "opposite ways. After re-tuning, only what no re-tuning within production scatter can absorb counts."
 )
 DARK = 0.6
 """Place on the colour scale from which white text is read better."""
@@ -138,7 +153,7 @@ def _map_cell(grid: MapGrid, cell: GridCell | None, norm: LogNorm) -> dict[str, 
 
 BIAS_LEAD = (
     "Where an effect is missing, re-tuning bends parameters that have nothing to do with it. Circles: "
-    "distance from nominal after re-tuning without an effect, in standard deviations of the prior; "
+    "distance from nominal after re-tuning without an effect, as a multiple of production scatter (±sd); "
     "arrows lead to the place with the effect."
 )
 BIAS_REACH, BIAS_WIDTH = 2.5, 200.0
@@ -203,16 +218,34 @@ def discovery_sections(
 ) -> list[Section]:
     """In the order of a test engineer's questions. notes: further lines of the first section."""
     made = {"Measurement": measurement.manifest.name} if measurement is not None else {}
-    sections = [verdict_section(discovery, {**made, **(notes or {})}), maps_section(discovery)]
-    sections += [
-        candidates_section(discovery),
-        *scan_section(discovery),
+    held_out = [held_out_section(discovery)] if discovery.held_out else []
+    return [
+        verdict_section(discovery, {**made, **(notes or {})}),
+        tests_section(discovery),
+        maps_section(discovery),
         *curves_section(discovery),
         gap_section(discovery),
+        *held_out,
+        parameters_section(discovery),
+        library_section(discovery),
+        candidates_section(discovery),
+        *scan_section(discovery),
+        glossary_section(*DISCOVERY_TERMS),
     ]
-    if discovery.held_out:
-        sections.append(held_out_section(discovery))
-    return [*sections, parameters_section(discovery), library_section(discovery), tests_section(discovery)]
+
+
+DISCOVERY_TERMS = (
+    "noise",
+    "times the noise",
+    "± uncertainty",
+    "sure (98 %)",
+    "odds",
+    "evidence",
+    "best other effect",
+    "held out",
+    "adequacy",
+    "prior",
+)
 
 
 def library_section(discovery: Discovery) -> Section:

@@ -20,8 +20,9 @@ CANDIDATES_LEAD = (
     "many candidates. Screened ones were not worth a joint refit."
 )
 HELD_OUT = (
-    "Each load case is left out, the models are fitted to all the others and predict it. RMS in standard "
-    "deviations of the prediction: 1 is as good as predicted. A right effect predicts what it has not seen."
+    "Each load case is left out, the models are fitted to all the others and predict it. A right effect "
+    "predicts what it has not seen. Deviation as a multiple of what the prediction itself leaves open: 1 is "
+    "as good as predicted."
 )
 SCAN = (
     "A generic scan that knows no library: a law at every interface of the axle, to first order at the "
@@ -90,7 +91,9 @@ def candidates_section(discovery: Discovery) -> Section:
     )
     table = table_html(Table("Candidates", CANDIDATES_LEAD, CANDIDATE_COLUMNS, rows, page=layout))
     html = render("discovery_steps.html", titles=[s.title for s in steps]) + table
-    return Section("Candidates", html, CANDIDATES_LEAD)
+    return Section(
+        "Candidates", html, CANDIDATES_LEAD, folded="Every candidate with its evidence, step by step"
+    )
 
 
 def _bar(row: CandidateRow) -> Markup:
@@ -107,7 +110,9 @@ def scan_section(discovery: Discovery) -> list[Section]:
     )
     places = discovery.scan.places[:CANDIDATES_LISTED]
     table = Table("Places", SCAN, SCAN_COLUMNS, places, page=layout)
-    return [Section("Without the library", table_html(table), SCAN)]
+    return [
+        Section("Without the library", table_html(table), SCAN, folded="The places, with their probability")
+    ]
 
 
 def held_out_section(discovery: Discovery) -> Section:

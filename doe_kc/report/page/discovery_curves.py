@@ -19,16 +19,16 @@ from doe_kc.report.render.page import Section, table_html
 
 DISCOVERY_CURVES_LEAD = (
     "Angles and wheel centre are changes from static; the half-width of a loop is (falling − rising) / 2. "
-    "The band is ±2 sd of the noise. Drag in the chart to zoom, double-click to see all."
+    "The band is ±2 sd of the noise."
 )
 GAP_WORDS = (
-    "RMS of model minus measured in units of the records' noise; 1 is noise. A decoy is the best other "
-    "effect, refitted alike: a gap that it closes as well is no evidence for a name."
+    "Model minus measured as a multiple of the noise of the rig; 1 is noise. The best other effect is fitted "
+    "in the place of the one found: what it closes as well does not speak for a name."
 )
 PREFIX = "effect-curves"
 DISCOVERY_MODELS = (
-    ShownModel("nominal", "nominal", MODEL_COLOURS["nominal"], "2 3", shown=False),
-    ShownModel("best_decoy", "with the best decoy", MODEL_COLOURS["best_decoy"], "3 3", shown=False),
+    ShownModel("nominal", "as handed in", MODEL_COLOURS["nominal"], "2 3", shown=False),
+    ShownModel("best_decoy", "with the best other effect", MODEL_COLOURS["best_decoy"], "3 3", shown=False),
     ShownModel("tuned", "re-tuned without an effect", MODEL_COLOURS["tuned"], "7 4"),
     ShownModel("with_effect", "re-tuned with the effect", MODEL_COLOURS["with_effect"]),
 )
@@ -99,4 +99,4 @@ def _half(view: ModelView, loops: dict[str, ModelView]) -> FloatArray:
 
 def gap_section(discovery: Discovery) -> Section:
     """A row a load case and response."""
-    return Section("Gap", table_html(gap_table(discovery)), GAP_WORDS)
+    return Section("Deviation of every curve", table_html(gap_table(discovery)), GAP_WORDS)

@@ -60,8 +60,8 @@ HEADER_FILL = CellFill("solid", fgColor="E4E8EC")
 FLAGGED = CellFill("solid", fgColor="FBE3F0")
 MUTED = "8A9199"
 THIN, THICK = Side(style="thin", color="C3C9CF"), Side(style="medium", color="3C4650")
-PAPER_A3, PAPER_A4 = 8, 9
-"""Paper sizes as the file format numbers them."""
+PAPER_A4 = 9
+"""As the file format numbers paper sizes."""
 LONGEST_TEXT = 32_000
 _FORBIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
@@ -176,12 +176,10 @@ def frame(
             ws.cell(r, c).border = _border(c in left, c + 1 in left, r in above, r + 1 in above)
 
 
-def page(
-    ws: Worksheet, study: str, *, paper: int = PAPER_A4, repeat: str | None = None, single: bool = False
-) -> None:
-    """Landscape, as wide as the paper (or on one page), study and sheet on top, page numbers below."""
+def page(ws: Worksheet, study: str, *, repeat: str | None = None, single: bool = False) -> None:
+    """Landscape A4, as wide as the paper (or on one page), study and sheet on top, page numbers below."""
     ws.page_setup.orientation = "landscape"
-    ws.page_setup.paperSize = paper
+    ws.page_setup.paperSize = PAPER_A4
     ws.page_setup.fitToWidth, ws.page_setup.fitToHeight = 1, int(single)
     ws.sheet_properties.pageSetUpPr.fitToPage = True
     ws.print_options.horizontalCentered = True

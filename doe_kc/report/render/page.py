@@ -9,21 +9,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from doe_kc import __version__
 from doe_kc.ground.output import write_whole
-from doe_kc.report.table import Column, PageCell, Row, Table, Value
+from doe_kc.report.render.typeset import typeset, unsigned_zero
+from doe_kc.report.table import Column, PageCell, Row, Table, Value, ink_on
 
 CHART_DIGITS = 7
 """Significant digits of the numbers that the page's charts hold."""
 NUMBER_STYLE = "n"
 """CSS class of cells that hold numbers."""
-HEAD_STYLES = ("first", NUMBER_STYLE)
+HEAD_STYLES = ("first", NUMBER_STYLE, "turned")
 """Classes that a head shares with the cells below it."""
+Paper = Literal["landscape", "portrait"]
+"""A4 across, of as many sheets as it takes; or upright, for what is meant for one sheet."""
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f\ufffe\uffff\ud800-\udfff]")
 
 
@@ -32,12 +35,14 @@ class Section:
     """One part of the page. title: also in the navigation. html: its content, safe as it is.
 
     Make the content with `render` from a template, which escapes, or with `markupsafe.Markup.format`; a
-    `<table class="data">` in it can be sorted and filtered. lead: one sentence under the title.
+    `<table class="data">` in it can be sorted and filtered. lead: one sentence under the title. folded: words
+    of the line that opens the content, which is neither shown nor printed before; empty for an open section.
     """
 
     title: str
     html: Markup
     lead: str = ""
+    folded: str = ""
 
     @property
     def ident(self) -> str:
@@ -45,15 +50,21 @@ class Section:
         return re.sub(r"[^a-z0-9]+", "-", self.title.lower()).strip("-") or "section"
 
 
-def page_html(title: str, sections: Sequence[Section], *, subtitle: str = "") -> str:
+def page_html(
+    title: str, sections: Sequence[Section], *, subtitle: str = "", paper: Paper = "landscape"
+) -> str:
     """The whole page with its styles and scripts inside; opens from a disk, a mail or a server."""
-    html = render("page.html", title=title, subtitle=subtitle, sections=sections, version=__version__)
+    html = render(
+        "page.html", title=title, subtitle=subtitle, sections=sections, paper=paper, version=__version__
+    )
     return _CONTROL.sub("\N{REPLACEMENT CHARACTER}", str(html))
 
 
-def write_page(path: Path, title: str, sections: Sequence[Section], *, subtitle: str = "") -> Path:
+def write_page(
+    path: Path, title: str, sections: Sequence[Section], *, subtitle: str = "", paper: Paper = "landscape"
+) -> Path:
     """Write `page_html`; RunError when it cannot be written."""
-    html = page_html(title, sections, subtitle=subtitle)
+    html = page_html(title, sections, subtitle=subtitle, paper=paper)
     return write_whole(path, lambda p: p.write_text(html, encoding="utf-8"))
 
 
@@ -64,15 +75,16 @@ def render(template: str, **values: Any) -> Markup:
 
 @lru_cache(maxsize=1)
 def _environment() -> Environment:
-    found = Environment(
+    environment = Environment(
         loader=PackageLoader("doe_kc.report.page", "templates"),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    found.filters["sig"] = significant
-    return found
+    environment.filters["sig"] = significant
+    environment.filters["typeset"] = typeset
+    return environment
 
 
 def significant(value: float, digits: int = 4) -> str:
@@ -118,7 +130,9 @@ def table_html(table: Table[Row], *, notice: Markup | None = None) -> Markup:
         layout=layout,
         choices=layout.choices or {},
         notice=notice or "",
-        heads=[(_head(c, p), _attributes({"class": _head_style(c, p)}), _sorted(c, p)) for c, p in columns],
+        heads=[
+            (column_head(c, p), _attributes({"class": _head_style(c, p)}), _sorted(c, p)) for c, p in columns
+        ],
         rows=[
             (
                 layout.tags(row) if layout.tags is not None else None,
@@ -128,10 +142,6 @@ def table_html(table: Table[Row], *, notice: Markup | None = None) -> Markup:
             for row in table.rows
         ],
     )
-
-
-def _head(column: Column[Row], cell: PageCell[Row]) -> str:
-    return cell.head if cell.head is not None else column.head or ""
 
 
 def _sorted(column: Column[Row], cell: PageCell[Row]) -> bool:
@@ -153,6 +163,9 @@ def _cell(column: Column[Row], cell: PageCell[Row], row: Row) -> Markup:
     attributes = {"class": f"{_style(column, cell)} {own.pop('class', '')}".strip()}
     if _sorted(column, cell):
         attributes["data-value"] = str((cell.order or column.value)(row))
+    fill = cell.fill(row) if cell.fill is not None else ""
+    if fill:
+        attributes["style"] = f"background:#{fill};color:#{ink_on(fill)}"
     return _attributes(attributes | own)
 
 
@@ -160,8 +173,18 @@ def _attributes(attributes: dict[str, str]) -> Markup:
     return Markup("").join(Markup(' {}="{}"').format(k, v) for k, v in attributes.items() if v)
 
 
-def _text(column: Column[Row], cell: PageCell[Row], row: Row) -> str:
-    text = cell.text(row) if cell.text is not None else _words(column.read(row), cell)
+def cell_text(column: Column[Row], cell: PageCell[Row], row: Row) -> str:
+    """What is read in a cell, before it is typeset; `Markup` where it is a drawing."""
+    return cell.text(row) if cell.text is not None else _words(column.read(row), cell)
+
+
+def column_head(column: Column[Row], cell: PageCell[Row]) -> str:
+    """What stands above the column."""
+    return cell.head if cell.head is not None else column.head or ""
+
+
+def _text(column: Column[Row], cell: PageCell[Row], row: Row) -> Markup:
+    text = typeset(cell_text(column, cell, row))
     strong = cell.strong is not None and cell.strong(row)
     return Markup("<b>{}</b>").format(text) if strong else text
 
@@ -170,5 +193,5 @@ def _words(value: Value, cell: PageCell[Row]) -> str:
     if value is None or isinstance(value, str):
         return value or ""
     if cell.layout and math.isfinite(value):
-        return format(value, cell.layout)
+        return unsigned_zero(format(value, cell.layout))
     return significant(value, cell.digits)

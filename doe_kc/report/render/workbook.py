@@ -17,8 +17,6 @@ from doe_kc.report.render.cells import (
     FLAGGED,
     HEADER_FILL,
     MUTED,
-    PAPER_A3,
-    PAPER_A4,
     cell_alignment,
     clean,
     frame,
@@ -27,7 +25,7 @@ from doe_kc.report.render.cells import (
     title,
     widths,
 )
-from doe_kc.report.table import Bar, Column, Inside, Row, Scale, Table
+from doe_kc.report.table import Bar, Column, Inside, Row, Scale, Table, zero_format
 
 TABLE_FIRST_ROW = 5
 """Row of the first entry below title, remark, gap and heads."""
@@ -71,8 +69,7 @@ def table_sheet(book: Workbook, table: Table[Row], study: str) -> Worksheet:
     if layout.wrapped:
         _wrap(ws, columns, range(TABLE_FIRST_ROW, last + 1))
     heads = TABLE_FIRST_ROW - 1
-    paper = PAPER_A3 if layout.paper == "A3" else PAPER_A4
-    page(ws, study, paper=paper, repeat=f"{heads}:{heads}", single=layout.single)
+    page(ws, study, repeat=f"1:{heads}", single=layout.single)
     ws.page_setup.fitToWidth = layout.pages_wide
     if layout.repeat_columns:
         ws.print_title_cols = layout.repeat_columns
@@ -86,7 +83,7 @@ def put_table(ws: Worksheet, table: Table[Row], *, start: int = TABLE_FIRST_ROW 
     """Heads in the row `start`, rows below, text to the left, numbers and their heads to the right; returns
     the last row. The sheet's filter is that of the table in the usual place."""
     columns = table.sheet_columns
-    numeric = [any(isinstance(c.read(row), float | int) for row in table.rows) for c in columns]
+    numeric = [any(isinstance(c.in_sheet(row), float | int) for row in table.rows) for c in columns]
     for c, column in enumerate(columns, start=1):
         head = put(ws, start, c, column.head, bold=True, fill=HEADER_FILL)
         head.alignment = cell_alignment(
@@ -111,7 +108,7 @@ def _put_row(ws: Worksheet, r: int, row: Row, table: Table[Row], columns: Sequen
     color = MUTED if table.muted is not None and table.muted(row) else None
     fill = FLAGGED if table.flagged is not None and table.flagged(row) else None
     for c, column in enumerate(columns, start=1):
-        value = column.read(row)
+        value = column.in_sheet(row)
         if value is None:
             if fill is not None:
                 ws.cell(r, c).fill = fill
@@ -119,7 +116,7 @@ def _put_row(ws: Worksheet, r: int, row: Row, table: Table[Row], columns: Sequen
             put(ws, r, c, value, horizontal="left", indent=1, color=color, fill=fill)
         else:
             number = column.number if isinstance(column.number, str) else column.number(row)
-            put(ws, r, c, value, number=number or None, color=color, fill=fill)
+            put(ws, r, c, value, number=zero_format(value, number) or None, color=color, fill=fill)
 
 
 def _color(ws: Worksheet, color: Bar | Scale | Inside, at: Mapping[str, str], last: int) -> None:

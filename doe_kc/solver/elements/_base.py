@@ -7,6 +7,7 @@ from typing import ClassVar, Literal
 
 import casadi as ca
 
+from doe_kc.axle.structure import of_side
 from doe_kc.solver.builder import Builder
 
 DEG = 180 / ca.pi
@@ -39,8 +40,8 @@ def element(cls: type[Element]) -> type[Element]:
 
 
 def mirror(side: str) -> int:
-    """+1 for the left side, -1 for the right."""
-    return 1 if side == "L" else -1
+    """-1 for the right side, +1 for the left and for what is of no side."""
+    return -1 if side == "R" else 1
 
 
 def reflection(side: str) -> ca.SX:
@@ -49,9 +50,9 @@ def reflection(side: str) -> ca.SX:
 
 
 def hardpoint(b: Builder, name: str, side: str) -> ca.SX:
-    """Design position (3,) of a hardpoint in the chassis frame, mm."""
-    key = f"{name}@{side}"
+    """Design position (3,) of a hardpoint in the chassis frame, mm; side empty: of a single point."""
+    key = of_side(name, side)
     if key not in b.points:
-        x, y, z = (b.parameter(f"{name}.{axis}@{side}") for axis in "xyz")
+        x, y, z = (b.parameter(of_side(f"{name}.{axis}", side)) for axis in "xyz")
         b.points[key] = b.constant(ca.vertcat(x, mirror(side) * y, z))
     return b.points[key]

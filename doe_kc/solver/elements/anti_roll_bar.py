@@ -10,13 +10,13 @@ either end is in series with it, 1 / k = 1 / k_bar + 2 c.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 import casadi as ca
 
 from doe_kc.curves import SIDES
-from doe_kc.solver.builder import Builder, Response
+from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._base import Element, Stage, element, hardpoint
 from doe_kc.solver.elements._cuts import stretch
 
@@ -29,19 +29,23 @@ class AntiRollBar(Element):
     stage: ClassVar[Stage] = "force"
 
     def assemble(self, b: Builder) -> None:
-        ratio = b.parameter("arb.radius") / b.parameter("arb.nominal_radius")
-        bar = b.parameter("arb.rate") * ratio**4
-        rate = b.constant(bar / (1 + 2 * bar * b.parameter("arb.link_flexibility")))
-        tubes = [b.bodies[f"tube.{side}"] for side in SIDES]
-        links = [t.point(hardpoint(b, "ARB", s)) for t, s in zip(tubes, SIDES, strict=True)]
-        design = b.constant(hardpoint(b, "ARB", "L")[2] - hardpoint(b, "ARB", "R")[2])
-        handed: dict[str, ca.SX] = {}
-        left, right = (stretch(b, "drop link", "z", s, _of(handed, s)) for s in SIDES)
-        up = rate * (links[0][2] - left - (links[1][2] - right) - design)
-        handed |= {"L": up, "R": -up}
-        force = ca.vertcat(0, 0, up)
-        b.push(tubes[0], -force, links[0])
-        b.push(tubes[1], force, links[1])
+        add_anti_roll_bar(b, [b.bodies[f"tube.{side}"] for side in SIDES], "ARB")
+
+
+def add_anti_roll_bar(b: Builder, bodies: Sequence[Body], at: str) -> None:
+    """Forces of the bar on a left and a right body at the hardpoint `at`."""
+    ratio = b.parameter("arb.radius") / b.parameter("arb.nominal_radius")
+    bar = b.parameter("arb.rate") * ratio**4
+    rate = b.constant(bar / (1 + 2 * bar * b.parameter("arb.link_flexibility")))
+    links = [each.point(hardpoint(b, at, s)) for each, s in zip(bodies, SIDES, strict=True)]
+    design = b.constant(hardpoint(b, at, "L")[2] - hardpoint(b, at, "R")[2])
+    handed: dict[str, ca.SX] = {}
+    left, right = (stretch(b, "drop link", "z", s, _of(handed, s)) for s in SIDES)
+    up = rate * (links[0][2] - left - (links[1][2] - right) - design)
+    handed |= {"L": up, "R": -up}
+    force = ca.vertcat(0, 0, up)
+    b.push(bodies[0], -force, links[0])
+    b.push(bodies[1], force, links[1])
 
 
 def _of(handed: Mapping[str, ca.SX], side: str) -> Response:

@@ -31,7 +31,9 @@ class Knuckle(Element):
             carrier = b.bodies[f"ball joint.{side}"]
             turned, turns = rotations(name)
             knuckle = body(name, ball, carrier.origin, turned)
-            b.bodies[f"knuckle.{side}"] = b.join(name, knuckle, carrier, turns, carries_moment=False)
+            b.bodies[f"carrier.{side}"] = b.bodies[f"knuckle.{side}"] = b.join(
+                name, knuckle, carrier, turns, carries_moment=False
+            )
             _turning_ball(b, carrier, knuckle, side)
             clamp = cut(b, "tube|knuckle", side, knuckle, [("CLAMP", side)], strut_axes)
             bends = b.topology.strut_bending

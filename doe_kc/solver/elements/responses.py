@@ -31,6 +31,11 @@ AXLE_OUTPUT_UNITS = {"rack_travel": "mm", "rack_force": "N", "column_force": "N"
 """Of the axle as a whole."""
 
 
+def output_unit(name: str) -> str:
+    """Unit of an output without its side; outputs beyond the tables are the forces of rods."""
+    return OUTPUT_UNITS.get(name) or AXLE_OUTPUT_UNITS.get(name) or "N"
+
+
 @element
 class Responses(Element):
     """Outputs `name@L`/`@R` per side, and those of the rack."""
@@ -50,7 +55,7 @@ class Responses(Element):
         b.output("column_force", b.points["column force"])
 
 
-def _line_angles(line: ca.SX, side: str) -> tuple[ca.SX, ca.SX]:
+def line_angles(line: ca.SX, side: str) -> tuple[ca.SX, ca.SX]:
     """(top rearwards, top inwards) angles of an upwards line in side and rear view, deg."""
     return DEG * ca.atan2(line[0], line[2]), DEG * ca.atan2(mirror(side) * line[1], line[2])
 
@@ -59,8 +64,8 @@ def _angles(b: Builder, side: str) -> dict[str, ca.SX]:
     spin, normal = b.points[f"spin.{side}"], b.points["pad normal"]
     knuckle, rod = b.bodies[f"knuckle.{side}"], b.bodies[f"rod.{side}"]
     lower, upper = hardpoint(b, "LWB", side), hardpoint(b, "UPB", side)
-    caster, kpi = _line_angles(rod.origin - knuckle.origin, side)
-    carried, _ = _line_angles(knuckle.axes @ (upper - lower), side)
+    caster, kpi = line_angles(rod.origin - knuckle.origin, side)
+    carried, _ = line_angles(knuckle.axes @ (upper - lower), side)
     return {
         "toe": DEG * ca.atan2(-spin[0], -mirror(side) * spin[1]),
         "camber": -DEG * ca.asin(spin[2]),

@@ -26,22 +26,27 @@ class Steering(Element):
     rank: ClassVar[int] = 60
 
     def assemble(self, b: Builder) -> None:
-        carrier = b.bodies["subframe.centre"]
-        carrier = cut(b, "rack housing|sub-frame", "", carrier, [("RIB", "L"), ("RIB", "R")])
-        if b.topology.rack_mount:
-            carrier, housing = _slider(b, "rack housing", carrier)
-            b.resist("rack housing", _mount(b, housing))
-        b.bodies["rack"], travel = _slider(b, "rack", carrier)
-        column = b.constant(b.parameter("scb.Tz") * b.parameter("steering.column"))
-        angle = travel - b.control("rack")
-        own: list[ca.SX] = []
-        own.append(column * (angle - stretch(b, "column", "along", "", lambda: own[0])))
-        windup = own[0] + push_pair(b, "column", "along", "", angle)
-        if b.topology.power_assist:
-            windup *= 1 + _assistance(b, windup)
-        b.resist("rack", windup + push_pair(b, "rack|housing", "along", "", travel))
-        b.points["rack"] = travel
-        b.points["column force"] = -windup
+        b.bodies["rack"] = add_rack(b, b.bodies["subframe.centre"], "RIB")
+
+
+def add_rack(b: Builder, carrier: Body, at: str) -> Body:
+    """The rack on its carrier; at: hardpoint of either side at its ends. Points `rack`, `column force`."""
+    carrier = cut(b, "rack housing|sub-frame", "", carrier, [(at, "L"), (at, "R")])
+    if b.topology.rack_mount:
+        carrier, housing = _slider(b, "rack housing", carrier)
+        b.resist("rack housing", _mount(b, housing))
+    rack, travel = _slider(b, "rack", carrier)
+    column = b.constant(b.parameter("scb.Tz") * b.parameter("steering.column"))
+    angle = travel - b.control("rack")
+    own: list[ca.SX] = []
+    own.append(column * (angle - stretch(b, "column", "along", "", lambda: own[0])))
+    windup = own[0] + push_pair(b, "column", "along", "", angle)
+    if b.topology.power_assist:
+        windup *= 1 + _assistance(b, windup)
+    b.resist("rack", windup + push_pair(b, "rack|housing", "along", "", travel))
+    b.points["rack"] = travel
+    b.points["column force"] = -windup
+    return rack
 
 
 def _assistance(b: Builder, windup: ca.SX) -> ca.SX:

@@ -25,14 +25,15 @@ class Stops(Element):
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
             slide = b.points[f"slide.{side}"]
-            bump = _one_stop(b, "bump_stop", b.topology.bump_points, side, -slide)
-            rebound = _one_stop(b, "rebound_stop", b.topology.rebound_points, side, slide)
+            bump = stop_force(b, "bump_stop", b.topology.bump_points, side, -slide)
+            rebound = stop_force(b, "rebound_stop", b.topology.rebound_points, side, slide)
             gas = b.constant(b.parameter(f"damper.gas_force@{side}"))
             b.resist(f"strut slide {side}", -(bump - rebound + gas))
             b.points[f"stop.{side}"] = bump - rebound
 
 
-def _one_stop(b: Builder, name: str, points: int, side: str, travel: ca.SX) -> ca.SX:
+def stop_force(b: Builder, name: str, points: int, side: str, travel: ca.SX) -> ca.SX:
+    """N of a side's bump or rebound stop at the travel (mm) towards it; >= 0."""
     law = curve.symbolic(b, f"{name}.table", points)
     clearance = b.constant(b.parameter(f"{name}.clearance@{side}"))
     factor = b.constant(b.parameter(f"{name}.factor@{side}"))

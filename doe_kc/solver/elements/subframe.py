@@ -23,7 +23,8 @@ def _mount_centre(b: Builder) -> ca.SX:
     return b.constant((points[0] + points[1] + points[2] + points[3]) / 4)
 
 
-def _free_body(b: Builder, name: str, centre: ca.SX) -> Body:
+def free_body(b: Builder, name: str, centre: ca.SX) -> Body:
+    """Body with six freedoms, its origin at the design point `centre`."""
     moved, shifts = translations(name)
     turned, turns = rotations(name)
     return b.join(name, body(name, centre, centre + moved, turned), None, shifts + turns)
@@ -39,11 +40,11 @@ class Subframe(Element):
 
     def assemble(self, b: Builder) -> None:
         centre = _mount_centre(b)
-        b.bodies["subframe.centre"] = _free_body(b, "sub-frame", centre)
+        b.bodies["subframe.centre"] = free_body(b, "sub-frame", centre)
         for side in SIDES:
             if b.topology.flexible_subframe:
-                half = _free_body(b, f"sub-frame half {side}", centre)
-                _flexible_joint(b, b.bodies["subframe.centre"], half, centre)
+                half = free_body(b, f"sub-frame half {side}", centre)
+                flexible_joint(b, b.bodies["subframe.centre"], half, centre)
             else:
                 half = b.bodies["subframe.centre"]
             b.bodies[f"subframe.{side}"] = cut(b, "sub-frame half|centre", side, half, MOUNTS)
@@ -59,7 +60,8 @@ class Subframe(Element):
                 )
 
 
-def _flexible_joint(b: Builder, inner: Body, outer: Body, at: ca.SX) -> None:
+def flexible_joint(b: Builder, inner: Body, outer: Body, at: ca.SX) -> None:
+    """Springs `subframe.k*`, `subframe.kr*` in the inner body's axes between two bodies at a design point."""
     k = b.constant(ca.vertcat(*[b.parameter(f"subframe.k{a}") for a in "xyz"]))
     kr = b.constant(ca.vertcat(*[b.parameter(f"subframe.kr{a}") for a in "xyz"]) * NM_PER_DEG)
     d = inner.axes.T @ (outer.point(at) - inner.point(at))

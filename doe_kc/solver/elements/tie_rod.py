@@ -11,8 +11,9 @@ from typing import ClassVar
 
 import casadi as ca
 
+from doe_kc.axle.structure import of_side
 from doe_kc.curves import SIDES
-from doe_kc.solver.builder import Builder, Response
+from doe_kc.solver.builder import Body, Builder, Response
 from doe_kc.solver.elements._base import Element, Stage, element, hardpoint
 from doe_kc.solver.elements._cuts import stretch
 
@@ -48,28 +49,35 @@ class TieRod(Element):
 
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
-            arm, rack = b.bodies[f"steer arm.{side}"], b.bodies["rack"]
-            outer, inner = hardpoint(b, "ROB", side), hardpoint(b, "RIB", side)
-            design = b.constant(ca.norm_2(outer - inner))
-            along = arm.point(outer) - rack.point(inner)
-            length = ca.norm_2(along)
-            lengthening = length - design - stretch(b, "tie rod", "along", side, self._tension(b, side))
             plays = b.topology.free_play_left if side == "L" else b.topology.free_play_right
-            label = f"tie rod {side}"
-            compliance = b.constant(b.parameter(f"tie_rod.flexibility@{side}"))
-            if plays:
-                gap, contact = (
-                    b.constant(b.parameter(f"tie_rod.{key}@{side}")) for key in ("gap", "contact")
-                )
-                tension = free_play_force(lengthening, gap, contact, compliance)
-            else:
-                tension = b.rigid(label, f"tie rod {side} (length)", lengthening, compliance)
-            b.points[f"tie rod.{side}"] = tension
-            pull = tension * along / length
-            b.push(arm, -pull, arm.point(outer))
-            b.push(rack, pull, rack.point(inner))
-            b.points[f"tie rod pull.{side}"] = pull
+            rack, arm = (b.bodies["rack"], "RIB"), (b.bodies[f"steer arm.{side}"], "ROB")
+            add_rod(b, "tie_rod", side, rack, arm, plays=plays)
 
-    @staticmethod
-    def _tension(b: Builder, side: str) -> Response:
-        return lambda: b.points[f"tie rod.{side}"]
+
+def add_rod(
+    b: Builder, name: str, side: str, inner: tuple[Body, str], outer: tuple[Body, str], *, plays: bool
+) -> None:
+    """Rod between two bodies with the hardpoints of its ends; points `NAME.SIDE` (tension, N) and
+    `NAME pull.SIDE` (force on the inner body), the name with spaces."""
+    words = name.replace("_", " ")
+    (first, at_first), (second, at_second) = inner, outer
+    start, end = hardpoint(b, at_first, side), hardpoint(b, at_second, side)
+    design = b.constant(ca.norm_2(end - start))
+    along = second.point(end) - first.point(start)
+    length = ca.norm_2(along)
+    lengthening = length - design - stretch(b, words, "along", side, _tension(b, words, side))
+    compliance = b.constant(b.parameter(of_side(f"{name}.flexibility", side)))
+    if plays:
+        gap, contact = (b.constant(b.parameter(of_side(f"{name}.{k}", side))) for k in ("gap", "contact"))
+        tension = free_play_force(lengthening, gap, contact, compliance)
+    else:
+        label = f"{words} {side}".strip()
+        tension = b.rigid(label, f"{label} (length)", lengthening, compliance)
+    pull = tension * along / length
+    b.push(second, -pull, second.point(end))
+    b.push(first, pull, first.point(start))
+    b.points[f"{words}.{side}"], b.points[f"{words} pull.{side}"] = tension, pull
+
+
+def _tension(b: Builder, words: str, side: str) -> Response:
+    return lambda: b.points[f"{words}.{side}"]

@@ -1,8 +1,9 @@
 """Tyre: radial spring in the wheel plane against a frictionless pad, with lift-off.
 
 N = k (R - t) / cos(camber to the pad) at P, where the ray in the wheel plane, downwards through the
-wheel centre, meets the pad; t is the distance. Horizontal forces act at P, which a laterally and
-longitudinally compliant tyre moves by F / k along the force.
+wheel centre, meets the pad; t is the distance. Of a wheel that has lifted off P is at the distance R.
+Horizontal forces act at P, which a laterally and longitudinally compliant tyre moves by F / k along the
+force.
 """
 
 from __future__ import annotations
@@ -37,9 +38,11 @@ class Tyre(Element):
             sine = ca.dot(normal, spin)
             cosine = ca.sqrt(1 - sine**2)
             distance = (ca.dot(normal, centre) - pad) / cosine
-            squash = _unloaded_radius(b, side) - distance
-            squash = b.control("bilateral") * squash + (1 - b.control("bilateral")) * ca.fmax(squash, 0)
-            load, contact = rate * squash / cosine, centre - distance * (normal - sine * spin) / cosine
+            radius, held = _unloaded_radius(b, side), b.control("bilateral")
+            squash = radius - distance
+            squash = held * squash + (1 - held) * ca.fmax(squash, 0)
+            reach = held * distance + (1 - held) * ca.fmin(distance, radius)
+            load, contact = rate * squash / cosine, centre - reach * (normal - sine * spin) / cosine
             b.points[f"tyre.{side}"], b.points[f"pad.{side}"] = load, pad
             b.points[f"contact.{side}"] = contact + _horizontal_deflection(b, side) + _patch_probes(b, side)
             _loads(b, side, load * normal)

@@ -28,7 +28,7 @@ class Wheel(Element):
 
     def assemble(self, b: Builder) -> None:
         for side in SIDES:
-            knuckle = b.bodies[f"knuckle.{side}"]
+            knuckle = b.bodies[f"carrier.{side}"]
             knuckle = cut(b, "wheel|knuckle", side, knuckle, [("WLC", side)])
             wheel = _sprung_wheel(b, knuckle, side) if b.topology.hub else knuckle
             b.bodies[f"wheel.{side}"] = wheel

@@ -33,6 +33,10 @@ class FirstOrderTrend:
         """(p, m) of the expansion."""
         return np.asarray(self.value + (x - self.point) @ self.slope.T)
 
+    def of(self, outputs: np.ndarray) -> FirstOrderTrend:
+        """The same of some outputs: places or marks (k,)."""
+        return FirstOrderTrend(self.point, self.value[outputs], self.slope[outputs])
+
 
 @final
 @register

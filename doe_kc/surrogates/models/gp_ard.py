@@ -1,5 +1,5 @@
-"""`gp_ard`: per-output length-scales of every variable by maximum likelihood (scikit-learn), a linear kernel
-beside: the reference that `gp` is measured against where designs abound.
+"""`gp_ard`: a length-scale of every variable and output by maximum likelihood, for fewer designs than `gp`
+needs to tell the variables apart by their linear parts.
 """
 
 from __future__ import annotations
@@ -11,49 +11,62 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates import posterior as gp
+from doe_kc.surrogates.ard_likelihood import Belief, Scales, best_start, even_scales, maximise
 from doe_kc.surrogates.interface import Fitted, SurrogateModel
 from doe_kc.surrogates.kernel import CovarianceKernel
+from doe_kc.surrogates.learning import Sample
 from doe_kc.surrogates.models._base import register
 from doe_kc.surrogates.models.gp import FittedGaussianProcess
-from doe_kc.surrogates.scikit_library import ArdParameters, train_ard
 from doe_kc.surrogates.training import Scaling
+
+LEAST_CURVATURE = 1e-12
+"""Added to the mean over all outputs before its logarithm is taken."""
 
 
 @final
 @register
 @dataclass(frozen=True)
 class RelevanceProcess(SurrogateModel):
-    """Seconds to minutes an output in 60-D; needs two designs a variable. iterations: of the maximisation."""
+    """Squared-exponential kernel of each output, its scales by `ard_likelihood`.
+
+    iterations: of each output by itself. shared: of the second maximisation, with a Gaussian prior about the
+    logarithm of the mean over all outputs, of precision `belief`: what is relevant to one characteristic of
+    an axle is likelier to be so to another. nugget: share of the output's variance.
+    """
 
     nugget: float = 1e-6
-    iterations: int = 100
+    iterations: int = 30
+    shared: int = 10
+    belief: float = 0.1
 
     id: ClassVar[str] = "gp_ard"
-    label: ClassVar[str] = "GP, ARD (scikit-learn)"
+    label: ClassVar[str] = "Gaussian process, full likelihood"
     complexity: ClassVar[int] = 6
-    costly: ClassVar[bool] = True
     interpolates: ClassVar[bool] = True
     exact_folds: ClassVar[bool] = True
     optimistic_loo: ClassVar[bool] = True
-
-    def fewest(self, variables: int) -> int:
-        """Two rows a variable."""
-        return max(5, 2 * variables)
+    most: ClassVar[int | None] = 143
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         del seed
         centre, scaling = x.mean(axis=0), Scaling.of(y)
-        z, values = x - centre, scaling.standardise(y)
-        found = [train_ard(z, c, nugget=self.nugget, iterations=self.iterations) for c in values.T]
-        kernel = _kernel(found, x.shape[1], self.nugget)
-        return FittedGaussianProcess(centre, scaling, gp.condition(kernel, z, values), None)
+        sample = Sample(x - centre, scaling.standardise(y))
+        scales = self._scales(sample)
+        kernel = _kernel(scales, self.nugget)
+        return FittedGaussianProcess(centre, scaling, gp.condition(kernel, sample.z, sample.values), None)
+
+    def _scales(self, sample: Sample) -> Scales:
+        even = even_scales(sample.spread, sample.values.shape[1])
+        first = best_start(even, sample.z, sample.values, nugget=self.nugget)
+        alone = maximise(first, sample.z, sample.values, nugget=self.nugget, iterations=self.iterations)
+        ordered = np.sort(np.exp(alone.curvature), axis=0)  # a sum that the outputs' order does not change
+        mean = np.log(ordered.mean(axis=0) + LEAST_CURVATURE)
+        return maximise(
+            alone, sample.z, sample.values, nugget=self.nugget, iterations=self.shared,
+            belief=Belief(mean, self.belief),
+        )  # fmt: skip
 
 
-def _kernel(parameters: list[ArdParameters], variables: int, nugget: float) -> CovarianceKernel:
-    return CovarianceKernel(
-        relevance=np.array([np.full(variables, f.slope) for f in parameters]),
-        curvature=np.array([f.lengths**-2 for f in parameters]),
-        bend=np.array([f.bend for f in parameters]),
-        constant=np.array([f.offset for f in parameters]),
-        nugget=np.full(len(parameters), nugget),
-    )
+def _kernel(scales: Scales, nugget: float) -> CovarianceKernel:
+    curvature, bend, constant = (np.exp(s) for s in (scales.curvature, scales.bend, scales.constant))
+    return CovarianceKernel(np.zeros_like(curvature), curvature, bend, constant, np.full(len(bend), nugget))

@@ -32,6 +32,7 @@ class Quadratic(SurrogateModel):
     id: ClassVar[str] = "quadratic"
     label: ClassVar[str] = "Quadratic (lasso)"
     complexity: ClassVar[int] = 1
+    costly: ClassVar[bool] = True
     interpolates: ClassVar[bool] = False
     exact_folds: ClassVar[bool] = False
 
@@ -58,8 +59,9 @@ class Polynomial:
 
     @property
     def slack(self) -> float:
-        """Mean square of the left-out residuals over that of the ridge regression with its terms held."""
-        return float((self.left_out**2).mean() / self.ridge.noise[0])
+        """Mean square of the left-out residuals over the variance that the ridge regression, its terms held,
+        predicts for them."""
+        return float((self.left_out**2).mean() / self.ridge.cross_validate().variance.mean())
 
 
 def _fit_one(terms: Terms, basis: FloatArray, y: FloatArray, folds: list[np.ndarray]) -> Polynomial:
@@ -127,7 +129,8 @@ class FittedQuadratic(Fitted):
     def cross_validate(self) -> LeftOut:
         """Five folds, the terms chosen anew in each at the same penalty."""
         residual = np.column_stack([p.left_out for p in self.parts])
-        return LeftOut(residual, np.tile((residual**2).mean(axis=0), (len(residual), 1)))
+        variance = [p.slack * p.ridge.cross_validate().variance[:, 0] for p in self.parts]
+        return LeftOut(residual, np.column_stack(variance))
 
     def _mean(self, x: FloatArray) -> FloatArray:
         return np.column_stack([p.ridge.predict(features(p.terms, x))[:, 0] for p in self.parts])

@@ -25,6 +25,13 @@ def test_a_friction_is_told_from_everything_else() -> None:
     assert {p.interface for p in found.places[:4]} & {"rack|housing", "ball joint"}
 
 
+def test_rubber_is_told_from_friction_at_one_place() -> None:
+    tuned = fit(model("rubber"), model("rubber").centre)
+    found = scan(tuned)
+    assert (found.places[0].interface, found.places[0].law) == ("all bushings", "friction")
+    assert found.places[0].words == "an unlisted friction along x, y and z at all bushings"
+
+
 def test_a_place_in_words() -> None:
     place = Place("wheel|knuckle", "compliance", "both", ("rx", "z"), 10.0, 0.9, 1.0)
     assert place.words == "an unlisted compliance about x and along z between wheel and knuckle"

@@ -55,15 +55,26 @@ def test_load_is_k_times_deflection_in_the_wheel_plane(camber: float, pad: float
 
 def test_the_contact_point_is_on_the_pad_and_in_the_wheel_plane() -> None:
     b = assembled(camber=3.0, toe=1.0)
-    given = {"pad L": 5.0, "roll": 0.04}
+    given = {"pad L": 20.0, "roll": 0.04}
     contact = number(b, b.points["contact.L"], given)
     normal = np.array([0.0, -np.sin(0.04), np.cos(0.04)])
-    assert normal @ contact == pytest.approx(5.0)
+    assert normal @ contact == pytest.approx(20.0)
     spin = number(b, b.points["spin.L"])
     assert spin @ (contact - [0.0, -790.0, HEIGHT]) == pytest.approx(0.0, abs=1e-9)
     # the steepest ray downwards: no part along the horizontal of the wheel plane
     along = np.cross(normal, spin)
     assert along @ (contact - [0.0, -790.0, HEIGHT]) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_a_lifted_wheel_has_its_contact_point_at_the_unloaded_radius() -> None:
+    b = assembled(camber=3.0)
+    centre = np.array([0.0, -790.0, HEIGHT])
+    cosine = np.cos(np.radians(3.0))
+    radius = HEIGHT / np.cos(np.radians(0.5)) + STATIC * np.cos(np.radians(0.5)) / RATE
+    lifted = number(b, b.points["contact.L"], {"pad L": -60.0}) - centre
+    assert np.linalg.norm(lifted) == pytest.approx(radius, rel=1e-12)
+    held = number(b, b.points["contact.L"], {"pad L": -60.0, "bilateral": 1.0}) - centre
+    assert np.linalg.norm(held) == pytest.approx((HEIGHT + 60.0) / cosine, rel=1e-12)
 
 
 def test_lift_off_and_the_two_sided_actuator() -> None:

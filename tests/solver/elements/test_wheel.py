@@ -15,7 +15,7 @@ HUB = {f"hub.{n}@{s}": v for n, v in (("camber", 6000.0), ("toe", 9000.0)) for s
 def assembled(rotation: object = (0.0, 0.0, 0.0), **topology: object):
     b = builder(**topology)
     for side in SIDES:
-        b.bodies[f"knuckle.{side}"] = stub(f"knuckle {side}", hardpoint("LWB", side), rotation=rotation)
+        b.bodies[f"carrier.{side}"] = stub(f"knuckle {side}", hardpoint("LWB", side), rotation=rotation)
     Wheel().assemble(b)
     return b
 
@@ -35,7 +35,7 @@ def test_the_spin_axis_reads_back_toe_and_camber(toe: float, camber: float) -> N
 def test_a_rigid_wheel_is_the_knuckle() -> None:
     phi = [0.02, 0.1, -0.3]
     b = assembled(phi)
-    assert b.bodies["wheel.L"] is b.bodies["knuckle.L"]
+    assert b.bodies["wheel.L"] is b.bodies["carrier.L"]
     ball = hardpoint("LWB")
     expected = ball + turned(phi) @ (hardpoint("WLC") - ball)
     np.testing.assert_allclose(number(b, b.points["wheel centre.L"]), expected)

@@ -16,10 +16,12 @@ from scipy.special import expit, logsumexp, ndtri
 
 from doe_kc.correlation.modelled.composite import Composite
 from doe_kc.correlation.modelled.trust_region import TrustBox
+from doe_kc.correlation.modelled.unit_samples import scrambled_sobol
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogates.interface import Fitted
 
-IMPROVEMENT_SAMPLES = 64
+IMPROVEMENT_LEVELS = 6
+"""Binary logarithm of the samples of the predicted errors."""
 SHARPNESS = 1e-2
 """Temperature t as a share of the best rating's size: below it an improvement is rounded."""
 ACQUISITION_ITERATIONS = 25
@@ -45,10 +47,8 @@ class ExpectedImprovement:
         self._doubt = doubt
         self._model, self._composite, self._best = model, composite, best
         self._failed = failed
-        from scipy.stats import qmc  # half a second that a search without exploration need not wait for
-
-        sampler = qmc.Sobol(model.outputs, rng=np.random.default_rng(seed))
-        self._z = ndtri(np.clip(sampler.random(IMPROVEMENT_SAMPLES), 1e-6, 1.0 - 1e-6))
+        samples = scrambled_sobol(IMPROVEMENT_LEVELS, model.outputs, seed)
+        self._z = ndtri(np.clip(samples, 1e-6, 1.0 - 1e-6))
         self._temperature = SHARPNESS * max(abs(best), 1e-3)
 
     def log(self, point: FloatArray) -> tuple[float, FloatArray]:
@@ -59,7 +59,7 @@ class ExpectedImprovement:
         rating, push = self._composite.rating_and_gradient(h)
         gain = (rating - self._best) / self._temperature
         log_soft = _log_softplus(gain)
-        value = float(logsumexp(log_soft) - np.log(IMPROVEMENT_SAMPLES))
+        value = float(logsumexp(log_soft) - np.log(len(self._z)))
         share = np.exp(log_soft - logsumexp(log_soft)) * _log_softplus_slope(gain) / self._temperature
         slope = push * share[:, None]
         sd_gradient = self._doubt * known.variance_gradient[0] / (2.0 * sd[:, None])
@@ -70,7 +70,7 @@ class ExpectedImprovement:
     def maximum(self, box: TrustBox, starts: Sequence[FloatArray]) -> FloatArray:
         """(d,) best point found from the starts, by L-BFGS-B inside the box."""
         bounds = list(zip(box.lower, box.upper, strict=True))
-        found = [
+        optima = [
             minimize(
                 self._negative,
                 box.clip(start),
@@ -81,7 +81,7 @@ class ExpectedImprovement:
             )
             for start in starts
         ]
-        best = min(found, key=lambda r: float(r.fun))
+        best = min(optima, key=lambda r: float(r.fun))
         return np.asarray(box.clip(best.x))
 
     def _negative(self, point: FloatArray) -> tuple[float, FloatArray]:

@@ -79,13 +79,13 @@ class Hybrid(SurrogateMethod):
         self, place: int, record: SearchHistory, out: Sequence[Candidate], rng: np.random.Generator
     ) -> Candidate:
         """The search's candidate, or a mutation when it has none, moved off designs that are known."""
-        found = self._searches[place].propose(record, rng)
-        if found is None:
+        proposal = self._searches[place].propose(record, rng)
+        if proposal is None:
             place = next(i for i, s in enumerate(self._searches) if isinstance(s, Mutation))
-            found = self._searches[place].propose(record, rng)
-        if found is None:
+            proposal = self._searches[place].propose(record, rng)
+        if proposal is None:
             raise ValueError("mutation needs no more than the baseline")
         self._asked.append(place)
-        point = record.fresh(found.point, [c.point for c in out], rng)
-        predicted = found.predicted if np.array_equal(point, found.point) else None
-        return Candidate(point, found.origin, predicted)
+        point = record.fresh(proposal.point, [c.point for c in out], rng)
+        predicted = proposal.predicted if np.array_equal(point, proposal.point) else None
+        return Candidate(point, proposal.origin, predicted)

@@ -28,8 +28,8 @@ def predicted_front(
     directions = reference_directions(count)
     first = _first_population(record, modelled, box, directions, rng)
     seed = int(rng.integers(2**31))
-    found = nsga3(judge, first, directions, box.lower, box.upper, generations=GENERATIONS, seed=seed)
-    points = np.unique(record.problem.space.snapped(found), axis=0)
+    population = nsga3(judge, first, directions, box.lower, box.upper, generations=GENERATIONS, seed=seed)
+    points = np.unique(record.problem.space.snapped(population), axis=0)
     values, violation = judge(points)
     if (violation > 0.0).all():
         return np.asarray(points[non_dominated(np.column_stack([values, violation]))])

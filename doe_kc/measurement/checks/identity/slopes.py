@@ -14,7 +14,7 @@ from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.branches import RunCurves, static_index
 from doe_kc.measurement.checks._base import RigTest
 from doe_kc.measurement.checks.repeats import odd_runs
-from doe_kc.measurement.white_noise import pooled_white_sd
+from doe_kc.measurement.noise import pooled_white_sd
 
 MIRRORED = ("vertical", "lateral_opposite", "drive", "brake")
 """Load cases that are their own mirror image; in the others left at +u is right at -u."""

@@ -2,7 +2,6 @@
 const makeChart = (function () {
   "use strict";
   const NS = "http://www.w3.org/2000/svg";
-  const PAD = { left: 74, right: 16, top: 12, bottom: 46 };
   const add = (parent, name, attributes, text) => {
     const node = document.createElementNS(NS, name);
     for (const key in attributes) node.setAttribute(key, attributes[key]);
@@ -24,7 +23,7 @@ const makeChart = (function () {
     for (let size = linear; size <= Math.max(Math.abs(low), Math.abs(high)) * 1.0001; size *= 10) out.push(size, -size);
     return out.filter((v) => v >= low && v <= high);
   }
-  const label = (v) => String(parseFloat(v.toPrecision(6)));
+  const label = (v) => String(parseFloat(v.toPrecision(6))).replace("-", "\u2212");
   function scale(linear) {
     if (!linear) return { to: (v) => v, from: (v) => v };
     return {
@@ -32,11 +31,13 @@ const makeChart = (function () {
       from: (t) => (Math.sign(t) * linear * (Math.pow(10, Math.abs(t)) - 1)) / 9,
     };
   }
+  // options.title, options.size: of a chart for print, which has no zoom and no cursor
   return function (host, options) {
+    const PAD = { left: 74, right: 16, top: options.title ? 44 : 12, bottom: 46 };
     const svg = add(host, "svg", { tabindex: 0, role: "img", "aria-label": options.name });
     let layers = [], axes = {}, full = null, view = null, cursor = null, drag = null;
     const yScale = scale(options.linear);
-    const size = () => ({ w: Math.max(host.clientWidth, 260), h: Math.max(host.clientHeight, 240) });
+    const size = () => options.size || ({ w: Math.max(host.clientWidth, 260), h: Math.max(host.clientHeight, 240) });
     const across = (x) => PAD.left + ((x - view.x0) / (view.x1 - view.x0)) * (size().w - PAD.left - PAD.right);
     const up = (y) => {
       const s = size(), t = (yScale.to(y) - view.y0) / (view.y1 - view.y0);
@@ -95,7 +96,7 @@ const makeChart = (function () {
       }
     }
     function frame(s) {
-      const many = Math.max(2, Math.floor(s.w / 90));
+      const many = Math.max(2, Math.floor(s.w / (options.size ? 75 : 90)));
       let xs = linearTicks(view.x0, view.x1, many);
       if (options.whole) xs = xs.filter((x) => Number.isInteger(x));
       for (const x of xs) {
@@ -103,7 +104,7 @@ const makeChart = (function () {
         add(svg, "text", { x: across(x), y: s.h - PAD.bottom + 16, "text-anchor": "middle" }, label(x));
       }
       const lowest = yScale.from(view.y0), highest = yScale.from(view.y1);
-      let ys = options.linear ? logTicks(lowest, highest, options.linear) : linearTicks(view.y0, view.y1, 6);
+      let ys = options.linear ? logTicks(lowest, highest, options.linear) : linearTicks(view.y0, view.y1, options.size ? 4 : 6);
       if (options.linear && ys.length < 3) ys = linearTicks(lowest, highest, 5);
       for (const y of ys) {
         add(svg, "line", { x1: PAD.left, x2: s.w - PAD.right, y1: up(y), y2: up(y), stroke: "#e3e6e9" });
@@ -111,6 +112,7 @@ const makeChart = (function () {
       }
       add(svg, "path", { d: "M" + PAD.left + " " + PAD.top + "V" + (s.h - PAD.bottom) + "H" + (s.w - PAD.right),
         fill: "none", stroke: "#1b2127" });
+      (options.title || []).forEach((line, i) => add(svg, "text", { x: 8, y: 17 + 16 * i, class: "title" }, line));
       add(svg, "text", { x: (PAD.left + s.w) / 2, y: s.h - 10, "text-anchor": "middle", class: "x-label" }, axes.x);
       add(svg, "text", { transform: "translate(16 " + s.h / 2 + ") rotate(-90)", "text-anchor": "middle",
         class: "y-label" }, axes.y);
@@ -169,6 +171,12 @@ const makeChart = (function () {
       const box = svg.getBoundingClientRect();
       return { x: event.clientX - box.left, y: event.clientY - box.top };
     };
+    function show(newLayers, newAxes) {
+      layers = newLayers; axes = newAxes; full = limits(); view = { ...full }; cursor = null;
+      svg.setAttribute("aria-label", options.name + ": " + axes.y + " over " + axes.x);
+      draw();
+    }
+    if (options.size) return { show };
     svg.addEventListener("pointerdown", (event) => { if (event.button === 0) drag = spot(event); });
     svg.addEventListener("pointermove", (event) => {
       const p = spot(event);
@@ -191,13 +199,6 @@ const makeChart = (function () {
       if (act && !event.ctrlKey && !event.metaKey) { act(); event.preventDefault(); }
     });
     new ResizeObserver(() => { if (view) draw(); }).observe(host);
-    return {
-      show(newLayers, newAxes) {
-        layers = newLayers; axes = newAxes; full = limits(); view = { ...full }; cursor = null;
-        svg.setAttribute("aria-label", options.name + ": " + axes.y + " over " + axes.x);
-        draw();
-      },
-      zoom, all,
-    };
+    return { show, zoom, all };
   };
 })();

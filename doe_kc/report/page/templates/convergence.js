@@ -6,7 +6,7 @@
   const data = JSON.parse(source.textContent);
   const readout = document.getElementById("convergence-readout"), legend = document.getElementById("convergence-legend");
   const minus = (v) => (v === null ? null : -v);
-  const format = (v) => (v === null ? "–" : String(parseFloat(v.toPrecision(6))));
+  const format = (v) => (v === null ? "–" : String(parseFloat(v.toPrecision(4))).replace("-", "\u2212"));
   const chart = makeChart(document.getElementById("convergence-chart"), {
     name: "Convergence", linear: data.linear, whole: true, zero: true, grid: () => data.number, onCursor: tell,
   });

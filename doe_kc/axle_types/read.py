@@ -1,0 +1,255 @@
+"""Reads a type file and checks that what its elements name is there."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from doe_kc.axle.structure import (
+    CHASSIS,
+    BallConnection,
+    BarConnection,
+    BushingConnection,
+    KingpinLine,
+    LineConnection,
+    RackConnection,
+    SplitBody,
+    Structure,
+)
+from doe_kc.axle_types.schema import AxleTypeFile, BushingTable, LineTable
+from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.files import read_toml, validate
+from doe_kc.ground.typing import FloatArray
+
+FOLDER = Path(__file__).parent
+BUILT_IN = tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
+"""Types that the package describes, by name."""
+WHEEL_CENTRE_POINT = "WLC"
+NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+RESERVED = {
+    *("tyre", "static", "steering", "scb", "arb", "damper", "bump_stop", "rebound_stop", "ride_height"),
+    *("hub", "rack_mount", "subframe", "strut_friction", "steering_friction", "power_assist"),
+    *("left", "right", "effects", "load_cases", "units", "follow", "name", "type", "schema", CHASSIS),
+}
+"""Names that an axle has whatever its type: no element may bear them."""
+
+
+@dataclass(frozen=True)
+class AxleType:
+    """structure: bodies and connections. label: of the type. labels: of points and elements by name.
+    axes: (3, 3) default local axes as columns, left side, by bushing that has no line."""
+
+    structure: Structure
+    label: str
+    labels: Mapping[str, str]
+    axes: Mapping[str, FloatArray]
+
+
+def read_axle_type(name: str, folder: Path, *, source: str) -> AxleType:
+    """A built-in type by its name, else the type file of that path, seen from `folder`.
+
+    InputError when there is neither, or the file is wrong; source: file that names the type.
+    """
+    if name in BUILT_IN:
+        path = FOLDER / f"{name}.toml"
+    elif name.endswith(".toml"):
+        path = folder / name
+    else:
+        raise InputError(
+            f"{source}: type = {name!r} is no axle type; known are {', '.join(BUILT_IN)}, "
+            f"or the path of a type file (*.toml).{nearest(name, BUILT_IN)}"
+        )
+    file = validate(AxleTypeFile, read_toml(path), str(path))
+    _check(file, str(path))
+    return AxleType(_structure(file), file.label, _labels(file), _axes(file, str(path)))
+
+
+def bushing_axes(x: list[float] | None, y: list[float] | None, where: str) -> FloatArray:
+    """(3, 3) axes as columns: e1 along x, e2 along what of y is across it, e3 = e1 x e2.
+
+    InputError when x and y do not span a plane.
+    """
+    first = np.array(x or [1.0, 0.0, 0.0])
+    second = np.array(y or [0.0, 1.0, 0.0])
+    length = float(np.linalg.norm(first))
+    e1 = first / length if length > 0 else first
+    across = second - np.dot(second, e1) * e1
+    if length == 0 or np.linalg.norm(across) < 1e-6 * max(float(np.linalg.norm(second)), 1e-300):
+        raise InputError(f"{where}: x and y span no plane; expected two directions that are not parallel.")
+    e2 = across / np.linalg.norm(across)
+    return np.column_stack([e1, e2, np.cross(e1, e2)])
+
+
+def _axes(file: AxleTypeFile, source: str) -> dict[str, FloatArray]:
+    return {
+        name: bushing_axes(table.x, table.y, f"{source}: [bushings.{name}]")
+        for name, table in file.bushings.items()
+        if table.line is None
+    }
+
+
+def _labels(file: AxleTypeFile) -> dict[str, str]:
+    elements = (file.bushings, file.balls, file.rods, file.cylindricals, file.springs)
+    out = {name: table.label or name for group in elements for name, table in group.items()}
+    return out | file.points | file.single_points
+
+
+def _structure(file: AxleTypeFile) -> Structure:
+    def lines(tables: Mapping[str, LineTable]) -> tuple[LineConnection, ...]:
+        return tuple(_line(name, table) for name, table in tables.items())
+
+    return Structure(
+        type=file.type,
+        bodies=tuple(n for n, kind in file.bodies.items() if kind == "side"),
+        single_bodies=tuple(n for n, kind in file.bodies.items() if kind == "single"),
+        points=tuple(file.points),
+        single_points=tuple(file.single_points),
+        carrier=file.carrier,
+        bushings=tuple(_bushing(name, table) for name, table in file.bushings.items()),
+        balls=tuple(BallConnection(n, t.a, t.b, t.at, t.single) for n, t in file.balls.items()),
+        rods=lines(file.rods),
+        cylindricals=lines(file.cylindricals),
+        springs=lines(file.springs),
+        damper=None if file.damper is None else _line("damper", file.damper),
+        rack=None
+        if file.rack is None
+        else RackConnection(file.rack.body, file.rack.carrier, file.rack.at, tuple(file.rack.rods)),
+        bar=None if file.arb is None else BarConnection(file.arb.body, file.arb.at),
+        kingpin=None if file.kingpin is None else KingpinLine(**file.kingpin.model_dump()),
+        subframe=None
+        if file.subframe is None
+        else SplitBody(file.subframe.body, tuple(file.subframe.centre)),
+    )
+
+
+def _line(name: str, table: LineTable) -> LineConnection:
+    return LineConnection(name, table.a, table.at_a, table.b, table.at_b, table.single)
+
+
+def _bushing(name: str, table: BushingTable) -> BushingConnection:
+    line = None if table.line is None else (table.line[0], table.line[1])
+    return BushingConnection(name, table.inner, table.outer, table.at, table.single, line)
+
+
+@dataclass(frozen=True)
+class _Use:
+    """What a table names. where: the table's key; single: one for both sides."""
+
+    where: str
+    bodies: tuple[str, ...]
+    points: tuple[str, ...]
+    single: bool = False
+
+
+def _uses(file: AxleTypeFile) -> Iterator[_Use]:
+    """Bodies and points that the elements name."""
+    for name, bush in file.bushings.items():
+        yield _Use(f"bushings.{name}", (bush.inner, bush.outer), (bush.at, *(bush.line or ())), bush.single)
+    for name, ball in file.balls.items():
+        yield _Use(f"balls.{name}", (ball.a, ball.b), (ball.at,), ball.single)
+    for kind in ("rods", "cylindricals", "springs"):
+        for name, line in getattr(file, kind).items():
+            yield _Use(f"{kind}.{name}", (line.a, line.b), (line.at_a, line.at_b), line.single)
+    if file.damper is not None:
+        ends = file.damper
+        yield _Use("damper", (ends.a, ends.b), (ends.at_a, ends.at_b), ends.single)
+    if file.rack is not None:
+        yield _Use("rack", (file.rack.body, file.rack.carrier), (file.rack.at,))
+    if file.arb is not None:
+        yield _Use("arb", (file.arb.body,), (file.arb.at,))
+    if file.kingpin is not None:
+        pin = file.kingpin
+        yield _Use("kingpin", (pin.lower_body, pin.upper_body), (pin.lower, pin.upper))
+    if file.subframe is not None:
+        yield _Use("subframe", (file.subframe.body,), tuple(file.subframe.centre))
+
+
+def _check(file: AxleTypeFile, source: str) -> None:
+    """InputError for a name that is unknown, unused, used twice, or of the wrong side."""
+    _check_names(file, source)
+    for use in _uses(file):
+        _check_bodies(file, use, source)
+        _check_points(file, use, source)
+    _check_used(file, source)
+    if file.carrier not in file.bodies:
+        raise InputError(
+            f"{source}: carrier = {file.carrier!r} is no body; known are {', '.join(file.bodies)}."
+            f"{nearest(file.carrier, file.bodies)}"
+        )
+    if file.rack is not None:
+        for rod in file.rack.rods:
+            if rod not in file.rods:
+                raise InputError(
+                    f"{source}: [rack] rods names {rod!r}, which is no rod; known are {', '.join(file.rods)}."
+                )
+        if file.bodies[file.rack.body] != "single":
+            raise InputError(f"{source}: [bodies] {file.rack.body} is the rack; expected it to be 'single'.")
+    if not file.springs:
+        raise InputError(f"{source}: [springs] is empty; expected at least one spring to carry the car.")
+
+
+def _check_names(file: AxleTypeFile, source: str) -> None:
+    elements = [*file.bushings, *file.balls, *file.rods, *file.cylindricals, *file.springs]
+    points = [*file.points, *file.single_points]
+    for name in (*elements, *points, *file.bodies):
+        if not NAME.fullmatch(name):
+            raise InputError(
+                f"{source}: {name!r} is no name; expected letters, digits and _, a letter first."
+            )
+    for name in (*elements, *points):
+        if name in RESERVED and name not in file.springs:
+            raise InputError(f"{source}: the name {name!r} is taken by every axle; choose another.")
+    for names, what in (([*elements, *points], "elements or points"), (list(file.bodies), "bodies")):
+        twice = [name for name, count in Counter(names).items() if count > 1]
+        if twice:
+            raise InputError(f"{source}: two {what} are named {twice[0]!r}; rename one.")
+    if WHEEL_CENTRE_POINT not in file.points:
+        raise InputError(f"{source}: [points] has no {WHEEL_CENTRE_POINT}, the wheel centre; add it.")
+    if CHASSIS in file.bodies:
+        raise InputError(f"{source}: [bodies] names {CHASSIS!r}, which is the vehicle body; remove it.")
+
+
+def _check_bodies(file: AxleTypeFile, use: _Use, source: str) -> None:
+    known = [CHASSIS, *file.bodies]
+    for body in use.bodies:
+        if body not in known:
+            raise InputError(
+                f"{source}: [{use.where}] names the body {body!r}; known are {', '.join(known)}."
+                f"{nearest(body, known)}"
+            )
+        if use.single and file.bodies.get(body) == "side":
+            raise InputError(
+                f"{source}: [{use.where}] is single, but {body} is a body of either side; "
+                "expected single bodies only."
+            )
+    if len(use.bodies) == 2 and use.bodies[0] == use.bodies[1] and use.where != "kingpin":
+        raise InputError(f"{source}: [{use.where}] connects {use.bodies[0]} with itself; name two bodies.")
+
+
+def _check_points(file: AxleTypeFile, use: _Use, source: str) -> None:
+    known = file.single_points if use.single else file.points
+    table = "single_points" if use.single else "points"
+    for point in use.points:
+        if point not in known:
+            raise InputError(
+                f"{source}: [{use.where}] names the point {point!r}, which is not in [{table}]; "
+                f"add it there or correct the name.{nearest(point, known)}"
+            )
+
+
+def _check_used(file: AxleTypeFile, source: str) -> None:
+    """Every body is connected, every point used."""
+    uses = list(_uses(file))
+    bodies = {body for use in uses if use.where not in ("kingpin", "arb", "subframe") for body in use.bodies}
+    points = {point for use in uses for point in use.points} | {WHEEL_CENTRE_POINT}
+    for body in file.bodies:
+        if body not in bodies:
+            raise InputError(f"{source}: the body {body!r} is connected with nothing; connect or remove it.")
+    for point in (*file.points, *file.single_points):
+        if point not in points:
+            raise InputError(f"{source}: the point {point!r} is used by no element; use or remove it.")

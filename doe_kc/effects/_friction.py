@@ -1,0 +1,87 @@
+"""Dry friction along one motion: its limit, the distance over which it builds up, and the law between."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.sliders import BACKBONE_YIELDS
+from doe_kc.axle.topology import FrictionLaw
+from doe_kc.effects._base import Effect, Option
+from doe_kc.effects._tables import checked_number
+from doe_kc.effects.hypothesis import Size
+from doe_kc.ground.errors import InputError
+
+EXPONENT = 1.0
+"""Of Dahl's law itself."""
+SPREAD = 0.8
+"""Standard deviation of the logarithm of yield displacements whose virgin curve is nearly exponential, as
+Dahl's is: sqrt(trigamma(2)) = 0.803. A measured loop of a bushing, fitted by four sliders, has 0.81."""
+BACKBONE_SHARES = (0.04, 0.07, 0.10, 0.13, 0.19, 0.32, 0.15)
+"""Shares of the sliders of a free backbone whose virgin curve is nearly exponential: 1 - (1 + y) exp(-y)
+between the geometric means of neighbouring yield displacements."""
+
+SHARE_LOG_SD = 1.5
+"""So wide that one slider may hold nearly all: a factor of 4.5 each."""
+
+
+class DryFriction(Effect):
+    """force_N: limit. presliding_mm: limit over initial stiffness. law: see `laws`. exponent: of law duhem
+    only; spread: of law lognormal only; shares: of law backbone only, of each slider in the limit, in
+    proportion."""
+
+    laws: ClassVar[Mapping[str, tuple[Size, ...]]] = {
+        "dahl": (),
+        "iwan": (),
+        "duhem": (Size("exponent", EXPONENT, "-", "shape"),),
+        "lognormal": (Size("spread", SPREAD, "-", "shape"),),
+        "backbone": tuple(
+            Size("shares", share, "-", "shape", index=i, log_sd=SHARE_LOG_SD)
+            for i, share in enumerate(BACKBONE_SHARES)
+        ),
+    }
+
+    @abstractmethod
+    def law_values(self, name: str, value: float) -> Mapping[str, float]:
+        """Axle values of one number of the law, such as `spread`."""
+
+    @abstractmethod
+    def with_law(self, axle: Axle, law: FrictionLaw) -> Axle:
+        """The axle whose equations have the law."""
+
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read(options, source, places)
+        shares = checked["shares"]
+        own = BACKBONE_SHARES if shares is None else shares
+        return checked | {"shares": _shares(own, f"{source}: effect {self.id}")}
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        numbers = {"force": options["force_N"], "presliding": options["presliding_mm"]}
+        numbers |= {key: options[key] for key in ("exponent", "spread")}
+        numbers |= {f"share{i}": share for i, share in enumerate(options["shares"])}
+        values = {k: v for name, number in numbers.items() for k, v in self.law_values(name, number).items()}
+        return self.with_law(axle.changed(values), options["law"])
+
+
+def friction_options(force: float, presliding: float) -> dict[str, Option]:
+    """Options of a dry friction, with its default limit in N and distance in mm; shares: BACKBONE_SHARES."""
+    return {
+        "force_N": Option(force, "N"),
+        "presliding_mm": Option(presliding, "mm"),
+        "law": Option("dahl", choices=tuple(DryFriction.laws)),
+        "exponent": Option(EXPONENT, "-"),
+        "spread": Option(SPREAD, "-"),
+        "shares": Option(None, "-"),
+    }
+
+
+def _shares(values: Any, where: str) -> list[float]:
+    name = f"{where}: shares = {values!r}"
+    if not isinstance(values, Sequence) or isinstance(values, str) or len(values) != len(BACKBONE_YIELDS):
+        raise InputError(f"{name}, expected a list of {len(BACKBONE_YIELDS)} numbers.")
+    return [checked_number(v, name, positive=True) for v in values]

@@ -1,0 +1,151 @@
+"""Friction inside the rubber of bushings, beside their elastic law along each translational axis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from doe_kc.axle.model import BUSHINGS, Axle
+from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
+from doe_kc.axle.structure import of_side
+from doe_kc.effects._base import Effect, Option, Part, effect
+from doe_kc.effects._dynamic_stiffness import dynamic_stiffness
+from doe_kc.effects._friction import SPREAD
+from doe_kc.effects._tables import checked_number, named_numbers
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.errors import InputError, nearest
+
+NUMBERS = {"share": "share", "yield_mm": "yield", "spread": "spread"}
+"""Key of the table -> last part of the axle value, as in `llr.rubber.share`."""
+BENCH_TRAVELS = (0.05, 0.5, 2.0)
+"""mm, of benches for dynamic stiffness, and of a K&C rig."""
+REAR = ("LLR",)
+"""The compliance bushing of the lower arm: the loops of drive and brake are its own."""
+
+
+@effect
+class RubberHysteresis(Effect):
+    """Sliders beside the elastic law along each local axis: on a first loading they add the stiffness
+    share k, and they hold at most the force share k yield_mm, k the axis's stiffness at zero.
+
+    bushings: those that have it. share, yield_mm, spread: a number for all of them, or a table such as
+    { LLR = 0.3, UPB = 0.1 } that names each. Per axis: which two axes of a bushing are its radial plane, in
+    which one vector law would hold less on a diagonal path (by up to 1 - 1/sqrt(2)), no axle file says.
+    Rotations have none: they would add about a newton to the wheel load.
+    """
+
+    id: ClassVar[str] = "rubber_hysteresis"
+    label: ClassVar[str] = "Rubber hysteresis"
+    part: ClassVar[Part] = "axle"
+    options: ClassVar[Mapping[str, Option]] = {
+        "bushings": Option([b.upper() for b in BUSHINGS]),
+        "share": Option(0.2, "-"),
+        "yield_mm": Option(0.2, "mm"),
+        "spread": Option(SPREAD, "-"),
+    }
+
+    physics: ClassVar[str] = (
+        "Filled rubber rubs inside, so that every bushing holds back a little on either way and is stiffer "
+        "over a small travel than over a large one."
+    )
+    mistaken_for: ClassVar[tuple[str, ...]] = ("steering_friction", "strut_friction", "llr.Fy")
+    shown_by: ClassVar[str] = (
+        "a slow force loop of the bushing on a test bench, at the rig's travel and at a tenth of it"
+    )
+    sizes: ClassVar[tuple[Size, ...]] = (Size("share", 0.2, "-"), Size("yield_mm", 0.2, "mm", "shape"))
+
+    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+        """All bushings by one share, and the two groups whose loops a rig tells apart."""
+        names = [name.upper() for name in places.all_bushings]
+        everywhere = Hypothesis(
+            self.id, None, self.sizes, {} if places.structure is None else {"bushings": names}
+        )
+        if not set(REAR) <= set(names):
+            return (everywhere,)
+        rest = [name for name in names if name not in REAR]
+        return (
+            everywhere,
+            Hypothesis(self.id, *REAR, self.sizes, {"bushings": list(REAR)}),
+            Hypothesis(self.id, "REST", self.sizes, {"bushings": rest}),
+        )
+
+    def consequence(self, options: Mapping[str, Any]) -> str:
+        """What it makes of a supplier's dynamic stiffness; of the first bushing where they differ."""
+        numbers = {k: options.get(k, o.default) for k, o in self.options.items() if k in NUMBERS}
+        first = {k: next(iter(v.values())) if isinstance(v, Mapping) else v for k, v in numbers.items()}
+        at = [dynamic_stiffness(**first, amplitude=amplitude) for amplitude in BENCH_TRAVELS]
+        travels = ", ".join(f"{amplitude:g}" for amplitude in BENCH_TRAVELS)
+        ratios = ", ".join(f"{each.ratio:.2f}" for each in at)
+        angles = ", ".join(f"{each.loss_angle:.1f}" for each in at)
+        return (
+            f"Over +-{travels} mm such a bushing is {ratios} times as stiff as its elastic law, its loss "
+            f"angle {angles} deg: a supplier's dynamic stiffness, measured over a small travel, is not "
+            "the stiffness that the rig sees."
+        )
+
+    def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
+        """What every bushing that either names has now."""
+        del before, after
+        places = places_of(axle)
+        own = {name: places.sides(name)[0] for name in axle.topology.rubber}
+        return {
+            "bushings": [name.upper() for name in own],
+            **{
+                key: {n.upper(): axle.values[of_side(f"{n}.rubber.{value}", side)] for n, side in own.items()}
+                for key, value in NUMBERS.items()
+            },
+        }
+
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read({k: v for k, v in options.items() if k not in NUMBERS}, source)
+        where = f"{source}: effect {self.id}"
+        names = checked["bushings"] if "bushings" in options else [n.upper() for n in places.all_bushings]
+        bushings = _bushings(names, where, places)
+        numbers = {
+            key: _numbers(key, options.get(key, self.options[key].default), bushings, where)
+            for key in NUMBERS
+        }
+        return {"bushings": bushings, **numbers}
+
+    def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
+        values: dict[str, float] = {}
+        places = places_of(axle)
+        for bushing in options["bushings"]:
+            for key, value in NUMBERS.items():
+                number = options[key]
+                own = number[bushing] if isinstance(number, Mapping) else number
+                name = bushing.lower()
+                values |= {of_side(f"{name}.rubber.{value}", s): own for s in places.sides(name)}
+        there = {*axle.topology.rubber, *(name.lower() for name in options["bushings"])}
+        rubber = tuple(name for name in places.all_bushings if name in there)
+        return replace(axle.changed(values), topology=replace(axle.topology, rubber=rubber))
+
+
+def _bushings(names: Any, where: str, places: Places) -> list[str]:
+    """Upper-case names, each once."""
+    known = [name.upper() for name in places.all_bushings]
+    listed = names if isinstance(names, list | tuple) else [names]
+    wrong = [name for name in listed if not isinstance(name, str) or name.upper() not in known]
+    if wrong or not listed:
+        hint = nearest(str(wrong[0]), known) if wrong else ""
+        raise InputError(
+            f"{where}: bushings = {names!r}, expected a list of some of {', '.join(known)}.{hint}"
+        )
+    return [name for name in known if name in {each.upper() for each in listed}]
+
+
+def _numbers(key: str, value: Any, bushings: Iterable[str], where: str) -> float | dict[str, float]:
+    """A number for all bushings, or one for each."""
+    if not isinstance(value, Mapping) or not value:
+        return checked_number(value, f"{where}: {key} = {value!r}", positive=True)
+    table = {name.upper(): number for name, number in value.items()}
+    checked = named_numbers(table, bushings, f"{where}: {key}", "one of its bushings", positive=True)
+    missing = [name for name in bushings if name not in checked]
+    if missing:
+        raise InputError(
+            f"{where}: {key} has no number for {', '.join(missing)}; add it, or give one for all."
+        )
+    return checked
