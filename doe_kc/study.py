@@ -145,6 +145,7 @@ def read_study(
     check_names(file.characteristics, file.curves, str(source))
     file.discovery.check_names(str(source))
     own = folder / file.measurement if file.measurement is not None else None
+    _check_out(out or folder / file.out, folder, folder / file.axle, measurement or own, str(source))
     return Study(
         name=file.name or folder.resolve().name,
         source=source,
@@ -166,6 +167,20 @@ def read_study(
         correlation=file.correlation,
         discovery=file.discovery,
     )
+
+
+def _check_out(out: Path, folder: Path, axle: Path, measurement: Path | None, source: str) -> None:
+    """Results are not written over the axle file or among the records."""
+    if "\0" in str(out):  # refused where it is written
+        return
+    place = out.resolve()
+    if place in (axle.resolve(), Path(source).resolve()):
+        raise InputError(f"{source}: out is {out}, a file of the study; name a folder of its own.")
+    if measurement is None:
+        return
+    records = (measurement.parent if measurement.is_file() else measurement).resolve()
+    if place.is_relative_to(records) and not folder.resolve().is_relative_to(records):
+        raise InputError(f"{source}: out is {out}, inside the records' folder; name a folder beside it.")
 
 
 def _check_windows(windows: dict[str, float], axle: Axle, source: str) -> None:

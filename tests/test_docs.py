@@ -91,8 +91,8 @@ def known_commands() -> dict[str, set[str]]:
 def test_the_commands_named_exist_with_their_options() -> None:
     known = known_commands()
     assert set(known) == {
-        *("init", "types", "check", "simulate", "reduce", "influence", "sample"),
-        *("surrogates", "predict", "correlate", "discover", "report", "run"),
+        *("init", "types", "check", "map", "predict", "simulate", "reduce", "influence", "sample"),
+        *("surrogates", "correlate", "discover", "report", "run"),
     }
     named = set()
     for page in PAGES:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
 import tempfile
 from pathlib import Path
@@ -63,6 +64,25 @@ def test_the_commands_options_take_the_place_of_the_studys(tmp_path: Path) -> No
     study = read_study(path, measurement=Path("m"), out=Path("n"), seed=0)
     assert (study.measurement, study.out, study.seed) == (Path("m"), Path("n"), 0)
     assert read_study(path).seed == 5
+
+
+@pytest.mark.parametrize("out", ["axle.toml", "study.toml", "rig", "rig/out"])
+def test_results_are_not_written_over_files_or_among_records(tmp_path: Path, out: str) -> None:
+    (tmp_path / "rig").mkdir()
+    with pytest.raises(InputError, match="out is"):
+        read_study(written(tmp_path, f'axle = "axle.toml"\nmeasurement = "rig"\nout = "{out}"\n'))
+
+
+def test_a_study_with_notepads_mark_is_read(tmp_path: Path) -> None:
+    path = written(tmp_path, 'axle = "axle.toml"\n')
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    assert read_study(path).measurement is None
+
+
+def test_a_pipe_is_refused_at_once(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "study.toml")
+    with pytest.raises(InputError, match="pipe or a device"):
+        read_study(tmp_path / "study.toml")
 
 
 def test_a_study_without_measurement_says_how_to_add_one(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from doe_kc.axle import Axle
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases.force import LateralOffset
-from doe_kc.measurement.records import RIG_NAMES
+from doe_kc.measurement.channels import RIG_NAMES
 
 RUNS = 3
 SAMPLE_TIME = 0.1

@@ -66,6 +66,8 @@ def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None 
     case = curves.cases.get(entry.load_case)
     if case is None or entry.response not in case.mean:
         return float("nan")
+    if entry.abscissa == "wheel_travel" and "wc_z" not in case.mean:
+        return float("nan")
     inside = fit_window(case, window)
     x = abscissa(entry, case, curves.half_track)[inside]
     return entry.scale * slope(x, case.mean[entry.response][LEFT_WHEEL][inside])

@@ -13,7 +13,7 @@ from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
+from doe_kc.curves import TYRE_LOAD, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.reduction import static_sd
@@ -206,7 +206,7 @@ def _exact_sd(value: float) -> float:
 def _measured(axle: Axle, measurement: Measurement, calibration: float = 0.0) -> Iterator[CurveData]:
     for case in measurement.curves.cases.values():
         inside = reached(axle, case)
-        for response in RIG_RESPONSES:
+        for response in case.mean:
             keep = inside if response == TYRE_LOAD else inside & (np.abs(case.input) > 1e-9)
             if not keep.any():
                 continue
@@ -232,11 +232,13 @@ def _half_widths(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
         keep[np.flatnonzero(keep)[:1]] = keep[np.flatnonzero(keep)[-1:]] = False
         if not keep.any():
             continue
-        for response in RIG_RESPONSES:
+        for response in case.mean:
             noise = measurement.noise[case.load_case][response]
             floor = SOLVER_FLOOR * noise.white**2 * np.eye(int(keep.sum()))
             for side in (0, 1):
                 value = np.asarray(case.half_width[response][side])
+                if not np.isfinite(value).all():  # a record of one branch: its loop is unknown
+                    continue
                 gain = np.hypot(CALIBRATION, noise.components.gain / np.sqrt(noise.runs)) * value
                 covariance = noise.half_width_covariance(side=side) + np.outer(gain, gain)
                 covariance += np.diag(corner_error(value, noise.point_sd(side)) ** 2)

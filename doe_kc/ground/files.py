@@ -18,6 +18,8 @@ EXCEL_SIGNATURES = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 def read_bytes(path: Path, what: str) -> bytes:
     """Content of a file; InputError when it cannot be read."""
     try:
+        if Path(path).exists() and not (Path(path).is_file() or Path(path).is_dir()):
+            raise InputError(f"{path}: is a pipe or a device, expected a {what} on a disk; name that.")
         return Path(path).read_bytes()
     except FileNotFoundError:
         raise InputError(f"{path}: there is no such {what}; check the path.") from None
@@ -34,7 +36,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     if content.startswith(EXCEL_SIGNATURES):
         raise InputError(f"{path}: is an Excel workbook, expected a TOML text file.")
     try:
-        return tomllib.loads(content.decode("utf-8"))
+        return tomllib.loads(content.decode("utf-8-sig"))  # Notepad puts a mark before it
     except UnicodeDecodeError:
         raise InputError(f"{path}: is not UTF-8 text; save it as UTF-8.") from None
     except (ValueError, RecursionError) as error:  # TOMLDecodeError; plain for a number of 5000 digits

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CaseCurves
+from doe_kc.curves import TYRE_LOAD, CaseCurves
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
@@ -36,6 +36,16 @@ class Loop:
 
     unload: IndexArray
     load: IndexArray
+
+
+def single_branch(values: FloatArray) -> IndexArray | None:
+    """Samples of a record that runs through the range once, in one way; None for any other."""
+    span = float(np.ptp(values))
+    points = turning_points(values, REVERSAL * span)
+    ends = [min(points), max(points)] if len(points) == 2 else []
+    if not ends or abs(values[ends[1]] - values[ends[0]]) < (1.0 - BRANCH_GAP) * span:
+        return None
+    return np.arange(ends[0], ends[1] + 1)
 
 
 def split_loop(values: FloatArray, *, label: str) -> Loop:
@@ -171,7 +181,7 @@ KERNEL_STEPS = 1.5
 
 @dataclass(frozen=True)
 class RunCurves:
-    """One run on the grid.
+    """One run on the grid. A record of one branch has it as both: its loop is unknown, its half-width nan.
 
     input: (n,) grid. unload, load: response -> (2, n), input falling and rising, as recorded.
     gram: (n, n), covariance of the run's mean curve per unit variance of a sample's white noise.
@@ -190,7 +200,14 @@ class RunCurves:
 
     def half_width(self, response: str) -> FloatArray:
         """(2, n) (falling - rising) / 2."""
+        if self.one_branch:
+            return np.full_like(self.load[response], np.nan)
         return (self.unload[response] - self.load[response]) / 2.0
+
+    @property
+    def one_branch(self) -> bool:
+        """Whether the record runs through its range once only."""
+        return self.loop.unload is self.loop.load
 
 
 def input_grid(case: LoadCase, records: Sequence[RigRecord]) -> FloatArray:
@@ -208,9 +225,10 @@ def input_grid(case: LoadCase, records: Sequence[RigRecord]) -> FloatArray:
 def reduce_run(record: RigRecord, grid: FloatArray) -> RunCurves:
     """Branches of one record on `grid` by local quadratic regression (see `smoothing`).
 
-    Raises InputError when the record holds no full loop.
+    Raises InputError when the record holds neither a full loop nor one branch of it.
     """
-    loop = split_loop(record.input, label=record.label)
+    branch = single_branch(record.input)
+    loop = split_loop(record.input, label=record.label) if branch is None else Loop(branch, branch)
     width = KERNEL_STEPS * float(np.diff(grid).max())
     falling = local_weights(record.input[loop.unload], grid, width)
     rising = local_weights(record.input[loop.load], grid, width)
@@ -218,9 +236,9 @@ def reduce_run(record: RigRecord, grid: FloatArray) -> RunCurves:
         record=record,
         loop=loop,
         input=grid,
-        unload={r: record.channels[r][:, loop.unload] @ falling.T for r in RIG_RESPONSES},
-        load={r: record.channels[r][:, loop.load] @ rising.T for r in RIG_RESPONSES},
-        gram=(falling @ falling.T + rising @ rising.T) / 4.0,
+        unload={r: c[:, loop.unload] @ falling.T for r, c in record.channels.items()},
+        load={r: c[:, loop.load] @ rising.T for r, c in record.channels.items()},
+        gram=falling @ falling.T if branch is not None else (falling @ falling.T + rising @ rising.T) / 4.0,
     )
 
 
@@ -246,8 +264,9 @@ def changes(response: str, curve: FloatArray, grid: FloatArray) -> FloatArray:
 def case_curves(load_case: str, runs: Sequence[RunCurves]) -> CaseCurves:
     """Mean and half-width curves averaged over main run and repeats."""
     grid = runs[0].input
-    mean = {r: np.mean([run.mean(r) for run in runs], axis=0) for r in RIG_RESPONSES}
-    half = {r: np.mean([run.half_width(r) for run in runs], axis=0) for r in RIG_RESPONSES}
+    measured = runs[0].record.channels
+    mean = {r: np.mean([run.mean(r) for run in runs], axis=0) for r in measured}
+    half = {r: np.mean([run.half_width(r) for run in runs], axis=0) for r in measured}
     return CaseCurves(
         load_case=load_case,
         input_unit=runs[0].record.case.unit,

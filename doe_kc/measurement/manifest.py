@@ -13,6 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.load_cases import LOAD_CASES
+from doe_kc.measurement.channel_map import ChannelMap, channel_map, named_map
+from doe_kc.measurement.map_file import MapFile
 
 
 def refuse_unknown(path: Path, data: Mapping[str, Any], model: type[BaseModel], prefix: str = "") -> None:
@@ -128,13 +130,28 @@ class SensorResolution(_Section):
     tyre_load_N: Positive = 4.0
 
 
+class CheckOptions(_Section):
+    """accept: globs of findings, as `sign.vertical.pad_z`, that the test engineer has looked at: they are
+    told
+    as warnings and stop nothing."""
+
+    accept: tuple[Text, ...] = ()
+
+
 class Manifest(_Section):
-    """The whole file. `records`: load case -> files, main run first, then its repeats."""
+    """The whole file. `records`: load case -> files, main run first, then its repeats.
+
+    axle: a note, which axle was tested. channels: the channel map: a preset's name, the path of a map file
+    from this file's folder, or the map itself.
+    """
 
     name: Annotated[str, Field(strict=True, min_length=1)]
+    axle: Text = ""
     setup: Setup = Setup()
     alignment: Alignment | None = None
     sensor_resolution: SensorResolution = SensorResolution()
+    channels: Text | MapFile = "doe_kc"
+    checks: CheckOptions = CheckOptions()
     records: Annotated[dict[str, tuple[Text, ...]], Field(min_length=1)]
 
     @field_validator("records", mode="before")
@@ -186,8 +203,17 @@ def load_manifest(path: Path) -> Manifest:
         raise InputError(sentence(path, error)) from None
 
 
+def manifest_channels(path: Path, manifest: Manifest) -> ChannelMap:
+    """The channel map of a test. path: of its `test.toml`. InputError for a map that is wrong."""
+    if isinstance(manifest.channels, str):
+        return named_map(manifest.channels, path.parent, str(path))
+    return channel_map(manifest.channels, path.parent, str(path))
+
+
 def _parse(path: Path) -> dict[str, Any]:
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):
+            raise InputError(f"{path}: is a pipe or a device; expected a test.toml on a disk, name that.")
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         raise InputError(f"{path}: no such file; expected the rig's test.toml, check the path.") from None

@@ -140,15 +140,19 @@ def estimate_noise(runs: Runs, resolution: Mapping[str, float]) -> dict[str, Cas
     out: dict[str, dict[str, NoiseModel]] = {case: {} for case in runs}
     for kind, responses in SENSOR_KINDS.items():
         partial = {
-            case: {r: _uninformed(case, r, members, resolution[kind]) for r in responses}
+            case: {r: _uninformed(case, r, members, resolution[kind]) for r in responses if _has(members, r)}
             for case, members in runs.items()
         }
-        pooled = [c for case in runs for r in responses for c in _repeats(partial[case][r], runs[case])]
+        pooled = [c for case in runs for r in partial[case] for c in _repeats(partial[case][r], runs[case])]
         components = error_components(pooled, resolution[kind]) if pooled else None
         for case, members in runs.items():
-            for r in responses:
+            for r in partial[case]:
                 out[case][r] = _informed(partial[case][r], members, components)
     return dict(out)
+
+
+def _has(runs: Sequence[RunCurves], response: str) -> bool:
+    return response in runs[0].record.channels
 
 
 def _uninformed(case: str, response: str, runs: Sequence[RunCurves], resolution: float) -> NoiseModel:
@@ -198,7 +202,7 @@ def _informed(model: NoiseModel, runs: Sequence[RunCurves], components: ErrorCom
 
 def _loop_scatter(model: NoiseModel, runs: Sequence[RunCurves]) -> float:
     """sd of the half-width from run to run beyond white noise, by moments; 0 with one run."""
-    if len(runs) < 2:
+    if len(runs) < 2 or any(run.one_branch for run in runs):
         return 0.0
     half = np.stack([run.half_width(model.response) for run in runs])
     observed = float(np.mean(np.var(half, axis=0, ddof=1)))

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from doe_kc.curves import RIG_RESPONSES, CurveSet
+from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.branches import RunCurves, case_curves, changes, reduce_case
+from doe_kc.measurement.channel_map import ChannelMap
 from doe_kc.measurement.gradients import (
     Gradient,
     GradientEstimate,
@@ -21,7 +22,7 @@ from doe_kc.measurement.gradients import (
     case_gradients,
     characteristic_estimates,
 )
-from doe_kc.measurement.manifest import Alignment, Manifest, load_manifest
+from doe_kc.measurement.manifest import Alignment, Manifest, load_manifest, manifest_channels
 from doe_kc.measurement.noise import CaseNoise
 from doe_kc.measurement.noise_estimation import estimate_noise
 from doe_kc.measurement.records import RigRecord, read_record
@@ -139,9 +140,15 @@ def measured_cases(manifest: Manifest) -> list[str]:
 
 def case_records(path: Path, manifest: Manifest, load_case: str) -> list[RigRecord]:
     """Main run and repeats of a load case. path: of the manifest. InputError for a bad one, or a copy."""
-    records = [_read(path.parent, entry, load_case) for entry in manifest.records[load_case]]
+    channels = manifest_channels(path, manifest)
+    records = [_read(path.parent, entry, load_case, channels) for entry in manifest.records[load_case]]
     main = records[0]
     for record in records[1:]:
+        if record.channels.keys() != main.channels.keys():
+            raise InputError(
+                f"{record.label}: does not have the same channels as {main.label}; expected repeats of one "
+                "test with the same sensors, list them apart or export the missing ones."
+            )
         if type(record.case) is not type(main.case):
             raise InputError(
                 f"{record.label}: its input is {record.case.channel}, that of {main.label} "
@@ -154,16 +161,16 @@ def case_records(path: Path, manifest: Manifest, load_case: str) -> list[RigReco
 def _refuse_copy(main: RigRecord, record: RigRecord) -> None:
     """A copy would pass for perfect repeatability."""
     same = main.input.shape == record.input.shape and np.array_equal(main.input, record.input)
-    if same and all(np.array_equal(main.channels[r], record.channels[r]) for r in RIG_RESPONSES):
+    if same and all(np.array_equal(c, record.channels[r]) for r, c in main.channels.items()):
         raise InputError(
             f"{record.label}: holds the same samples as {main.label}; expected a repeat run, "
             "list the right file or drop it."
         )
 
 
-def _read(folder: Path, entry: str, load_case: str) -> RigRecord:
+def _read(folder: Path, entry: str, load_case: str, channels: ChannelMap) -> RigRecord:
     name, mark, sheet = entry.partition("#")
-    return read_record(folder / name, load_case, sheet=sheet if mark else None)
+    return read_record(folder / name, load_case, sheet=sheet if mark else None, channels=channels)
 
 
 def _resolution(manifest: Manifest) -> dict[str, float]:
@@ -178,9 +185,9 @@ def _trends(runs: tuple[RunCurves, ...]) -> dict[str, tuple[PolynomialTrend, ...
     for run in runs:
         at = np.concatenate([run.loop.unload, run.loop.load])
         inputs.append(run.record.input[at])
-        values.append(np.concatenate([_referred(run, r, grid)[:, at] for r in RIG_RESPONSES]))
+        values.append(np.concatenate([_referred(run, r, grid)[:, at] for r in run.record.channels]))
     fits = fit_trends(np.concatenate(inputs), np.concatenate(values, axis=1))
-    return {r: fits[2 * k : 2 * k + 2] for k, r in enumerate(RIG_RESPONSES)}
+    return {r: fits[2 * k : 2 * k + 2] for k, r in enumerate(runs[0].record.channels)}
 
 
 def _referred(run: RunCurves, response: str, grid: FloatArray) -> FloatArray:

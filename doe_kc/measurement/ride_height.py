@@ -135,7 +135,7 @@ def _problem(
     case, reference = vertical_curves(measured), vertical_curves(model)
     near = np.abs(case.input) <= KINEMATIC_WINDOW * (1.0 + 1e-9)
     wide = (case.input >= LOAD_RANGE[0]) & (case.input <= LOAD_RANGE[1])
-    masks = dict.fromkeys(KINEMATIC_SCATTER, near) | {LOAD_CHANNEL: wide}
+    masks = {r: near for r in KINEMATIC_SCATTER if r in case.mean} | {LOAD_CHANNEL: wide}
     return ShiftProblem(
         curves=ShiftedCurves.of(reference),
         pad={r: case.input[m] for r, m in masks.items()},

@@ -10,6 +10,7 @@ from numpy.polynomial import chebyshev
 from doe_kc.ground.typing import FloatArray
 
 MAX_DEGREE = 15
+SAMPLES_PER_DEGREE = 5
 TREND_FOLDS = 10
 """Usual (Breiman, Spector, Int. Stat. Rev. 60, 1992)."""
 BLOCKS = 40
@@ -44,12 +45,13 @@ def fit_trends(inputs: FloatArray, values: FloatArray) -> tuple[PolynomialTrend,
 
     The degree is the smallest whose blocked 10-fold cross-validation error is within one standard error
     of the smallest one, the standard error being that of the difference, fold by fold.
-    n must exceed 2 (MAX_DEGREE + 1).
+    Few samples limit the degree: `SAMPLES_PER_DEGREE` for each.
     """
+    most = min(MAX_DEGREE, inputs.size // SAMPLES_PER_DEGREE)
     centre = float(inputs.max() + inputs.min()) / 2.0
     scale = float(np.ptp(inputs)) / 2.0
     position = (inputs - centre) / scale
-    basis: FloatArray = chebyshev.chebvander(position, MAX_DEGREE).astype(np.float64)
+    basis: FloatArray = chebyshev.chebvander(position, most).astype(np.float64)
     folds = _folds(position)
     errors = _fold_errors(basis, values, folds)
     return tuple(

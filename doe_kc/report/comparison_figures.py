@@ -46,14 +46,15 @@ def comparison_figure(comparison: Comparison, load_case: str) -> Sheet:
     measured = comparison.measured.cases[load_case]
     case = LOAD_CASES[load_case]
     page, panels = sheet(3, 3, size=style.A4_LANDSCAPE, share_x=False, margins=COMPARISON_MARGINS)
-    for panel, response in zip(panels.flat, RIG_RESPONSES, strict=False):
+    present = [r for r in RIG_RESPONSES if r in measured.mean]
+    for panel, response in zip(panels.flat, present, strict=False):
         _draw(panel, comparison, load_case, response)
         panel.set_labels(input_label(load_case, measured.input_unit), response_axis(response))
         panel.set_title(RESPONSE_LABELS[response])
         panel.x.set_locator(ticks(5))
         panel.y.set_locator(ticks(7))
     table, legend = page.panels[7:]
-    del page.panels[7:]
+    del page.panels[len(present) :]
     _table(page, table.box, comparison, load_case)
     page.add_legend(
         _handles(comparison, load_case), 1, 7.5, ("left", "top"), (legend.box.left, legend.box.top)
@@ -130,7 +131,7 @@ def _table(page: Sheet, box: PageBox, comparison: Comparison, load_case: str) ->
         lines.append("* outside the interval of equations 5.1 and 5.2")
     lines += ["", f"{'RMS, model minus measured':<{wide}}{'left':>10}{'right':>10}"]
     rms = {(c.response, c.side): c.rms for c in comparison.curves if c.load_case == load_case}
-    for response in RIG_RESPONSES:
+    for response in [r for r in RIG_RESPONSES if (r, "L") in rms]:
         name = f"{response_name(response)} [{RESPONSE_UNITS[response]}]"
         lines.append(f"{name:<{wide}}" + "".join(f"{rms[response, side]:>10.3g}" for side in SIDES))
     words = "\n".join(lines)

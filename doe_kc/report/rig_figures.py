@@ -42,9 +42,10 @@ def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
     """
     case = measurement.curves.cases[load_case]
     run = measurement.runs[load_case][0]
-    page, panels = sheet(len(RIG_RESPONSES), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=RIG_MARGINS)
+    present = [r for r in RIG_RESPONSES if r in case.mean]
+    page, panels = sheet(len(present), 3, size=A4, width_ratios=(1.0, 1.0, 0.9), margins=RIG_MARGINS)
     gradients = {(g.response, g.side): g for g in measurement.gradients if g.load_case == load_case}
-    for row, response in zip(panels, RIG_RESPONSES, strict=True):
+    for row, response in zip(panels, present, strict=True):
         other = _characteristic(measurement, load_case, response)
         for side, name in enumerate(SIDES):
             _panel(row[side], measurement, load_case, response, side)

@@ -197,7 +197,7 @@ def _curves(
         inside = reached(axle, case)
         if not inside.any():
             continue
-        for response in RIG_RESPONSES:
+        for response in case.mean:
             own = [o for o in options if fnmatchcase(f"{case.load_case}.{response}", o.match)]
             curve = np.asarray(case.mean[response])[:, inside]
             noise = measurement.noise[case.load_case][response]

@@ -112,6 +112,7 @@ def compare(
         for case in measured.cases
         if case in model.cases and same_input(model.cases[case], measured.cases[case])
         for response in RIG_RESPONSES
+        if response in measured.cases[case].mean
         for side in range(2)
     ]
     return Comparison(model, measured, tuple(rows), tuple(curves), dict(curve_sd or {}))

@@ -5,15 +5,15 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.correlation.methods import check_method
-from doe_kc.curves import CaseCurves, CurveSet
+from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import DoeKcError, InputError, RunError
 from doe_kc.measurement import Manifest, load_manifest
-from doe_kc.measurement.branches import reduce_case
+from doe_kc.measurement.branches import RunCurves, reduce_case
 from doe_kc.measurement.reduction import case_records, check_window_points, measured_cases, measured_curves
 from doe_kc.sampling._base import find_sampler
 from doe_kc.study import Study, read_study
@@ -23,13 +23,14 @@ from doe_kc.workflow.check_targets import (
     missed_targets,
     stated_intervals,
 )
+from doe_kc.workflow.rig_checks import axle_curves, rig_findings
 from doe_kc.workflow.setup import setup_differences
 
 
 @dataclass(frozen=True)
 class Fault:
     """where: file, record or key. kind: study, solver, method, variables, targets, sampling, surrogates,
-    measurement, record, setup or out. message: the whole sentence.
+    measurement, record, setup, out, or that of a finding on the records. message: the whole sentence.
     """
 
     where: str
@@ -57,6 +58,7 @@ class StudyCheck:
 class _Collector:
     def __init__(self) -> None:
         self.errors: list[Fault] = []
+        self.warnings: list[Fault] = []
 
     def __call__(self, kind: str, check: Callable[[], object]) -> bool:
         """Whether the check passes."""
@@ -69,7 +71,7 @@ class _Collector:
 
 
 def check_study(path: Path, *, measurement: Path | None = None, out: Path | None = None) -> StudyCheck:
-    """Every fault of a study file that can be told without solving or fitting anything.
+    """Every fault of a study file that can be told without fitting anything.
 
     measurement, out: in place of the study's own. Of a study file or an axle that cannot be read, the first
     fault; of others as `check_read_study`.
@@ -92,7 +94,7 @@ def check_read_study(study: Study) -> StudyCheck:
     collect("out", lambda: _check_out(study.out))
     collect("out", lambda: _check_store(study))
     missed = (_fault("targets", sentence) for sentence in missed_targets(study, intervals))
-    warnings = (*_warnings(study, manifest), *missed)
+    warnings = (*collect.warnings, *_warnings(study, manifest), *missed)
     return StudyCheck(study, manifest, tuple(collect.errors), warnings)
 
 
@@ -116,10 +118,12 @@ def _check_measurement(study: Study, collect: _Collector) -> tuple[Manifest | No
     except InputError as error:
         collect.errors.append(_fault("measurement", str(error)))
         return None, None
-    curves = measured_curves(manifest, {}, study.axle.half_track)
-    cases: dict[str, CaseCurves] = {}
+    runs: dict[str, tuple[RunCurves, ...]] = {}
     for case in measured_cases(manifest):
-        collect("record", lambda case=case: cases.update(_checked_case(study, path, manifest, case)))  # type: ignore[misc]
+        collect("record", lambda case=case: runs.update(_checked_case(study, path, manifest, case)))  # type: ignore[misc]
+    for finding in rig_findings(path, manifest, runs, axle_curves(study.axle)):
+        fault = Fault(finding.where, finding.kind, finding.message)
+        (collect.errors if finding.severity == "error" else collect.warnings).append(fault)
     if not set(manifest.records) & set(study.axle.load_cases):
         sentence = "no load case of the records is among the axle's; expected one of "
         collect.errors.append(
@@ -127,10 +131,12 @@ def _check_measurement(study: Study, collect: _Collector) -> tuple[Manifest | No
         )
     for sentence in _unset(study, manifest):
         collect.errors.append(_fault("measurement", f"{study.source}: correlation.set_first: {sentence}"))
-    return manifest, replace(curves, cases=cases)
+    return manifest, measured_curves(manifest, runs, study.axle.half_track)
 
 
-def _checked_case(study: Study, path: Path, manifest: Manifest, case: str) -> Mapping[str, CaseCurves]:
+def _checked_case(
+    study: Study, path: Path, manifest: Manifest, case: str
+) -> Mapping[str, tuple[RunCurves, ...]]:
     """Records read, branches told apart, enough points in the fit window; as `reduce` does it."""
     runs = {case: reduce_case(case_records(path, manifest, case))}
     curves = measured_curves(manifest, runs, study.axle.half_track)
@@ -139,7 +145,7 @@ def _checked_case(study: Study, path: Path, manifest: Manifest, case: str) -> Ma
         from doe_kc.measurement.ride_height import vertical_curves
 
         vertical_curves(curves)
-    return curves.cases
+    return runs
 
 
 def _unset(study: Study, manifest: Manifest) -> Iterator[str]:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from doe_kc.axle import Axle, design_parameters
-from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD
+from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
@@ -28,6 +28,7 @@ from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
+from doe_kc.workflow.rig_checks import axle_curves, refuse_faulty, rig_findings
 from doe_kc.workflow.setup import setup_differences
 
 
@@ -67,24 +68,33 @@ def study_records(study: Study) -> Reduced | None:
     return reduce_records(study, solve(study.axle)) if study.measurement is not None else None
 
 
-def study_measurement(study: Study) -> Measurement:
-    """The study's reduced records; InputError when it names none. Warns where the set-up differs."""
+def study_measurement(study: Study, model: CurveSet | None = None) -> Measurement:
+    """The study's reduced records; InputError when it names none, or where physics says that they are wrong.
+
+    Warns where the set-up differs and of what looks wrong. model: curves of the study's axle, solved if None.
+    """
     measurement = reduce_measurement(
         study.measured(), windows=study.windows, half_track=study.axle.half_track
     )
     for sentence in setup_differences(study.axle, measurement.manifest):
         log.warning(sentence)
+    path = study.measured()
+    source = path / "test.toml" if path.is_dir() else path
+    model = axle_curves(study.axle) if model is None else model
+    refuse_faulty(rig_findings(source, measurement.manifest, measurement.runs, model))
     return measurement
 
 
 def reduce_records(study: Study, solution: Solution) -> Reduced:
     """The study's records, and their ride height relative to the solved model."""
-    measurement = study_measurement(study)
+    model = curve_set(solution)
+    measurement = study_measurement(study, model)
     height = None
-    if "vertical" in measurement.curves.cases and "vertical" in solution.cases:
+    vertical = measurement.curves.cases.get("vertical")
+    if vertical is not None and {"wc_z", "tyre_load"} <= set(vertical.mean) and "vertical" in solution.cases:
         height = infer_ride_height(
             measurement.curves,
-            curve_set(solution),
+            model,
             measurement.noise["vertical"],
             scatter=vertical_scatter(study.axle, solution),
         )

@@ -20,7 +20,7 @@ from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement import Measurement
-from doe_kc.measurement.records import RIG_NAMES
+from doe_kc.measurement.channels import RIG_NAMES
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study

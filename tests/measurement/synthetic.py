@@ -14,7 +14,7 @@ from scipy.interpolate import PchipInterpolator
 from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES
-from doe_kc.measurement.records import RIG_NAMES
+from doe_kc.measurement.channels import RIG_NAMES
 
 DATA = Path(__file__).parents[1] / "data" / "reference"
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "rig"

@@ -1,0 +1,1 @@
+"""Channel maps that ship with the package, one TOML file each."""
