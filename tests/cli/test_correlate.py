@@ -20,6 +20,7 @@ import pytest
 
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import reduce_all
+from doe_kc.report import correlation_figures
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
@@ -72,7 +73,7 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Correlated:
     study = study_in(tmp_path_factory.mktemp("example"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DOE_KC_COMPILE", "0")
-        patch.setattr("doe_kc.report.correlation_figures.write_correlation_figures", lambda *_, **__: [])
+        patch.setattr(correlation_figures, "write_correlation_figures", lambda *_, **__: [])
         return Correlated(study, document_of(study))
 
 

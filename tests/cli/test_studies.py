@@ -12,6 +12,7 @@ import pandas as pd
 import pytest
 
 from doe_kc.load_cases import CASE_ORDER
+from doe_kc.report import comparison_figures, rig_figures
 from doe_kc.workflow.discover import effect_library
 from tests.cli.runner import FEW, SHORT, Outcome, fails, invoke, leftovers, succeeds, write_study
 from tests.reference import EXAMPLE, nominal
@@ -93,8 +94,8 @@ def reduced(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     study = write_study(folder, records={"vertical": ("vertical.csv",)} | LATERAL)
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DOE_KC_COMPILE", "0")
-        for module in ("rig_figures.write_rig_figures", "comparison_figures.write_comparison_figures"):
-            patch.setattr(f"doe_kc.report.{module}", lambda *_, **__: [])
+        patch.setattr(rig_figures, "write_rig_figures", lambda *_, **__: [])
+        patch.setattr(comparison_figures, "write_comparison_figures", lambda *_, **__: [])
         outcome = succeeds("reduce", study, "--out", folder / "results", "--json", folder / "r.json")
     return folder, outcome.out
 
