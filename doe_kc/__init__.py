@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from doe_kc.api.correlation import CorrelationResult, correlate
     from doe_kc.api.discovery import DiscoveryResult, discover
     from doe_kc.api.influence import InfluenceResult, influence
+    from doe_kc.api.map_rig import map
     from doe_kc.api.measurement import ReductionResult, reduce
+    from doe_kc.api.predict import predict
     from doe_kc.api.report import ReportResult, report
     from doe_kc.api.run import RunResult, run
     from doe_kc.api.samples import SamplingResult, sample
@@ -60,7 +62,9 @@ _HOMES = {
     "discover": "doe_kc.api.discovery",
     "influence": "doe_kc.api.influence",
     "init": "doe_kc.api.studies",
+    "map": "doe_kc.api.map_rig",
     "parameters": "doe_kc.api.axle",
+    "predict": "doe_kc.api.predict",
     "read_axle": "doe_kc.api.axle",
     "read_study": "doe_kc.api.studies",
     "reduce": "doe_kc.api.measurement",
@@ -102,7 +106,9 @@ __all__ = [
     "discover",
     "influence",
     "init",
+    "map",
     "parameters",
+    "predict",
     "read_axle",
     "read_study",
     "reduce",

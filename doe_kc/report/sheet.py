@@ -171,7 +171,9 @@ class _Page(Artist):
 
 
 class _Parent:
-    """What collections ask of the figure that they are on: its size and its dots an inch."""
+    """What artists ask of the figure that they are on: its size, its dots an inch, how images are merged."""
+
+    suppressComposite = None  # Matplotlib's name, asked by what is drawn as pixels in a vector file
 
     def __init__(self, width: float, height: float) -> None:
         self.dpi, self.bbox = DPI, Bbox.from_bounds(0.0, 0.0, width * DPI, height * DPI)

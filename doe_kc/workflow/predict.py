@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from doe_kc.ground.errors import InputError, nearest
-from doe_kc.ground.output import write_csv
+from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling.table import HEADER_ROWS, LABEL, read_frame
 from doe_kc.surrogates.report import SurrogateReport
@@ -168,12 +168,15 @@ def _outside(
 
 def write_predictions(predicted: Predicted, path: Path) -> Path:
     """CSV, one row a design: label, then mean and standard deviation (`ID sd`) of every output."""
-    import pandas as pd
+    return write_columns(path, prediction_columns(predicted))
 
+
+def prediction_columns(predicted: Predicted) -> dict[str, Any]:
+    """`label`, then mean and standard deviation (`ID sd`) of every output, a column each."""
     columns: dict[str, Any] = {LABEL: list(predicted.labels)}
     for j, known in enumerate(predicted.saved.outputs):
         columns[known.id], columns[f"{known.id} sd"] = predicted.mean[:, j], predicted.sd[:, j]
-    return write_csv(path, pd.DataFrame(columns))
+    return columns
 
 
 def predictions_document(predicted: Predicted) -> dict[str, Any]:

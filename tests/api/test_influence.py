@@ -56,6 +56,7 @@ def test_it_writes_what_the_command_writes(result: kc.InfluenceResult, tmp_path:
     written = {p.name: p for p in result.write(tmp_path)}
     assert set(written) == {
         "influence.xlsx",
+        "report.html",
         *(f"influence_{k}.csv" for k in ("percent", "absolute", "exact")),
     }
     table = pd.read_csv(written["influence_percent.csv"], index_col="parameter")
