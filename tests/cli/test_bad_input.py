@@ -158,11 +158,11 @@ def lines(text: str) -> list[str]:
 
 RECORD_DAMAGE: dict[str, tuple[Callable[[str], str | bytes], str]] = {
     "missing channel": (lambda t: t.replace("toe_L [deg]", "note [deg]", 1), "toe_L"),
-    "wrong unit": (lambda t: t.replace("toe_L [deg]", "toe_L [rad]", 1), "rad"),
-    "wrong unit of the input": (lambda t: t.replace("[N]", "[kN]", 1), "kN"),
+    "wrong unit": (lambda t: t.replace("toe_L [deg]", "toe_L [kN]", 1), "kN"),
+    "wrong unit of the input": (lambda t: t.replace("[N]", "[kN]", 1), "covers .*e.06.*check the unit"),
     "truncated": (lambda t: t[: t.rstrip().rfind(",") - 3], "row 5|last|513|columns|cells|values"),
     "no loop": (lambda t: "\n".join(lines(t)[:140]) + "\n", "loop|covers|expected"),
-    "few samples": (lambda t: "\n".join([lines(t)[0], *lines(t)[1::20]]), "samples"),
+    "few samples": (lambda t: "\n".join([lines(t)[0], *lines(t)[1::60]]), "samples"),
     "empty": (lambda _: "", "empty|heading|no "),
     "not a number": (lambda t: t.replace("\n0.1,", "\nsoon,", 1), "soon"),
     "workbook": (lambda _: b"PK\x03\x04 not text", "Excel|workbook"),

@@ -71,7 +71,7 @@ def test_one_column_more_stands_in_csv_sheet_page_terminal_and_json() -> None:
     assert [ws[f"D{r}"].value for r in (5, 6)] == [300.0, -10.0]
     assert (ws["D5"].number_format, ws.column_dimensions["D"].width) == ("0", 12.5)
     assert ws.auto_filter.ref == "A4:D6"
-    new = '<td class="n" data-value="-10.0">-10.0</td>'
+    new = '<td class="n" data-value="-10.0">−10.0</td>'
     assert new in table_html(more) and new not in table_html(TABLE)
     assert table_lines(more) == ["  preload", "    300.0", "    -10.0"] and table_lines(TABLE) == ["", "", ""]
     assert [r["preload"] for r in table_records(more)] == [300.0, -10.0]
