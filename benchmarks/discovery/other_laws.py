@@ -18,7 +18,7 @@ from doe_kc.axle.model import BUSHINGS
 OtherLaw = Callable[[np.random.Generator, float, Axle], Hidden]
 STRONG = (0.3, 0.5)
 """Share by which a compliance stiffens or softens under full load; the catalogue's do by 0.15 at most."""
-TWO_STAGE = (0.45, 0.05, 0.05, 0.05, 0.40)
+TWO_STAGE = (0.35, 0.10, 0.03, 0.04, 0.03, 0.05, 0.40)
 """Shares of a friction of two stages: a seal that breaks away early, a bearing that does late."""
 UNEQUAL = 0.3
 """Standard deviation of the logarithm of a bushing's share, and of its yield distance."""

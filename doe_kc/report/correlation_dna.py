@@ -132,7 +132,7 @@ def _texts(panel: Panel, y: float, row: CharacteristicRow) -> None:
         _across(COLUMN_PLACES["improvement"]), y, words, size=6.5, across="right", along="center",
         color=colour, weight=weight,
     )  # fmt: skip
-    panel.text(_across(0.88), y, row.note, size=6.0, along="center", color="#555555")
+    panel.text(_across(0.878), y, row.note, size=5.4, along="center", color="#555555")
 
 
 def _legend(page: Sheet) -> None:

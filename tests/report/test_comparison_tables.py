@@ -9,7 +9,7 @@ from doe_kc.report.render.csv import table_frame
 from doe_kc.report.render.json import table_records
 from doe_kc.report.render.terminal import table_lines
 from doe_kc.targets.comparison import compare
-from tests.targets.comparison.test_comparison import BRAKE, VERTICAL, curve_set
+from tests.targets.test_comparison import BRAKE, VERTICAL, curve_set
 
 
 def test_tables_hold_one_row_each() -> None:
