@@ -20,6 +20,10 @@ def map(folder: str | Path, axle: Axle | str | Path | None = None) -> pd.DataFra
     quantity; side (L, R, None of the axle); unit (None where nothing tells it); sign (+1, -1); reason, in
     words. `attrs["open"]`: what stays to be said by the user; `attrs["absent"]`: what no file holds.
     InputError where the folder has no table.
+
+    >>> channels = kc.map("examples/front_axle/rig")
+    >>> channels.loc["toe_L", "quantity"], channels.attrs["open"]
+    ('toe', [])
     """
     import pandas as pd
 

@@ -19,6 +19,12 @@ def predict(surrogate: str | Path, designs: str | Path, *, fill: bool = False) -
     or Excel file, one row a design and one column a variable, absolute values. fill: variables without a
     column keep their start values. Columns: label, then for each characteristic its id and `ID sd`.
     InputError naming file, row and column for what cannot be read.
+
+    >>> sampling = kc.sample("examples/front_axle", 24, out="sampled", workers=1)
+    >>> _ = kc.surrogates("examples/front_axle", ["linear"], out="sampled", workers=1).write("sampled")
+    >>> sampling.designs.head(2).to_csv("designs.csv", index=False)
+    >>> kc.predict("sampled/surrogates/surrogate.npz", "designs.csv").shape[0]
+    2
     """
     import pandas as pd
 
