@@ -173,6 +173,9 @@ def _check_out(out: Path, folder: Path, axle: Path, measurement: Path | None, so
     """Results are not written over the axle file or among the records."""
     if "\0" in str(out):  # refused where it is written
         return
+    for key, path in (("axle", axle), ("measurement", measurement)):
+        if path is not None and "\0" in str(path):
+            raise InputError(f"{source}: {key} holds a null character, which no path can; correct it.")
     place = out.resolve()
     if place in (axle.resolve(), Path(source).resolve()):
         raise InputError(f"{source}: out is {out}, a file of the study; name a folder of its own.")
