@@ -230,3 +230,10 @@ KEYS = st.sampled_from([*PLAIN, "windows.roll", "windows.x", "influence.paramete
 def test_any_values(entries: list[tuple[str, str]]) -> None:
     text = 'axle = "axle.toml"\n' + "".join(f"{key} = {value}\n" for key, value in entries)
     read_any(text.encode())
+
+
+def test_a_null_character_in_a_path_is_refused_by_its_key(tmp_path: Path) -> None:
+    (tmp_path / "axle.toml").symlink_to(EXAMPLE / "axle.toml")
+    (tmp_path / "study.toml").write_text('axle = "axle.toml"\nmeasurement = "rig\\u0000"\n', encoding="utf-8")
+    with pytest.raises(InputError, match="measurement holds a null character"):
+        read_study(tmp_path)
