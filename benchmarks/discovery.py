@@ -18,9 +18,9 @@ from _common import RESULTS, machine
 from benchmarks.discovery.cases import HASHES, cases, publish  # isort: skip  # after the thread limits
 from benchmarks.discovery.report import Run, write  # isort: skip
 from benchmarks.discovery.running import analyse_missing, answer_place, fingerprint, follow_up  # isort: skip
-from benchmarks.discovery.suites import SUITES  # isort: skip
+from benchmarks.discovery.suites import SUITES, TYPE_SUITES  # isort: skip
 from benchmarks.discovery.unsealing import followups, scores  # isort: skip
-from benchmarks.discovery.vehicles import BASES  # isort: skip
+from benchmarks.discovery.vehicles import BASES, TYPE_BASES  # isort: skip
 
 DEFAULT = Path(tempfile.gettempdir()) / "doe_kc_discovery"
 
@@ -28,10 +28,13 @@ DEFAULT = Path(tempfile.gettempdir()) / "doe_kc_discovery"
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--cases", type=int, default=13, help="cars of each suite")
-    parser.add_argument("--suites", default=",".join(SUITES), help="of " + ", ".join(SUITES))
+    parser.add_argument("--suites", help="of " + ", ".join([*SUITES, "type (of another axle type)"]))
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
-        "--base", choices=BASES, default="example", help="base vehicle; shifted: to develop on"
+        "--base",
+        choices=BASES,
+        default="example",
+        help="base vehicle; shifted: to develop on; another axle type",
     )
     parser.add_argument("--out", type=Path, default=DEFAULT, help="folder of cars, answers and keys; kept")
     parser.add_argument("--workers", type=int, default=2)
@@ -40,10 +43,11 @@ def main() -> None:
         "--score", action="store_true", help="analyse nothing more, score the cases answered so far"
     )
     given = parser.parse_args()
-    suites = given.suites.split(",")
-    unknown = [s for s in suites if s not in SUITES]
+    known = TYPE_SUITES if given.base in TYPE_BASES else SUITES
+    suites = given.suites.split(",") if given.suites else list(known)
+    unknown = [s for s in suites if s not in known]
     if unknown:
-        parser.error(f"unknown suite {unknown[0]}; known are {', '.join(SUITES)}")
+        parser.error(f"unknown suite {unknown[0]} of {given.base}; known are {', '.join(known)}")
     code = fingerprint()
     folder = given.out / f"{given.base}_{given.seed}_{given.cases}_{'-'.join(suites)}" / code
     chosen = cases(given.cases, suites, given.seed, given.base)

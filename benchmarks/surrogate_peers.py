@@ -22,12 +22,12 @@ from scipy.stats import qmc
 from doe_kc.campaign.runner import Campaign
 from doe_kc.correlation.linearization import linearize
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.models import make
-from doe_kc.surrogates.models.gp import FirstOrderTrend
-from doe_kc.surrogates.models.gp_slopes import SlopeProcess
-from doe_kc.surrogates.study import fit_study
-from doe_kc.surrogates.training import Scaling
-from doe_kc.surrogates.validation import NOMINAL_WIDTH
+from doe_kc.surrogate_models.models import make
+from doe_kc.surrogate_models.models.gp import FirstOrderTrend
+from doe_kc.surrogate_models.models.gp_slopes import SlopeProcess
+from doe_kc.surrogate_models.study import fit_study
+from doe_kc.surrogate_models.training import Scaling
+from doe_kc.surrogate_models.validation import NOMINAL_WIDTH
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import Space, VariableOptions, build_space
 

@@ -17,13 +17,13 @@ from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
-from doe_kc.surrogates.calibration import calibration_factors
-from doe_kc.surrogates.folds import refit_folds
-from doe_kc.surrogates.interface import Fitted, SurrogateModel
-from doe_kc.surrogates.learning import Learning
-from doe_kc.surrogates.models import make
-from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
-from doe_kc.surrogates.validation import NOMINAL_WIDTH, quality_on
+from doe_kc.surrogate_models.calibration import calibration_factors
+from doe_kc.surrogate_models.folds import refit_folds
+from doe_kc.surrogate_models.interface import Fitted, SurrogateModel
+from doe_kc.surrogate_models.learning import Learning
+from doe_kc.surrogate_models.models import make
+from doe_kc.surrogate_models.models.gp import FirstOrderTrend, GaussianProcess
+from doe_kc.surrogate_models.validation import NOMINAL_WIDTH, quality_on
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import Space, VariableOptions, build_space
 

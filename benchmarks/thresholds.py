@@ -29,6 +29,13 @@ VALUES: dict[str, tuple[Any, ...]] = {
     "SCREEN_STEP_SHARES": ((1.0,), (1.0, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01)),
     "REFITS_MOST": (2, 3, 10),
     "REFIT_SHARE": (0.5, 0.05),
+    "RESCREENED_MOST": (3, 30),
+    "OVERLOOKED_MOST": (2, 18),
+    "UNSURE_SHARE": (0.001, 0.02),
+    "CERTAIN_SHARE": (0.05, 0.2),
+    "OWN_CONTRASTS": (0.15, 0.5),
+    "NAME_ALWAYS_LEVEL": (8.0, 15.0),
+    "ALIKE_CORRELATION": (0.7, 0.9),
 }
 
 

@@ -6,9 +6,7 @@ The Python API is what this module exports, under the names of the commands: `im
 
 from __future__ import annotations
 
-import sys
 from importlib import import_module
-from types import ModuleType
 
 __version__ = "0.1.0"
 
@@ -16,6 +14,7 @@ TYPE_CHECKING = False
 """As `typing.TYPE_CHECKING`, which costs as much to import as all the rest here."""
 
 if TYPE_CHECKING:
+    from doe_kc.api.adams import AdamsAxle, export_adams, export_kc, import_adams
     from doe_kc.api.axle import parameters, read_axle, types, with_effects, with_values
     from doe_kc.api.check import CheckResult, check
     from doe_kc.api.comparison import ComparisonResult, compare
@@ -36,8 +35,11 @@ if TYPE_CHECKING:
     from doe_kc.axle.model import Axle
     from doe_kc.ground.errors import DoeKcError, InputError, RunError
     from doe_kc.study import Study
+    from doe_kc.workflow.export_adams import AdamsExport
 
 _HOMES = {
+    "AdamsAxle": "doe_kc.api.adams",
+    "AdamsExport": "doe_kc.workflow.export_adams",
     "Axle": "doe_kc.axle.model",
     "CheckResult": "doe_kc.api.check",
     "ComparisonResult": "doe_kc.api.comparison",
@@ -60,6 +62,9 @@ _HOMES = {
     "compare": "doe_kc.api.comparison",
     "correlate": "doe_kc.api.correlation",
     "discover": "doe_kc.api.discovery",
+    "export_adams": "doe_kc.api.adams",
+    "export_kc": "doe_kc.api.adams",
+    "import_adams": "doe_kc.api.adams",
     "influence": "doe_kc.api.influence",
     "init": "doe_kc.api.studies",
     "map": "doe_kc.api.map_rig",
@@ -81,6 +86,8 @@ _HOMES = {
 """Public name -> module that defines it."""
 
 __all__ = [
+    "AdamsAxle",
+    "AdamsExport",
     "Axle",
     "CheckResult",
     "ComparisonResult",
@@ -104,6 +111,9 @@ __all__ = [
     "compare",
     "correlate",
     "discover",
+    "export_adams",
+    "export_kc",
+    "import_adams",
     "influence",
     "init",
     "map",
@@ -133,16 +143,3 @@ def __getattr__(name: str) -> object:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
-
-
-class _Package(ModuleType):
-    """`doe_kc`, whose `report` and `surrogates` are functions although folders of it are called so too: the
-    import of such a folder sets the package's attribute to the folder, which is not done here. Modules of the
-    package import from folders by their full names, which need no attribute."""
-
-    def __setattr__(self, name: str, value: object) -> None:
-        if not (name in _HOMES and isinstance(value, ModuleType)):
-            super().__setattr__(name, value)
-
-
-sys.modules[__name__].__class__ = _Package

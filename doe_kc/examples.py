@@ -1,19 +1,31 @@
-"""The shipped example study."""
+"""The shipped example studies, one an axle type."""
 
 from __future__ import annotations
 
 import shutil
 from pathlib import Path
 
-from doe_kc.ground.errors import InputError, RunError
+from doe_kc.axle_types import BUILT_IN, DEFAULT_TYPE
+from doe_kc.ground.errors import InputError, RunError, nearest
 
-EXAMPLE_NAME = "front_axle"
+FOLDER_OF_TYPE = {DEFAULT_TYPE: "front_axle"}
+"""Axle type -> folder of its example, where that is not the type's name."""
+EXAMPLE_TYPES = BUILT_IN
+"""Axle types that have an example: all that the package describes."""
 
 
-def example_folder() -> Path:
-    """Where the example lies: in the installed package, or in the source tree beside it."""
-    package = Path(__file__).parent
-    for folder in (package / "_examples" / EXAMPLE_NAME, package.parent / "examples" / EXAMPLE_NAME):
+def example_folder(axle_type: str = DEFAULT_TYPE) -> Path:
+    """Where a type's example lies: in the installed package, or in the source tree beside it.
+
+    InputError for a type that has none, RunError where the examples are not installed.
+    """
+    if axle_type not in EXAMPLE_TYPES:
+        raise InputError(
+            f"{axle_type!r} is no axle type with an example; expected one of {', '.join(EXAMPLE_TYPES)}."
+            f"{nearest(axle_type, EXAMPLE_TYPES)}"
+        )
+    package, name = Path(__file__).parent, FOLDER_OF_TYPE.get(axle_type, axle_type)
+    for folder in (package / "_examples" / name, package.parent / "examples" / name):
         if (folder / "study.toml").is_file():
             return folder
     raise RunError("the example study is not part of this installation; reinstall doe-kc.")
@@ -25,13 +37,14 @@ def _reason(error: OSError) -> str:
     return str(causes[0][2] if causes else error.strerror or error)
 
 
-def copy_example(target: Path) -> list[Path]:
-    """Copy the example to a new or empty folder; returns the files written."""
+def copy_example(target: Path, axle_type: str = DEFAULT_TYPE) -> list[Path]:
+    """Copy a type's example to a new or empty folder; returns the files written."""
+    source = example_folder(axle_type)
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise InputError(f"{target}: exists and is not an empty folder; name another one.")
     try:
         shutil.copytree(
-            example_folder(),
+            source,
             target,
             dirs_exist_ok=True,
             ignore=shutil.ignore_patterns("out", "__pycache__"),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Literal
@@ -20,8 +21,10 @@ from doe_kc.ground.fields import Positive, Strict
 from doe_kc.ground.files import read_toml, validate
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES
+from doe_kc.measurement.manifest import RigState
+from doe_kc.measurement.rig_state import axle_in_state, bar_values, rig_state
 from doe_kc.sampling.options import SamplingOptions
-from doe_kc.surrogates.options import SurrogateOptions
+from doe_kc.surrogate_models.options import SurrogateOptions
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.variables import Space, VariableOptions, build_space
@@ -62,8 +65,10 @@ class StudyFile(Strict):
 class Study:
     """A checked study.
 
-    windows: load case -> half-width of the fit window in the input's unit. parameters: of the influence
-    study. space: the variables on the unchanged axle, those of `use = "selection"` not yet narrowed.
+    axle: in the state that it was measured in, `state`. hidden: values of the axle file that this state
+    hides, by internal name. windows: load case -> half-width of the fit window in the
+    input's unit. parameters: of the influence study. space: the variables on the unchanged axle, those of
+    `use = "selection"` not yet narrowed.
     """
 
     name: str
@@ -85,6 +90,8 @@ class Study:
     curves: tuple[CurveOptions, ...]
     correlation: CorrelationOptions
     discovery: DiscoveryOptions
+    state: RigState = field(default_factory=RigState)
+    hidden: Mapping[str, float] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"Study({self.name!r}, {self.space.dimension} variables, from {self.source})"
@@ -107,6 +114,14 @@ class Study:
     def discovery_store(self) -> Path:
         """The file of what a discovery has computed."""
         return self.out / STORES / "discovery.sqlite"
+
+    def as_measured(self, axle: Axle) -> Axle:
+        """Another axle in the state of the measurement."""
+        return axle_in_state(axle, self.state)
+
+    def as_designed(self, axle: Axle) -> Axle:
+        """An axle of this study with what the measurement's state hid: as it is written to a file."""
+        return axle.changed(self.hidden) if self.hidden else axle
 
     def measured(self) -> Path:
         """The measurement's folder or `test.toml`; InputError when the study names none."""
@@ -140,11 +155,13 @@ def read_study(
                 f"{nearest(case, LOAD_CASES)}"
             )
     folder = source.parent
-    axle = read_axle(folder / file.axle)
+    designed = read_axle(folder / file.axle)
+    own = folder / file.measurement if file.measurement is not None else None
+    state = rig_state(measurement or own)
+    axle = axle_in_state(designed, state)
     _check_windows(file.windows, axle, str(source))
     check_names(file.characteristics, file.curves, str(source))
     file.discovery.check_names(str(source))
-    own = folder / file.measurement if file.measurement is not None else None
     _check_out(out or folder / file.out, folder, folder / file.axle, measurement or own, str(source))
     return Study(
         name=file.name or folder.resolve().name,
@@ -166,6 +183,8 @@ def read_study(
         curves=tuple(file.curves),
         correlation=file.correlation,
         discovery=file.discovery,
+        state=state,
+        hidden=bar_values(designed, state),
     )
 
 

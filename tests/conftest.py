@@ -8,6 +8,7 @@ import os
 import re
 from pathlib import Path
 
+import hypothesis
 import pytest
 from _pytest.terminal import TerminalReporter
 from threadpoolctl import threadpool_limits
@@ -18,6 +19,8 @@ TESTS = Path(__file__).parent
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")
 threadpool_limits(1)
+hypothesis.settings.register_profile("same examples in every run", derandomize=True, database=None)
+hypothesis.settings.load_profile("same examples in every run")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -33,7 +36,7 @@ LONGEST = (
     "cli/test_correlate.py",
     "benchmarks_discovery/test_quick_subset.py",
     "effects/test_hypotheses.py",
-    "report/test_correlation_reports.py",
+    "reports/test_correlation_reports.py",
     "solver/test_sensitivity.py",
     "correlation/test_methods.py",
 )

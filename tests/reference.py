@@ -10,15 +10,15 @@ from pathlib import Path
 import pandas as pd
 
 from doe_kc.axle import Axle, parameter_value, with_values
-from doe_kc.axle.places import MCPHERSON_PLACES
 from doe_kc.axle_file import read_axle
 from doe_kc.effects import EFFECTS, Effect, apply_effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.load_cases import LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.load_cases.vertical import Vertical
 
 MCPHERSON_EFFECTS: dict[str, Effect] = {
-    ident: effect for ident, effect in EFFECTS.items() if effect.possible(MCPHERSON_PLACES)
+    ident: effect for ident, effect in EFFECTS.items() if effect.possible(DEFAULT_PLACES)
 }
 """Effects that the reference axle can have."""
 DATA = Path(__file__).parent / "data" / "reference"

@@ -91,7 +91,19 @@ def known_commands() -> dict[str, set[str]]:
 def test_the_commands_named_exist_with_their_options() -> None:
     known = known_commands()
     assert set(known) == {
-        *("init", "types", "check", "map", "predict", "simulate", "reduce", "influence", "sample"),
+        *(
+            "init",
+            "types",
+            "check",
+            "map",
+            "import",
+            "export",
+            "predict",
+            "simulate",
+            "reduce",
+            "influence",
+            "sample",
+        ),
         *("surrogates", "correlate", "discover", "report", "run"),
     }
     named = set()

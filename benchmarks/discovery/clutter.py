@@ -10,11 +10,14 @@ from benchmarks.discovery.catalogue import CATALOGUE, PROGRESSION
 from benchmarks.discovery.chance import sign
 from benchmarks.discovery.hidden import Hidden
 from doe_kc.axle import Axle
-from doe_kc.axle.model import BUSHINGS
+from doe_kc.axle.places import places_of
+from doe_kc.effects import EFFECTS
 
 SHARE = (0.02, 0.05)
 """Of the typical size."""
 MEAN = sum(SHARE) / 2
+TYPICAL = 0.02
+"""1/mm^2, progression of the bushings of other axle types."""
 PRESENT = (
     "hub_compliance",
     "strut_bending",
@@ -31,22 +34,25 @@ its typical size is fifty standard deviations, a trace that is worth a line but 
 
 def clutter(axle: Axle, rng: np.random.Generator, but: Collection[str]) -> tuple[Hidden, ...]:
     """Small effects of one car, without those of the ids in `but`."""
-    drawn = [CATALOGUE[ident](rng, float(rng.uniform(*SHARE)), axle) for ident in PRESENT]
-    drawn += [_preload(rng), _progression(rng, axle)]
+    present = [ident for ident in PRESENT if EFFECTS[ident].possible(places_of(axle))]
+    drawn = [CATALOGUE[ident](rng, float(rng.uniform(*SHARE)), axle) for ident in present]
+    drawn += [_preload(rng, axle), _progression(rng, axle)]
     return tuple(h for h in drawn if h.id not in but)
 
 
-def _preload(rng: np.random.Generator) -> Hidden:
+def _preload(rng: np.random.Generator, axle: Axle) -> Hidden:
     """Every bushing a little, about every axis."""
     options = {
         name: [600.0 * float(rng.uniform(*SHARE)) * sign(rng) for _ in range(3)]
-        for name in (n.upper() for n in BUSHINGS)
+        for name in (n.upper() for n in places_of(axle).bushings)
     }
     return Hidden("bushing_preload", MEAN, None, options, _numbers(options))
 
 
 def _progression(rng: np.random.Generator, axle: Axle) -> Hidden:
-    added = {n: [b * float(rng.uniform(*SHARE)) for _ in range(3)] for n, b in PROGRESSION.items()}
+    mcpherson = set(PROGRESSION) <= {n.upper() for n in places_of(axle).bushings}
+    typical = PROGRESSION if mcpherson else {n.upper(): TYPICAL for n in places_of(axle).bushings}
+    added = {n: [b * float(rng.uniform(*SHARE)) for _ in range(3)] for n, b in typical.items()}
     options = {}
     for name, values in added.items():
         nominal = [axle.values[f"{name.lower()}.cubic.{of}@L"] for of in ("Fx", "Fy", "Fz")]

@@ -16,6 +16,7 @@ from scipy.special import ndtr
 from benchmarks.discovery.car import Car
 from benchmarks.discovery.scatter import unequal_in_one
 from doe_kc.axle import Axle
+from doe_kc.axle.places import places_of
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import linearize
 from doe_kc.effects import EFFECTS, apply_effect, observed
@@ -92,10 +93,11 @@ def _against_rivals(
     strength = float(np.linalg.norm(left))
     blank = _residual(nominal, likelihood)
     rival, closest = "", 0.0
+    places = places_of(nominal)
     for effect in EFFECTS.values():
-        if effect.id == ident:
+        if effect.id == ident or not effect.possible(places):
             continue
-        for hypothesis in effect.hypotheses():
+        for hypothesis in effect.hypotheses(places):
             sizes = [s for s in hypothesis.sizes if not s.shape]
             columns = []
             for chosen in [s.name for s in sizes] or [""]:

@@ -12,7 +12,7 @@ from benchmarks.discovery.key import key_text, seal
 from benchmarks.discovery.records import write_records
 from benchmarks.discovery.scatter import scattered, unequal
 from benchmarks.discovery.sensors import Levels, levels
-from benchmarks.discovery.suites import SUITES, Content
+from benchmarks.discovery.suites import ALL_SUITES, Content
 from benchmarks.discovery.vehicles import nominal_axle, write_nominal
 from doe_kc.axle import Axle, with_values
 from doe_kc.solver.result import NotConverged
@@ -74,7 +74,7 @@ def hidden_car(
     and bad samples. sides: share of the usual difference between left and right. KeyError for an unknown
     suite, NotConverged when no car of the seed has an equilibrium everywhere.
     """
-    fill = SUITES[suite]
+    fill = ALL_SUITES[suite]
     nominal = nominal_axle(base, seed)
     for attempt in range(ATTEMPTS):
         words = (suite, base, str(attempt))

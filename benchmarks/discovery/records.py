@@ -83,15 +83,15 @@ def _manifest(clean: CleanRecords, nominal: Axle, rng: np.random.Generator, name
         for i, word in enumerate(("left", "right"))
     ]
     lines = [
-        "# K&C rig record of one front axle. Sampled loops: +A -> -A -> +A, steady cycle.",
+        "# K&C rig record of one axle. Sampled loops: +A -> -A -> +A, steady cycle.",
         f'name = "{name}"',
         "[setup]",
         'loading = "kerb+2"',
         f"reference_wheel_load_N = {nominal.values['tyre.static_load']:g}",
         'body = "clamped"',
-        'steering = "wheel held"',
+        f'steering = "{"wheel held" if nominal.rack_mm_per_rev else "none"}"',
         f"lateral_offset_mm = {_offset(clean):.1f}",
-        f"rack_mm_per_rev = {nominal.rack_mm_per_rev:g}",
+        *([f"rack_mm_per_rev = {nominal.rack_mm_per_rev:g}"] if nominal.rack_mm_per_rev else []),
         "[alignment]   # static values at ride height, from the alignment bench",
         *rows,
         "[sensor_resolution]",

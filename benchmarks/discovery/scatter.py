@@ -11,7 +11,8 @@ import numpy as np
 
 from benchmarks.discovery.chance import cut_normal, sign
 from doe_kc.axle import Axle, Parameter, design_parameters
-from doe_kc.axle.model import BUSHINGS, HARDPOINTS
+from doe_kc.axle.members import drawn_points
+from doe_kc.axle.places import places_of
 from doe_kc.variables.build import in_model
 
 MORE_SHARE = 1 / 3
@@ -83,22 +84,22 @@ def _moved(parameter: Parameter, step: float) -> float:
 def unequal(axle: Axle, rng: np.random.Generator, share: float) -> dict[str, float]:
     """Internal values of both sides of a car that is not its own mirror image."""
     out: dict[str, float] = {}
-    for difference in _differences():
+    for difference in _differences(axle):
         out |= difference(axle, share * cut_normal(rng))
     return out
 
 
 def unequal_in_one(axle: Axle) -> list[Axle]:
     """The axle with each difference between its sides by itself, of one standard deviation."""
-    return [axle.changed(difference(axle, 1.0)) for difference in _differences()]
+    return [axle.changed(difference(axle, 1.0)) for difference in _differences(axle)]
 
 
-def _differences() -> Iterator[Callable[[Axle, float], dict[str, float]]]:
+def _differences(axle: Axle) -> Iterator[Callable[[Axle, float], dict[str, float]]]:
     """Of an axle and standard deviations, the internal values of both sides."""
-    for name in HARDPOINTS:
+    for name in drawn_points(axle):
         for coordinate in "xyz":
             yield partial(_apart, f"{name}.{coordinate}", POINT_SIDES)
-    for name in BUSHINGS:
+    for name in places_of(axle).bushings:
         for of in ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz"):
             yield partial(_ratio, f"{name}.{of}", STIFFNESS_SIDES)
     for name in ("spring.rate", "tyre.rate"):

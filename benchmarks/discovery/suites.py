@@ -15,6 +15,8 @@ from benchmarks.discovery.other_laws import OTHER_LAWS, rubber
 from benchmarks.discovery.outside import OUTSIDE, Outside
 from benchmarks.discovery.scatter import Spread
 from doe_kc.axle import Axle
+from doe_kc.axle.places import places_of
+from doe_kc.effects import EFFECTS
 
 FULL = (0.5, 2.0)
 """Sizes, in typical ones."""
@@ -33,6 +35,16 @@ ALIKE = (
     ("subframe_flexibility", "ball_joint_compliance"),
 )
 """Pairs that a rig hardly tells apart; one of each is hidden, if the library has both."""
+WITHOUT_PLACE = (
+    "hub_compliance",
+    "strut_friction",
+    "subframe_flexibility",
+    "tyre_horizontal_compliance",
+    "ride_height_offset",
+    "rack_mount_compliance",
+    "steering_friction",
+)
+"""Effects of any axle type that are there or not, as far as it has the part."""
 NOT_REMOVABLE = ("left_right_asymmetry", "ride_height_offset", "roll_technique")
 """Tunable parameters say the same, so that without them nothing is missing."""
 
@@ -135,6 +147,17 @@ def other_law(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
     return Content((draw(rng, log_uniform(rng, *BOTH), axle),))
 
 
+def of_type(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """One effect in every other car, two in the rest, of those that have no place on the axle to choose."""
+    possible = [e for e in WITHOUT_PLACE if EFFECTS[e].possible(places_of(axle))]
+    first = _pick(possible, seed // 2, "type")
+    if seed % 2 == 0:
+        return Content((_hide(first, FULL, rng, axle),))
+    rivals = {e for p in ALIKE if first in p for e in p} | {first}
+    second = str(rng.choice([e for e in possible if e not in rivals]))
+    return Content(tuple(_hide(e, BOTH, rng, axle) for e in (first, second)))
+
+
 SUITES: dict[str, Fill] = {
     "null": null,
     "single": single,
@@ -150,3 +173,6 @@ SUITES: dict[str, Fill] = {
     "rubber": rubber_alone,
     "other_law": other_law,
 }
+TYPE_SUITES: dict[str, Fill] = {"null": null, "type": of_type}
+"""Suites of the bases that are other axle types."""
+ALL_SUITES = SUITES | TYPE_SUITES

@@ -12,8 +12,10 @@ from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"
-BASES = ("example", "shifted")
-"""The shipped axle, or another car of its kind, one for each seed, to set thresholds on."""
+TYPE_BASES = ("double_wishbone_front", "five_link_rear")
+"""Examples of other axle types, for the suites `null` and `type`."""
+BASES = ("example", "shifted", *TYPE_BASES)
+"""The shipped axle, or another car of its kind, one for each seed, to set thresholds on; other types."""
 SHIFT_SD = 3.0
 """mm, of every coordinate."""
 STIFFNESS_SD = 0.25
@@ -26,13 +28,21 @@ def nominal_axle(base: str, seed: int) -> Axle:
     """The analyser's model; ValueError for an unknown base."""
     if base not in BASES:
         raise ValueError(f"base {base!r}, expected one of {', '.join(BASES)}")
+    if base in TYPE_BASES:
+        return read_axle(_example_of(base))
     axle = read_axle(EXAMPLE)
     return axle if base == "example" else _shifted(axle, seed)
 
 
+def _example_of(axle_type: str) -> Path:
+    return EXAMPLE.parents[1] / axle_type / EXAMPLE.name
+
+
 def write_nominal(axle: Axle, path: Path) -> Path:
     """The model as its own file; `read_axle(path)` gives the same values."""
-    return write_axle(axle, EXAMPLE, path)
+    structure = axle.topology.structure
+    known = structure is not None and structure.type in TYPE_BASES
+    return write_axle(axle, _example_of(structure.type) if known else EXAMPLE, path)
 
 
 def _shifted(axle: Axle, seed: int) -> Axle:

@@ -95,17 +95,15 @@ def types() -> pd.DataFrame:
     """The axle types, one row each, the name for `type` of an axle file as index.
 
     Columns: label; bodies, with commas; bushings, balls, rods: how many connections of each kind (of one
-    side and the middle); rack: whether it steers; file: that describes it. mcpherson_front, an axle file
-    without type, is described by no file: its bodies are "" and its counts nan.
+    side and the middle); rack: whether it steers; file: that describes it. An axle file without type is of
+    the first, mcpherson_front.
 
     >>> kc.types().loc["five_link_rear", "label"]
     'Five-link, rear'
     """
     import pandas as pd
 
-    rows: list[tuple[object, ...]] = [
-        ("mcpherson_front", "McPherson strut, front", "", *(None,) * 3, True, "")
-    ]
+    rows: list[tuple[object, ...]] = []
     for name in BUILT_IN:
         axle_type = read_axle_type(name, Path(), source=name)
         s = axle_type.structure

@@ -15,13 +15,13 @@ from doe_kc.api.studies import Progress, as_study, stored
 from doe_kc.axle import Axle
 from doe_kc.discovery.result import Discovery, Gap, VerdictKind
 from doe_kc.measurement import Measurement
-from doe_kc.report.discovery_effects import effect_table
-from doe_kc.report.discovery_library import library_table
-from doe_kc.report.discovery_parameters import tuned_table
-from doe_kc.report.discovery_tables import gap_table, held_out_table
-from doe_kc.report.render.csv import table_frame
+from doe_kc.reports.discovery_effects import effect_table
+from doe_kc.reports.discovery_library import library_table
+from doe_kc.reports.discovery_parameters import tuned_table
+from doe_kc.reports.discovery_tables import gap_table, held_out_table
+from doe_kc.reports.render.csv import table_frame
 from doe_kc.study import Study
-from doe_kc.workflow.discover import discover_study, expected_steps
+from doe_kc.workflow.discover import discover_study
 from doe_kc.workflow.discovery_document import discovery_lines
 from doe_kc.workflow.measure import study_measurement
 from doe_kc.workflow.write_discovery import write_discovery
@@ -102,8 +102,8 @@ class DiscoveryResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """The gap of every curve, as handed in, re-tuned, and with the effects; 1 is noise."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.report.names import response_name
-        from doe_kc.report.style import PALETTE
+        from doe_kc.reports.names import response_name
+        from doe_kc.reports.style import PALETTE
 
         rows = self.discovery.gaps
         ax = axes_or_new(ax, (6.4, 1.6 + 0.19 * len(rows)))
@@ -174,13 +174,6 @@ def discovery_of(
     progress: Progress | None = None,
 ) -> DiscoveryResult:
     """The same of records that are reduced already."""
-    done, total = 0, expected_steps(study)
-
-    def watch(words: str, steps: int) -> None:
-        nonlocal done
-        done += steps
-        if progress is not None:
-            progress(words, done, total)
-
-    discovery = discover_study(study, measurement, exclude=exclude, workers=workers, watch=watch)
+    watch = progress or (lambda *_: None)
+    discovery = discover_study(study, measurement, exclude=exclude, workers=workers, progress=watch)
     return DiscoveryResult(study, discovery, measurement)

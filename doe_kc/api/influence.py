@@ -73,7 +73,7 @@ class InfluenceResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Heat map of the percent matrix, blue negative, orange positive, numbers from 5 % on."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.report.influence_figures import ANNOTATE, diverging
+        from doe_kc.reports.influence_figures import ANNOTATE, diverging
 
         frame = self.to_frame()
         rows, columns = frame.shape

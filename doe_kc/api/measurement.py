@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import as_study
-from doe_kc.report.measurement_tables import (
+from doe_kc.reports.measurement_tables import (
     gradient_table,
     measured_characteristic_table,
     measured_curve_frame,
     noise_table,
 )
-from doe_kc.report.render.csv import table_frame
+from doe_kc.reports.render.csv import table_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from doe_kc.surrogates.saved import load_surrogate
+from doe_kc.surrogate_models.saved import load_surrogate
 from doe_kc.workflow.predict import predict_table, prediction_columns
 
 if TYPE_CHECKING:

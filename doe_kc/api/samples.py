@@ -79,7 +79,7 @@ class SamplingResult(FrameResult):
     def plot(self, parameter: str, characteristic: str, ax: Axes | None = None) -> Axes:
         """A characteristic over a variable, one point a design; InputError for an unknown name."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.report.style import PALETTE
+        from doe_kc.reports.style import PALETTE
 
         designs, responses = self.designs, self.responses
         for name, frame in ((parameter, designs), (characteristic, responses)):
@@ -106,6 +106,7 @@ def sample(
     *,
     method: str | None = None,
     out: str | PathLike[str] | None = None,
+    extend: bool = False,
     retry_failed: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -116,11 +117,14 @@ def sample(
     n, method ("lhs", "sobol", "one_at_a_time", "full_factorial", "table"): in place of the study's own; its
     seed decides the designs. out: folder for what `doe-kc sample --out` writes, its store among it, whose
     designs are not run again; by default nothing is written (but an outside solver's answers always go to the
-    study's store). retry_failed: run stored failures again. workers: processes, one per core by default.
-    scheduler: address of a Dask scheduler. progress: called with (what, designs done, of how many).
+    study's store). extend: designs that the store in `out` has already count among the n, and only what is
+    missing is drawn, to complete them. retry_failed: run stored failures again. workers: processes, one per
+    core by default. scheduler: address of a Dask scheduler. progress: called with (what, designs done, of how
+    many).
 
     A design without equilibrium is a row with status "failed" and its reason. Raises InputError for an
-    unknown method or a table that does not fit, RunError when interrupted or the folder cannot be written.
+    unknown method, a table that does not fit, or extend without `out` or with nothing to add, RunError when
+    interrupted or the folder cannot be written.
 
     >>> result = kc.sample("examples/front_axle", 4, workers=1)
     >>> result.designs.shape[0], result.responses["vertical.bump_steer"].notna().all().item()
@@ -129,8 +133,10 @@ def sample(
     chosen = as_study(study)
     if n is not None and n < 1:
         raise InputError(f"sample: n = {n}, expected 1 or more designs.")
-    design = study_design(chosen, method=method, n=n)
+    if extend and out is None and not chosen.solver.command:
+        raise InputError("sample: extend = True without a store to complete; give its folder as out.")
     with stored(chosen, out) as kept:
+        design = study_design(kept, method=method, n=n, extend=extend)
         sampled = run_sample(
             kept,
             design,

@@ -13,7 +13,7 @@ import numpy as np
 from doe_kc.api.axle import as_axle
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.axle import Axle, Parameter
-from doe_kc.characteristics import CHARACTERISTICS, Characteristic
+from doe_kc.characteristics import CHARACTERISTICS, Characteristic, characteristics_of
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_csv
 from doe_kc.ground.typing import FloatArray
@@ -85,7 +85,7 @@ class SensitivityResult(FrameResult):
         """Bars of the change of one characteristic (by default the first) for one step of each parameter
         (`parameters`, column step), the 15 largest; InputError for a characteristic that is not there."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.report.style import PALETTE
+        from doe_kc.reports.style import PALETTE
 
         ids = [c.id for c in self.characteristics]
         name = characteristic or ids[0]
@@ -150,9 +150,9 @@ def sensitivities(
 
 
 def _entries(axle: Axle, names: Sequence[str] | None) -> list[Characteristic]:
-    """The characteristics; by default those whose load case the axle has."""
+    """The characteristics; by default those that the axle has."""
     if names is None:
-        return [c for c in CHARACTERISTICS.values() if c.kind == "static" or c.load_case in axle.load_cases]
+        return characteristics_of(axle)
     for name in names:
         if name not in CHARACTERISTICS:
             raise InputError(

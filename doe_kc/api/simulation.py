@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 from doe_kc.api.axle import as_axle
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.axle import Axle, axle_warnings
+from doe_kc.axle.kinematics import as_mechanism
 from doe_kc.axle.model import with_roll
 from doe_kc.curves import CurveSet
-from doe_kc.report.simulation_tables import characteristics_frame, curves_frame, write_simulation
+from doe_kc.reports.simulation_tables import characteristics_frame, curves_frame, write_simulation
 from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.newton import RIGID_SETTINGS
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 
@@ -86,15 +88,22 @@ class SimulationResult(FrameResult):
 
 
 def simulate(
-    axle: Axle | str | PathLike[str], load_cases: Sequence[str] | None = None, *, roll: str | None = None
+    axle: Axle | str | PathLike[str],
+    load_cases: Sequence[str] | None = None,
+    *,
+    roll: str | None = None,
+    kinematic: bool = False,
 ) -> SimulationResult:
     """Solve the K&C load cases of an axle.
 
     load_cases: ids, all eight by default: vertical, roll, lateral, lateral_opposite, lateral_offset, drive,
-    brake, steer. roll: technique of the roll, "body" or "counter_phase", by default the axle's. An axle that
-    is unlikely for a car is solved too, with a warning in the log `doe_kc`.
+    brake, steer. roll: technique of the roll, "body" or "counter_phase", by default the axle's.
+    kinematic: joints in place of all bushings, and a rigid column, so that curves can be compared with
+    programs of pure kinematics. An axle that is unlikely for a car is solved too, with a warning in the log
+    `doe_kc`.
 
-    Raises InputError for an unknown load case or technique, RunError where the axle has no equilibrium.
+    Raises InputError for an unknown load case or technique, and for kinematics of an axle whose links bind or
+    that has elastic effects; RunError where the axle has no equilibrium.
 
     >>> result = kc.simulate("examples/front_axle/axle.toml", ["vertical", "roll"])
     >>> round(result.characteristics.loc["vertical.bump_steer", "value"].item(), 2)  # deg/m
@@ -105,6 +114,9 @@ def simulate(
     model = with_roll(as_axle(axle), roll)
     for sentence in axle_warnings(model):
         log.warning(sentence)
+    if kinematic:
+        model = as_mechanism(model)
     started = time.perf_counter()
-    solution = solve(model, None if load_cases is None else list(load_cases))
+    cases = None if load_cases is None else list(load_cases)
+    solution = solve(model, cases, settings=RIGID_SETTINGS if kinematic else None)
     return SimulationResult(model, solution, time.perf_counter() - started)

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from doe_kc import study as study_file
+from doe_kc.axle_types import DEFAULT_TYPE
 from doe_kc.examples import copy_example
 from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.study import Study
@@ -45,18 +46,19 @@ def read_study(
     )
 
 
-def init(folder: str | PathLike[str]) -> Study:
-    """Write the example study (axle, rig records, study file) to edit, and read it.
+def init(folder: str | PathLike[str], axle_type: str = DEFAULT_TYPE) -> Study:
+    """Write the example study of an axle type (axle, rig records if it has any, study file), and read it.
 
-    folder: new or empty.
+    folder: new or empty. axle_type: of `kc.types()`.
 
-    Raises InputError for a folder that holds something, RunError where it cannot be written.
+    Raises InputError for a folder that holds something or an unknown type, RunError where it cannot be
+    written.
 
     >>> study = kc.init("my_study")
     >>> study.axle, study.source.name
     (Axle('Front axle, McPherson', effects: none), 'study.toml')
     """
-    copy_example(Path(folder))
+    copy_example(Path(folder), axle_type)
     return read_study(folder)
 
 

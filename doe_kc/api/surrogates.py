@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import Progress, as_study, step_counter
 from doe_kc.api.surrogate import Surrogate, fitted_surrogate
-from doe_kc.report import surrogate_tables as tables
-from doe_kc.report.render.csv import table_frame
+from doe_kc.reports import surrogate_tables as tables
+from doe_kc.reports.render.csv import table_frame
 from doe_kc.study import Study
-from doe_kc.surrogates.report import SurrogateReport
+from doe_kc.surrogate_models.report import SurrogateReport
 from doe_kc.workflow.surrogates import (
     measured_values,
     plan_surrogates,

@@ -12,6 +12,9 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 
+STEEPEST_CURVE = 1e12
+"""N/mm or Nm/deg between two points of a force curve: far above any part, far below what arithmetic holds."""
+
 
 def curve_values(prefix: str, x: FloatArray, y: FloatArray) -> Mapping[str, float]:
     """Axle values that a symbolic curve reads: abscissas, ordinates and slopes at the points."""

@@ -9,14 +9,14 @@ chapter 3 (rank of the constraint Jacobian).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from doe_kc.axle.geometry import point
 from doe_kc.axle.model import Axle
-from doe_kc.axle.structure import CHASSIS, Structure
+from doe_kc.axle.structure import CHASSIS, BushingConnection, Structure
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 
@@ -58,6 +58,32 @@ def check_freedoms(axle: Axle, structure: Structure, source: str) -> None:
             f"{source}: one motion is held twice by {', '.join(dict.fromkeys(names))}; put a bushing in the "
             "place of one of these joints in the axle type."
         )
+
+
+FreeTurns = Mapping[str, Sequence[str] | None]
+"""Of every bushing as a joint, which of the turns Tx, Ty, Tz it leaves free; None: it stays a bushing."""
+
+
+def wheel_freedoms(axle: Axle, structure: Structure, free_turns: FreeTurns) -> int:
+    """In how many ways the wheel centres move up and down at design, 0 to 2, the bushings being joints."""
+    motions = _Motions(axle, structure)
+    free = _null_vectors(np.array([*motions.jointed(free_turns), *motions.held_rack()]))
+    heights = np.array([motions.height(side) for side in "LR"])
+    return int(np.linalg.matrix_rank(heights @ free.T, tol=1e-6)) if len(free) else 0
+
+
+def free_spins(axle: Axle, structure: Structure, free_turns: FreeTurns) -> dict[str, FloatArray]:
+    """Body -> unit axis (3,) of the turn that it makes alone, the bushings being joints; a link's, not a
+    wheel carrier's. Of the left side and of single bodies."""
+    motions = _Motions(axle, structure)
+    rows = np.array(list(motions.jointed(free_turns)))
+    out: dict[str, FloatArray] = {}
+    for body in (*structure.bodies, *structure.single_bodies):
+        free = _null_vectors(rows[:, motions.columns(body)])
+        if body != structure.carrier and len(free) == 1:
+            turn = free[0][3:]
+            out[body] = turn / np.linalg.norm(turn)
+    return out
 
 
 def _null_vectors(matrix: FloatArray) -> FloatArray:
@@ -108,7 +134,7 @@ class _Motions:
             yield JointRow(joint, self._row(((b, 1), (a, -1)), side, at, along))
 
     def ideal(self) -> Iterator[JointRow]:
-        """Rows of ball joints, rods, cylindrical joints and the rack."""
+        """Rows of ball joints, rods, cylindrical joints, the rack, strut clamp and steer arm."""
         s = self._structure
         for ball in s.balls:
             for side in s.sides(single=ball.single):
@@ -125,6 +151,13 @@ class _Motions:
                 for across in _across(end - start):
                     yield JointRow(_words(line.name, side), self._row(ends, side, start, across))
                     yield JointRow(_words(line.name, side), self._turn(ends, side, across))
+        for part, words in ((s.strut, "strut clamp"), (s.steer_arm, "steer arm")):
+            for side in "LR" if part is not None else "":
+                assert part is not None
+                name, at = _words(words, side), self._at(part.at, side)
+                yield from self._shifts(name, part.carrier, part.body, side, at)
+                for about in np.eye(3):
+                    yield JointRow(name, self._turn(((part.body, 1), (part.carrier, -1)), side, about))
         if s.rack is not None:
             ends = ((s.rack.body, 1), (s.rack.carrier, -1))
             at = (self._at(s.rack.at, "L") + self._at(s.rack.at, "R")) / 2.0
@@ -148,6 +181,53 @@ class _Motions:
         if s.rack is not None:
             at, ends = self._at(s.rack.at, "L"), ((s.rack.body, 1), (s.rack.carrier, -1))
             yield JointRow("column", self._row(ends, "", at, np.array([0.0, 1.0, 0.0])))
+
+    def columns(self, body: str) -> slice:
+        """Of a body of the left side or a single one."""
+        place = self._place(body, "L")
+        assert place is not None
+        return slice(place, place + 6)
+
+    def jointed(self, free_turns: FreeTurns) -> Iterator[FloatArray]:
+        """Rows of all ideal joints, those in the place of bushings too."""
+        yield from (r.row for r in (*self.ideal(), *self._bushing_joints(free_turns)))
+
+    def _bushing_joints(self, free_turns: FreeTurns) -> Iterator[JointRow]:
+        s = self._structure
+        for bush in s.bushings:
+            free = free_turns[bush.name]
+            if free is None:
+                continue
+            for side in s.sides(single=bush.single):
+                name, at = _words(bush.name, side), self._at(bush.at, side)
+                yield from self._shifts(name, bush.inner, bush.outer, side, at)
+                for turn, about in self._local_axes(bush, side).items():
+                    if turn not in free:
+                        yield JointRow(name, self._turn(((bush.outer, 1), (bush.inner, -1)), side, about))
+
+    def _local_axes(self, bush: BushingConnection, side: str) -> dict[str, FloatArray]:
+        """Directions about which Tx, Ty and Tz turn; those of a line are not told apart but for z."""
+        mirrored = np.array([1.0, -1.0 if side == "R" else 1.0, 1.0])
+        if bush.line is not None:
+            along = self._at(bush.line[1], side) - self._at(bush.line[0], side)
+            return dict(zip(("Tx", "Ty"), _across(along), strict=True)) | {
+                "Tz": along / np.linalg.norm(along)
+            }
+        axes = np.array(bush.axes).T
+        return {f"T{axis}": mirrored * vector for axis, vector in zip("xyz", axes, strict=True)}
+
+    def held_rack(self) -> Iterator[FloatArray]:
+        """Row of the rack's travel against its carrier."""
+        rack = self._structure.rack
+        if rack is not None:
+            ends = ((rack.body, 1), (rack.carrier, -1))
+            yield self._row(ends, "", self._at(rack.at, "L"), np.array([0.0, 1.0, 0.0]))
+
+    def height(self, side: str) -> FloatArray:
+        """Row of the wheel centre's rise."""
+        return self._row(
+            ((self._structure.carrier, 1),), side, self._at("WLC", side), np.array([0.0, 0.0, 1.0])
+        )
 
     def _along(self, a: str, at_a: str, b: str, at_b: str, side: str) -> FloatArray:
         """Of the change of the distance between two points."""

@@ -7,27 +7,19 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.axle.geometry import point
-from doe_kc.axle.model import HARDPOINTS, Axle
+from doe_kc.axle.model import Axle
 from doe_kc.axle.structure import Structure
 
 Member = tuple[str, str]
-MCPHERSON_MEMBERS: Mapping[str, tuple[Member, ...]] = {
-    "lower arm": (("LLF", "LWB"), ("LLR", "LWB"), ("LLF", "LLR")),
-    "strut": (("LWD", "UPB"),),
-    "spring": (("LWS", "UPS"),),
-    "tie rod": (("RIB", "ROB"),),
-    "knuckle": (("LWB", "LWD"), ("LWB", "WLC"), ("LWD", "WLC"), ("LWB", "ROB")),
-    "sub-frame": (("SFF", "LLF"), ("SFR", "LLR"), ("SFF", "SFR")),
-}
 
 
 def members_of(axle: Axle) -> Mapping[str, tuple[Member, ...]]:
-    """Lines between hardpoints of one side by the part they belong to; of the axle's own type."""
+    """Lines between hardpoints of one side by the part they belong to."""
+    if axle.lines:
+        return axle.lines
     structure = axle.topology.structure
-    if structure is None:
-        return MCPHERSON_MEMBERS
     out = {
-        name.replace("_", " "): _shortest_lines(axle, _sided(structure, structure.points_on(name)))
+        _part_words(name, structure): _shortest_lines(axle, _sided(structure, structure.points_on(name)))
         for name in (*structure.bodies, *structure.single_bodies)
     }
     damper = () if structure.damper is None else (structure.damper,)
@@ -37,14 +29,18 @@ def members_of(axle: Axle) -> Mapping[str, tuple[Member, ...]]:
     return {name: lines for name, lines in out.items() if lines}
 
 
+def _part_words(body: str, structure: Structure) -> str:
+    subframe = structure.subframe
+    return "sub-frame" if subframe is not None and body == subframe.body else body.replace("_", " ")
+
+
 def _sided(structure: Structure, names: Sequence[str]) -> list[str]:
     return [name for name in names if name in structure.points]
 
 
 def drawn_points(axle: Axle) -> tuple[str, ...]:
-    """Hardpoints of a side."""
-    structure = axle.topology.structure
-    return tuple(HARDPOINTS) if structure is None else structure.points
+    """Hardpoints of a side; not those that are no design parameters."""
+    return axle.topology.structure.design_points
 
 
 def _shortest_lines(axle: Axle, names: Sequence[str]) -> tuple[Member, ...]:

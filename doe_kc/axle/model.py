@@ -54,8 +54,8 @@ class Axle:
     """values: internal name -> number; `@L`/`@R` marks a side's own value, the right side's given as its
         mirror image, so that a symmetric axle has equal pairs. Units: mm, N, N/mm, Nm/deg, deg, factors.
     topology: which bodies and laws there are. follow: hardpoint -> hardpoint that it moves with.
-    effects: id -> options of the optional effects that are in. labels: of points and elements by name, of an
-        axle whose type is data.
+    effects: id -> options of the optional effects that are in. labels: of points and elements by name.
+    lines: pairs of hardpoints by the part that they draw; empty: drawn from the connections.
     """
 
     name: str
@@ -65,6 +65,7 @@ class Axle:
     load_cases: Mapping[str, LoadCase]
     effects: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     labels: Mapping[str, str] = field(default_factory=dict)
+    lines: Mapping[str, tuple[tuple[str, str], ...]] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"Axle({self.name!r}, effects: {', '.join(self.effects) or 'none'})"

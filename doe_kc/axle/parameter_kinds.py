@@ -61,11 +61,22 @@ def _kinds() -> dict[str, ParameterKind]:
     for name, label in BUSHINGS.items():
         for axis in BUSHING_AXES:
             out[f"{name}.{axis}"] = bushing_kind(label, axis)
-    out["scb.Tz"] = _bush("Steering column bush, Tz")
-    out["strut.flexibility"] = ParameterKind(
-        "Strut flexibility ratio", "OTHER", "flexibility", "-", (0.0, 2.0), 0.1, "absolute", "strut_bending"
-    )
-    return out | {
+    return {**out, **OTHER_KINDS}
+
+
+def _other_kinds() -> dict[str, ParameterKind]:
+    return {
+        "scb.Tz": _bush("Steering column bush, Tz"),
+        "strut.flexibility": ParameterKind(
+            "Strut flexibility ratio",
+            "OTHER",
+            "flexibility",
+            "-",
+            (0.0, 2.0),
+            0.1,
+            "absolute",
+            "strut_bending",
+        ),
         "bump_stop.clearance": _other("Bump stop clearance", "clearance", "mm", 10.0, 1.0),
         "rebound_stop.clearance": _other("Rebound stop clearance", "clearance", "mm", 10.0, 1.0),
         "spring.rate": _size("Spring rate", "rate", "N/mm", (0.8, 1.25)),
@@ -101,6 +112,8 @@ def _other(label: str, quantity: Quantity, unit: str, either: float, step: float
     return ParameterKind(label, "OTHER", quantity, unit, (-either, either), step)
 
 
+OTHER_KINDS: Mapping[str, ParameterKind] = _other_kinds()
+"""Of parameters that are neither hardpoints nor bushings, in the order in which they are listed."""
 KINDS: Mapping[str, ParameterKind] = _kinds()
 SWITCHES: Mapping[str, str] = {path: kind.switch for path, kind in KINDS.items() if kind.switch}
 """Path -> field of the topology."""

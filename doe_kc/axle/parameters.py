@@ -14,7 +14,6 @@ from typing import Any
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import (
-    KINDS,
     PATHS,
     PRODUCTION_SD,
     PRODUCTION_SHARE,
@@ -86,8 +85,7 @@ class Parameter:
 
 def design_parameters(axle: Axle) -> list[Parameter]:
     """Every design variable of Table 1 and Appendix A, in their order; followers only when freed."""
-    structure = axle.topology.structure
-    kinds = KINDS if structure is None else structure_kinds(structure, axle.labels)
+    kinds = structure_kinds(axle.topology.structure, axle.labels)
     return [
         _parameter(axle, path, kind) for path, kind in kinds.items() if path.split(".")[0] not in axle.follow
     ]
@@ -121,12 +119,14 @@ def is_active(axle: Axle, path: str) -> bool:
         return axle.topology.strut_bending
     if path.startswith("steer_arm.") or path.split(".")[0] == "SAH":
         return axle.topology.steer_arm
+    if path.startswith("arb.") and path != "arb.rate":
+        return axle.values["arb.rate"] > 0
     return True
 
 
 def settable_paths(axle: Axle) -> list[str]:
     """Every path that `with_values` takes on this axle, without the side prefixes."""
-    return sorted({n.split("@")[0] for n in axle.values if ".table." not in n and ".axes." not in n})
+    return sorted({n.split("@")[0] for n in axle.values if ".table." not in n})
 
 
 def parameter_value(axle: Axle, path: str, *, source: str = "parameter") -> float:
@@ -158,9 +158,9 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
 
 def _with_matching_topology(axle: Axle) -> Axle:
     """A strut bends once its flexibility is above zero, and is rigid at zero."""
-    if axle.topology.structure is not None:
-        return axle
     for path, flag in SWITCHES.items():
+        if f"{path}@L" not in axle.values:
+            continue
         there = max(axle.values[f"{path}@L"], axle.values[f"{path}@R"]) > 0
         if there != getattr(axle.topology, flag):
             change: dict[str, Any] = {flag: there}
@@ -233,7 +233,7 @@ def _split(axle: Axle, path: str, source: str) -> tuple[str, str | None]:
     head, _, rest = path.partition(".")
     side = SIDE_PREFIXES.get(head)
     name = rest if side else path
-    internal = "@" in name or ".table." in name or ".axes." in name
+    internal = "@" in name or ".table." in name
     if not internal and (f"{name}@L" in axle.values or (name in axle.values and side is None)):
         return name, side
     known = settable_paths(axle)

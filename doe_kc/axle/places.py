@@ -4,23 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
-from doe_kc.axle.model import BUSHINGS, Axle
+from doe_kc.axle.model import Axle
 from doe_kc.axle.structure import Structure
 
 
 @dataclass(frozen=True)
 class Places:
-    """What effects of an axle can be on. structure: of its type, None: the McPherson axle's.
+    """What effects of an axle can be on. structure: of its type.
 
     bushings: of either side; single_bushings: of which there is one. balls: ball joints with their side:
-    `TLO_L`, upper case.
+    `TLO_L`, upper case, but that named BALL_JOINT, which has an effect of its own.
     """
 
-    structure: Structure | None
+    structure: Structure
     bushings: tuple[str, ...]
     single_bushings: tuple[str, ...] = ()
     balls: tuple[str, ...] = ()
+
+    @property
+    def rack(self) -> bool:
+        """Whether the axle is steered, so that it has the load case steer."""
+        return self.structure.rack is not None
 
     @property
     def all_bushings(self) -> tuple[str, ...]:
@@ -37,14 +43,18 @@ class Places:
         return ("",) if bushing in self.single_bushings else ("L", "R")
 
 
-MCPHERSON_PLACES = Places(None, tuple(BUSHINGS))
+BALL_JOINT = "ball_joint"
+"""Name of the ball joint below a strut."""
 
 
 def places_of(axle: Axle) -> Places:
     """The places of an axle."""
-    structure = axle.topology.structure
-    if structure is None:
-        return MCPHERSON_PLACES
+    return structure_places(axle.topology.structure)
+
+
+@lru_cache
+def structure_places(structure: Structure) -> Places:
+    """The places of every axle of a type."""
     return Places(
         structure,
         tuple(bush.name for bush in structure.bushings if not bush.single),
@@ -55,7 +65,8 @@ def places_of(axle: Axle) -> Places:
 
 def ball_names(structure: Structure, among: Sequence[str] | None = None) -> tuple[str, ...]:
     """`TLO_L` of every ball joint of a side, `PHA` of a single one."""
-    chosen = [ball for ball in structure.balls if among is None or ball.name in among]
+    balls = [ball for ball in structure.balls if ball.name != BALL_JOINT]
+    chosen = [ball for ball in balls if among is None or ball.name in among]
     return tuple(
         f"{ball.name}_{side}".upper() if side else ball.name.upper()
         for ball in chosen

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.axle.geometry import point
-from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS, Axle
+from doe_kc.axle.model import BUSHING_AXES, Axle
 from doe_kc.curves import SIDE_WORDS
 
 
@@ -185,11 +185,10 @@ def _sides(axle: Axle) -> tuple[str, ...]:
 def _hardpoints(axle: Axle) -> Iterator[str]:
     for side in _sides(axle):
         centre = point(axle, "WLC", side)
-        structure = axle.topology.structure
-        for name in structure.points if structure is not None else (*HARDPOINTS, *EXTRA_HARDPOINTS):
+        for name in axle.topology.structure.points:
             at = point(axle, name, side)
             where = f"hardpoint {name} ({SIDE_WORDS[side]}) at ({', '.join(f'{v:g}' for v in at)}) mm"
-            if at[1] == 0.0 and structure is not None:
+            if at[1] == 0.0:
                 continue  # a point that both sides share
             if -at[1] < MIDDLE:
                 yield (
@@ -214,9 +213,7 @@ def _bushings(axle: Axle) -> Iterator[str]:
     lower, upper = BUSHING_STIFFNESS
     tables = {(name, axis) for name, axis, _ in axle.topology.tables}
     for side in _sides(axle):
-        structure = axle.topology.structure
-        names = [b.name for b in structure.bushings if not b.single] if structure is not None else BUSHINGS
-        for name in names:
+        for name in [bush.name for bush in axle.topology.structure.bushings if not bush.single]:
             for axis in BUSHING_AXES[:3]:
                 rate = axle.values[f"{name}.{axis}@{side}"] * axle.values[f"{name}.stiffness.{axis}@{side}"]
                 if (name, axis) not in tables and not lower <= rate <= upper:

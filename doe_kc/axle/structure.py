@@ -8,16 +8,24 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal
 
 CHASSIS = "body"
 """Name of the vehicle body, which stands still."""
+CHASSIS_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+"""Local axes along the chassis's."""
+
+
+KinematicJoint = Literal["ball", "rigid", "hinge_x", "hinge_y", "hinge_z", "none"]
 
 
 @dataclass(frozen=True)
 class BushingConnection:
     """Six-axis element at the point `at`; its local axes ride on `inner`.
 
-    line: points (from, to) along which local z lies at design; None: the axes are numbers of the axle file.
+    line: points (from, to) along which local z lies at design; None: the axes are `axes`. axes: (3, 3) as
+    rows, its columns are local x, y, z in chassis components at design, of the left side. joint: what stands
+    in for it in pure kinematics; hinge_y: turns about local y alone, none: the bushing.
     """
 
     name: str
@@ -26,17 +34,21 @@ class BushingConnection:
     at: str
     single: bool = False
     line: tuple[str, str] | None = None
+    axes: tuple[tuple[float, ...], ...] = CHASSIS_AXES
+    joint: KinematicJoint = "ball"
 
 
 @dataclass(frozen=True)
 class BallConnection:
-    """Ball joint of the bodies a and b at the point `at`."""
+    """Ball joint of the bodies a and b at the point `at`. seat: what probes call the part that the ball sits
+    in, empty: by its body's name."""
 
     name: str
     a: str
     b: str
     at: str
     single: bool = False
+    seat: str = ""
 
 
 @dataclass(frozen=True)
@@ -97,12 +109,36 @@ class SplitBody:
 
 
 @dataclass(frozen=True)
+class StrutClamp:
+    """Part that is clamped to its carrier at the point `at`, a damper tube: rigidly, or by springs.
+
+    line: points (from, to) about which the springs twist, and across which they bend.
+    """
+
+    body: str
+    carrier: str
+    at: str
+    line: tuple[str, str]
+
+
+@dataclass(frozen=True)
+class SteerArmBeam:
+    """Part at the point `at` that is the end of a beam, clamped to its carrier at the point `root`: rigid, or
+    elastic."""
+
+    body: str
+    carrier: str
+    root: str
+    at: str
+
+
+@dataclass(frozen=True)
 class Structure:
     """Bodies and connections of one axle type: what decides its equations.
 
     bodies: of either side, single_bodies: one for both. points, single_points: names of hardpoints.
     springs: the first carries the preload of the static state. carrier: body that the wheel is fixed to,
-    at the point WLC.
+    at the point WLC. fixed_points: those of `points` that are no design parameters.
     """
 
     type: str
@@ -121,6 +157,18 @@ class Structure:
     bar: BarConnection | None = None
     kingpin: KingpinLine | None = None
     subframe: SplitBody | None = None
+    strut: StrutClamp | None = None
+    steer_arm: SteerArmBeam | None = None
+    fixed_points: tuple[str, ...] = ()
+
+    def __hash__(self) -> int:
+        """Of the type's name: a topology is looked up at every design, and few types share one."""
+        return hash(self.type)
+
+    @property
+    def design_points(self) -> tuple[str, ...]:
+        """Two-sided hardpoints that are design parameters."""
+        return tuple(name for name in self.points if name not in self.fixed_points)
 
     def sides(self, *, single: bool) -> tuple[str, ...]:
         """Sides on which an element exists: L and R, or one that is of no side."""
@@ -130,9 +178,22 @@ class Structure:
         """Name of a body's instance on a side: `arm.L`, or the name itself of a single one."""
         return body if body == CHASSIS or body in self.single_bodies else f"{body}.{side}"
 
+    def part_on_side(self, body: str, side: str) -> str:
+        """The same, but of a body that may be split the half of that side: `subframe.L`."""
+        halved = self.subframe is not None and body == self.subframe.body
+        return f"{body}.{side}" if side and halved else self.on_side(body, side)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Names of all bodies, one a side, and the halves of one that may be split."""
+        halves = () if self.subframe is None else (self.subframe.body,)
+        return (*self.single_bodies, *(f"{name}.{side}" for name in (*halves, *self.bodies) for side in "LR"))
+
     def places(self) -> Iterator[tuple[str, str]]:
         """(body, hardpoint) of all that connections and the wheel name; a point may be on several bodies."""
         yield self.carrier, "WLC"
+        if (pin := self.kingpin) is not None:
+            yield from ((pin.lower_body, pin.lower), (pin.upper_body, pin.upper))
         for ball in self.balls:
             yield from ((ball.a, ball.at), (ball.b, ball.at))
         for bush in self.bushings:
@@ -142,8 +203,16 @@ class Structure:
             yield from ((line.a, line.at_a), (line.b, line.at_b))
         if self.bar is not None:
             yield self.bar.body, self.bar.at
-        if (pin := self.kingpin) is not None:
-            yield from ((pin.lower_body, pin.lower), (pin.upper_body, pin.upper))
+        if (clamp := self.strut) is not None:
+            yield from ((clamp.carrier, clamp.at), (clamp.body, clamp.at))
+        if (beam := self.steer_arm) is not None:
+            yield from ((beam.carrier, beam.root), (beam.carrier, beam.at), (beam.body, beam.at))
+
+    def joint_points(self, body: str, *, single: bool) -> tuple[str, ...]:
+        """Hardpoints at which bushings and ball joints hold a body, each once."""
+        joints = [(bush.at, bush.single, (bush.inner, bush.outer)) for bush in self.bushings]
+        joints += [(ball.at, ball.single, (ball.a, ball.b)) for ball in self.balls]
+        return tuple(dict.fromkeys(at for at, alone, on in joints if body in on and alone == single))
 
     def body_at(self, point: str) -> str:
         """The first moving body that carries a hardpoint; the vehicle body where none does."""

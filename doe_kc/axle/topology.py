@@ -21,17 +21,15 @@ class Topology:
     tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
     rubber: bushings whose translational axes have friction beside their elastic law.
     probes: whether zero-valued dislocations and force pairs are in, for derivatives to them alone.
-    structure: bodies and connections of the axle's type; None: the McPherson axle's.
+    structure: bodies and connections of the axle's type.
     elastic_balls, play_balls: ball joints that are springs, or have free play, by name of either side:
-        `tlo@L`; a structure's only.
+        `tlo@L`.
     """
 
-    structure: Structure | None = None
-
+    structure: Structure
     hub: bool = False
     strut_bending: bool = False
     steer_arm: bool = False
-    ball_joint: bool = False
     rack_mount: bool = False
     power_assist: bool = False
     flexible_subframe: bool = False

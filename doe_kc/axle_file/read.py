@@ -8,13 +8,15 @@ from typing import Any
 
 from doe_kc.axle.freedoms import check_freedoms
 from doe_kc.axle.geometry import check_geometry
-from doe_kc.axle.model import BUSHING_AXES, STRUT_BENDING, STRUT_TORSION, Axle, both, strut_clamp
+from doe_kc.axle.model import BUSHING_AXES, Axle, both, strut_clamp
 from doe_kc.axle.parameters import with_values
+from doe_kc.axle.structure import Structure
 from doe_kc.axle.topology import Topology
 from doe_kc.axle_file.schema import AxleFile
-from doe_kc.axle_file.tables import bushing_values, chosen_load_cases, stop_values
-from doe_kc.axle_file.typed import MCPHERSON, typed_axle
+from doe_kc.axle_file.tables import bushing_values, chosen_load_cases, stop_values, strut_values
+from doe_kc.axle_file.typed import typed_axle
 from doe_kc.axle_file.typed_schema import TypedAxleFile
+from doe_kc.axle_types import DEFAULT_TYPE, built_in
 from doe_kc.effects import apply_effect, refuse_on_rig
 from doe_kc.ground.files import read_toml, validate
 
@@ -33,8 +35,7 @@ def axle_from_document(document: Mapping[str, Any], *, source: str, folder: Path
         refuse_on_rig(ident, source)
         axle = apply_effect(axle, ident, options, source=source)
     check_geometry(axle, source)
-    if axle.topology.structure is not None:
-        check_freedoms(axle, axle.topology.structure, source)
+    check_freedoms(axle, axle.topology.structure, source)
     return axle
 
 
@@ -42,19 +43,22 @@ def _plain_axle(
     document: Mapping[str, Any], folder: Path, source: str
 ) -> tuple[AxleFile | TypedAxleFile, Axle]:
     """The checked file, and its axle without the right side's own values and effects."""
-    if document.get("type", MCPHERSON) != MCPHERSON:
+    if document.get("type", DEFAULT_TYPE) != DEFAULT_TYPE:
         return typed_axle(document, folder, source)
     file = validate(AxleFile, {k: v for k, v in document.items() if k != "type"}, source)
+    axle_type = built_in(DEFAULT_TYPE)
     return file, Axle(
         name=file.name,
-        topology=_topology(file),
+        topology=_topology(file, axle_type.structure),
         values=_values(file),
         follow=dict(file.follow),
         load_cases=chosen_load_cases(file.load_cases, source),
+        labels=axle_type.labels,
+        lines=axle_type.lines,
     )
 
 
-def _topology(file: AxleFile) -> Topology:
+def _topology(file: AxleFile, structure: Structure) -> Topology:
     tables = [
         (name, axis, len(bushing.table[axis]))
         for name, bushing in file.bushings
@@ -62,6 +66,7 @@ def _topology(file: AxleFile) -> Topology:
         if axis in bushing.table
     ]
     return Topology(
+        structure=structure,
         strut_bending=file.strut.flexibility > 0,
         steer_arm=file.steer_arm.flexible,
         bump_points=len(file.bump_stop.curve),
@@ -85,8 +90,7 @@ def _values(file: AxleFile) -> dict[str, float]:
     out |= both("tyre.rate", file.tyre.rate) | both("spring.rate", file.spring.rate)
     out |= both("damper.gas_force", file.damper.gas_force)
     out |= both("steer_arm.radius", file.steer_arm.radius)
-    out |= both("strut.flexibility", file.strut.flexibility)
-    out |= both("strut.bending", STRUT_BENDING) | both("strut.torsion", STRUT_TORSION)
+    out |= strut_values(file.strut)
     out |= both("tie_rod.flexibility", 0.0)
     out |= {
         "tyre.static_load": file.tyre.static_load,

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from doe_kc.axle.force_curve import STEEPEST_CURVE
 from doe_kc.axle.model import BUSHING_AXES, DEFAULT_FOLLOW
 from doe_kc.ground.fields import Finite, NotNegative, Pair, Point, Positive, Strict
 
@@ -81,6 +82,11 @@ def check_table(points: list[list[float]], name: str, *, through_zero: bool = Fa
             raise ValueError(
                 f"{name} is not monotone: point {row} has force {after[1]:g} after {before[1]:g}; "
                 "a bushing or stop that softens to a falling force has no unique equilibrium"
+            )
+        if not (after[1] - before[1]) / (after[0] - before[0]) <= STEEPEST_CURVE:
+            raise ValueError(
+                f"{name} is steeper than {STEEPEST_CURVE:g} N/mm or Nm/deg between deflection {before[0]:g} "
+                f"and {after[0]:g}; no part is: correct point {row}"
             )
     if through_zero and not points[0][0] < 0 < points[-1][0]:
         raise ValueError(f"{name} must span zero deflection, from compression to extension")

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from doe_kc.axle.force_curve import curve_values
-from doe_kc.axle.model import BUSHING_AXES, both
-from doe_kc.axle_file.schema import Bushing, Stop, Sweep
+from doe_kc.axle.model import BUSHING_AXES, STRUT_BENDING, STRUT_TORSION, both
+from doe_kc.axle_file.schema import Bushing, Stop, StrutTable, Sweep
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.load_cases import CASE_ORDER, LOAD_CASES, LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
@@ -44,6 +44,15 @@ def stop_values(name: str, stop: Stop) -> dict[str, float]:
         dict(curve_values(f"{name}.table", points[:, 0], points[:, 1]))
         | both(f"{name}.clearance", stop.clearance)
         | both(f"{name}.factor", stop.factor)
+    )
+
+
+def strut_values(strut: StrutTable) -> dict[str, float]:
+    """Flexibility and stiffnesses of the strut clamp, internal names."""
+    return (
+        both("strut.flexibility", strut.flexibility)
+        | both("strut.bending", STRUT_BENDING)
+        | both("strut.torsion", STRUT_TORSION)
     )
 
 

@@ -10,15 +10,14 @@ from typing import Any
 from doe_kc.axle.model import BUSHING_AXES, Axle, both
 from doe_kc.axle.structure import Structure, of_side
 from doe_kc.axle.topology import Topology
-from doe_kc.axle_file.tables import bushing_values, chosen_load_cases, stop_values
-from doe_kc.axle_file.typed_schema import OrientedBushing, TypedAxleFile
-from doe_kc.axle_types import AxleType, read_axle_type
+from doe_kc.axle_file.schema import SteerArmTable, StrutTable
+from doe_kc.axle_file.tables import bushing_values, chosen_load_cases, stop_values, strut_values
+from doe_kc.axle_file.typed_schema import TypedAxleFile
+from doe_kc.axle_types import read_axle_type
 from doe_kc.axle_types.read import bushing_axes
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.files import validate
 
-MCPHERSON = "mcpherson_front"
-"""Type of an axle file that names none."""
 STEER_RACK_TRAVEL = 60.0
 """mm to either side that a steering input drives by default."""
 
@@ -31,7 +30,7 @@ def typed_axle(document: Mapping[str, Any], folder: Path, source: str) -> tuple[
     axle_type = read_axle_type(str(document["type"]), folder, source=source)
     file = validate(TypedAxleFile, _with_springs(document, axle_type.structure), source)
     _check_names(file, axle_type.structure, source)
-    structure = axle_type.structure
+    structure = _oriented(file, axle_type.structure, source)
     cases = chosen_load_cases(file.load_cases, source)
     if file.steering is None:
         cases.pop("steer")
@@ -42,10 +41,11 @@ def typed_axle(document: Mapping[str, Any], folder: Path, source: str) -> tuple[
     return file, Axle(
         name=file.name,
         topology=_topology(file, structure),
-        values=_values(file, axle_type, source),
+        values=_values(file, structure),
         follow=dict(file.follow),
         load_cases=cases,
         labels=axle_type.labels,
+        lines=axle_type.lines,
     )
 
 
@@ -78,6 +78,9 @@ def _check_names(file: TypedAxleFile, structure: Structure, source: str) -> None
             raise InputError(f"{source}: table [{table}] is missing; the type {structure.type} needs it.")
         if needed is None and present:
             raise InputError(f"{source}: [{table}] is for nothing that a {structure.type} has; remove it.")
+    for table, part in (("strut", structure.strut), ("steer_arm", structure.steer_arm)):
+        if part is None and getattr(file, table) is not None:
+            raise InputError(f"{source}: [{table}] is for nothing that a {structure.type} has; remove it.")
     for follower, leader in file.follow.items():
         for point in (follower, leader):
             if point not in structure.points:
@@ -109,14 +112,23 @@ def _topology(file: TypedAxleFile, structure: Structure) -> Topology:
     ]
     return Topology(
         structure=structure,
+        strut_bending=structure.strut is not None and _strut(file).flexibility > 0,
+        steer_arm=structure.steer_arm is not None and _steer_arm(file).flexible,
         bump_points=len(file.bump_stop.curve) if file.bump_stop is not None else 0,
         rebound_points=len(file.rebound_stop.curve) if file.rebound_stop is not None else 0,
         tables=tuple(tables),
     )
 
 
-def _values(file: TypedAxleFile, axle_type: AxleType, source: str) -> dict[str, float]:
-    structure = axle_type.structure
+def _strut(file: TypedAxleFile) -> StrutTable:
+    return file.strut or StrutTable()
+
+
+def _steer_arm(file: TypedAxleFile) -> SteerArmTable:
+    return file.steer_arm or SteerArmTable()
+
+
+def _values(file: TypedAxleFile, structure: Structure) -> dict[str, float]:
     out: dict[str, float] = {}
 
     def put(name: str, value: float, *, single: bool) -> None:
@@ -128,7 +140,6 @@ def _values(file: TypedAxleFile, axle_type: AxleType, source: str) -> dict[str, 
     for bush in structure.bushings:
         for name, value in bushing_values(bush.name, file.bushings[bush.name]).items():
             put(name, value, single=bush.single)
-        out |= _axes_values(bush.name, file.bushings[bush.name], axle_type, source)
     for spring in structure.springs:
         put(f"{spring.name}.rate", file.springs[spring.name].rate, single=spring.single)
     for rod in structure.rods:
@@ -140,6 +151,10 @@ def _values(file: TypedAxleFile, axle_type: AxleType, source: str) -> dict[str, 
     out |= both("tyre.rate", file.tyre.rate) | {"tyre.static_load": file.tyre.static_load}
     if structure.damper is not None:
         out |= both("damper.gas_force", file.damper.gas_force)
+    if structure.strut is not None:
+        out |= strut_values(_strut(file))
+    if structure.steer_arm is not None:
+        out |= both("steer_arm.radius", _steer_arm(file).radius)
     if file.arb is not None:
         out |= {f"arb.{key}": value for key, value in file.arb.model_dump().items()}
         out["arb.link_flexibility"] = 0.0
@@ -149,18 +164,16 @@ def _values(file: TypedAxleFile, axle_type: AxleType, source: str) -> dict[str, 
     return out | {"ride_height": file.ride_height}
 
 
-def _axes_values(name: str, bushing: OrientedBushing, axle_type: AxleType, source: str) -> dict[str, float]:
-    """Local axes by chassis component and axis, where no line of points says them."""
-    where = f"{source}: [bushings.{name}]"
-    if name not in axle_type.axes:
-        if bushing.x is not None or bushing.y is not None:
-            raise InputError(f"{where}: its axes follow two points of the type; remove x and y.")
-        return {}
-    axes = axle_type.axes[name]
-    if bushing.x is not None or bushing.y is not None:
-        axes = bushing_axes(bushing.x, bushing.y, where)
-    return {
-        f"{name}.axes.{row}{column}": float(axes[i, j])
-        for i, row in enumerate("xyz")
-        for j, column in enumerate("123")
-    }
+def _oriented(file: TypedAxleFile, structure: Structure, source: str) -> Structure:
+    """The structure with the local axes of bushings that the file gives."""
+    bushings = []
+    for bush in structure.bushings:
+        table, where = file.bushings[bush.name], f"{source}: [bushings.{bush.name}]"
+        if table.x is not None or table.y is not None:
+            if bush.line is not None:
+                raise InputError(f"{where}: its axes follow two points of the type; remove x and y.")
+            bush = replace(bush, axes=bushing_axes(table.x, table.y, where))
+        bushings.append(bush)
+    return (
+        structure if tuple(bushings) == structure.bushings else replace(structure, bushings=tuple(bushings))
+    )

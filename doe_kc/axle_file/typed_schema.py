@@ -13,8 +13,10 @@ from doe_kc.axle_file.schema import (
     Damper,
     Spring,
     Static,
+    SteerArmTable,
     SteeringTable,
     Stop,
+    StrutTable,
     Sweep,
     TyreTable,
     Units,
@@ -48,6 +50,8 @@ class TypedAxleFile(Strict):
     steering: SteeringTable | None = None
     scb: ColumnBushing = ColumnBushing()
     bushings: dict[str, OrientedBushing]
+    strut: StrutTable | None = None
+    steer_arm: SteerArmTable | None = None
     ride_height: Finite = 0.0
     right: dict[str, Finite] = Field(default_factory=dict)
     effects: dict[str, dict[str, Any]] = Field(default_factory=dict)

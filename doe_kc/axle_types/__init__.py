@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from doe_kc.axle_types.read import BUILT_IN, AxleType, read_axle_type
+from doe_kc.axle_types.read import BUILT_IN, DEFAULT_TYPE, AxleType, built_in, read_axle_type
 
-__all__ = ["BUILT_IN", "AxleType", "read_axle_type"]
+__all__ = ["BUILT_IN", "DEFAULT_TYPE", "AxleType", "built_in", "read_axle_type"]

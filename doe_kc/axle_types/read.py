@@ -6,12 +6,14 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from doe_kc.axle.structure import (
     CHASSIS,
+    CHASSIS_AXES,
     BallConnection,
     BarConnection,
     BushingConnection,
@@ -19,16 +21,21 @@ from doe_kc.axle.structure import (
     LineConnection,
     RackConnection,
     SplitBody,
+    SteerArmBeam,
     Structure,
+    StrutClamp,
 )
-from doe_kc.axle_types.schema import AxleTypeFile, BushingTable, LineTable
+from doe_kc.axle_types.schema import AxleTypeFile, BushingTable, ClampTable, LineTable
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.files import read_toml, validate
-from doe_kc.ground.typing import FloatArray
 
 FOLDER = Path(__file__).parent
-BUILT_IN = tuple(sorted(path.stem for path in FOLDER.glob("*.toml")))
-"""Types that the package describes, by name."""
+DEFAULT_TYPE = "mcpherson_front"
+"""Type of an axle file that names none."""
+BUILT_IN = tuple(
+    sorted((path.stem for path in FOLDER.glob("*.toml")), key=lambda name: (name != DEFAULT_TYPE, name))
+)
+"""Types that the package describes, by name, DEFAULT_TYPE first."""
 WHEEL_CENTRE_POINT = "WLC"
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 RESERVED = {
@@ -42,12 +49,12 @@ RESERVED = {
 @dataclass(frozen=True)
 class AxleType:
     """structure: bodies and connections. label: of the type. labels: of points and elements by name.
-    axes: (3, 3) default local axes as columns, left side, by bushing that has no line."""
+    lines: pairs of hardpoints by the part that they draw; empty: drawn from the connections."""
 
     structure: Structure
     label: str
     labels: Mapping[str, str]
-    axes: Mapping[str, FloatArray]
+    lines: Mapping[str, tuple[tuple[str, str], ...]]
 
 
 def read_axle_type(name: str, folder: Path, *, source: str) -> AxleType:
@@ -56,21 +63,31 @@ def read_axle_type(name: str, folder: Path, *, source: str) -> AxleType:
     InputError when there is neither, or the file is wrong; source: file that names the type.
     """
     if name in BUILT_IN:
-        path = FOLDER / f"{name}.toml"
-    elif name.endswith(".toml"):
+        return built_in(name)
+    if name.endswith(".toml"):
         path = folder / name
     else:
         raise InputError(
             f"{source}: type = {name!r} is no axle type; known are {', '.join(BUILT_IN)}, "
             f"or the path of a type file (*.toml).{nearest(name, BUILT_IN)}"
         )
+    return _read(path)
+
+
+@lru_cache
+def built_in(name: str) -> AxleType:
+    """A type of BUILT_IN, read once."""
+    return _read(FOLDER / f"{name}.toml")
+
+
+def _read(path: Path) -> AxleType:
     file = validate(AxleTypeFile, read_toml(path), str(path))
     _check(file, str(path))
-    return AxleType(_structure(file), file.label, _labels(file), _axes(file, str(path)))
+    return AxleType(_structure(file, str(path)), file.label, _labels(file), _lines(file))
 
 
-def bushing_axes(x: list[float] | None, y: list[float] | None, where: str) -> FloatArray:
-    """(3, 3) axes as columns: e1 along x, e2 along what of y is across it, e3 = e1 x e2.
+def bushing_axes(x: list[float] | None, y: list[float] | None, where: str) -> tuple[tuple[float, ...], ...]:
+    """(3, 3) as rows, axes as columns: e1 along x, e2 along what of y is across it, e3 = e1 x e2.
 
     InputError when x and y do not span a plane.
     """
@@ -82,15 +99,12 @@ def bushing_axes(x: list[float] | None, y: list[float] | None, where: str) -> Fl
     if length == 0 or np.linalg.norm(across) < 1e-6 * max(float(np.linalg.norm(second)), 1e-300):
         raise InputError(f"{where}: x and y span no plane; expected two directions that are not parallel.")
     e2 = across / np.linalg.norm(across)
-    return np.column_stack([e1, e2, np.cross(e1, e2)])
+    axes = np.column_stack([e1, e2, np.cross(e1, e2)]) + 0.0  # no -0
+    return tuple(tuple(float(value) for value in row) for row in axes)
 
 
-def _axes(file: AxleTypeFile, source: str) -> dict[str, FloatArray]:
-    return {
-        name: bushing_axes(table.x, table.y, f"{source}: [bushings.{name}]")
-        for name, table in file.bushings.items()
-        if table.line is None
-    }
+def _lines(file: AxleTypeFile) -> dict[str, tuple[tuple[str, str], ...]]:
+    return {name: tuple((a, b) for a, b in pairs) for name, pairs in file.lines.items()}
 
 
 def _labels(file: AxleTypeFile) -> dict[str, str]:
@@ -99,7 +113,7 @@ def _labels(file: AxleTypeFile) -> dict[str, str]:
     return out | file.points | file.single_points
 
 
-def _structure(file: AxleTypeFile) -> Structure:
+def _structure(file: AxleTypeFile, source: str) -> Structure:
     def lines(tables: Mapping[str, LineTable]) -> tuple[LineConnection, ...]:
         return tuple(_line(name, table) for name, table in tables.items())
 
@@ -110,8 +124,8 @@ def _structure(file: AxleTypeFile) -> Structure:
         points=tuple(file.points),
         single_points=tuple(file.single_points),
         carrier=file.carrier,
-        bushings=tuple(_bushing(name, table) for name, table in file.bushings.items()),
-        balls=tuple(BallConnection(n, t.a, t.b, t.at, t.single) for n, t in file.balls.items()),
+        bushings=tuple(_bushing(name, table, source) for name, table in file.bushings.items()),
+        balls=tuple(BallConnection(n, t.a, t.b, t.at, t.single, t.seat) for n, t in file.balls.items()),
         rods=lines(file.rods),
         cylindricals=lines(file.cylindricals),
         springs=lines(file.springs),
@@ -124,6 +138,9 @@ def _structure(file: AxleTypeFile) -> Structure:
         subframe=None
         if file.subframe is None
         else SplitBody(file.subframe.body, tuple(file.subframe.centre)),
+        strut=None if file.strut is None else _clamp(file.strut),
+        steer_arm=None if file.steer_arm is None else SteerArmBeam(**file.steer_arm.model_dump()),
+        fixed_points=tuple(file.fixed_points),
     )
 
 
@@ -131,9 +148,18 @@ def _line(name: str, table: LineTable) -> LineConnection:
     return LineConnection(name, table.a, table.at_a, table.b, table.at_b, table.single)
 
 
-def _bushing(name: str, table: BushingTable) -> BushingConnection:
-    line = None if table.line is None else (table.line[0], table.line[1])
-    return BushingConnection(name, table.inner, table.outer, table.at, table.single, line)
+def _bushing(name: str, table: BushingTable, source: str) -> BushingConnection:
+    line: tuple[str, str] | None = None
+    axes: tuple[tuple[float, ...], ...] = CHASSIS_AXES
+    if table.line is not None:
+        line = (table.line[0], table.line[1])
+    elif table.x is not None:
+        axes = bushing_axes(table.x, table.y, f"{source}: [bushings.{name}]")
+    return BushingConnection(name, table.inner, table.outer, table.at, table.single, line, axes, table.joint)
+
+
+def _clamp(table: ClampTable) -> StrutClamp:
+    return StrutClamp(table.body, table.carrier, table.at, (table.line[0], table.line[1]))
 
 
 @dataclass(frozen=True)
@@ -167,6 +193,16 @@ def _uses(file: AxleTypeFile) -> Iterator[_Use]:
         yield _Use("kingpin", (pin.lower_body, pin.upper_body), (pin.lower, pin.upper))
     if file.subframe is not None:
         yield _Use("subframe", (file.subframe.body,), tuple(file.subframe.centre))
+    if file.strut is not None:
+        clamp = file.strut
+        yield _Use("strut", (clamp.body, clamp.carrier), (clamp.at, *clamp.line))
+    if file.steer_arm is not None:
+        beam = file.steer_arm
+        yield _Use("steer_arm", (beam.body, beam.carrier), (beam.root, beam.at))
+    if file.lines:
+        yield _Use("lines", (), tuple(at for pairs in file.lines.values() for pair in pairs for at in pair))
+    if file.fixed_points:
+        yield _Use("fixed_points", (), tuple(file.fixed_points))
 
 
 def _check(file: AxleTypeFile, source: str) -> None:
@@ -246,7 +282,8 @@ def _check_used(file: AxleTypeFile, source: str) -> None:
     """Every body is connected, every point used."""
     uses = list(_uses(file))
     bodies = {body for use in uses if use.where not in ("kingpin", "arb", "subframe") for body in use.bodies}
-    points = {point for use in uses for point in use.points} | {WHEEL_CENTRE_POINT}
+    drawn = ("lines", "fixed_points")
+    points = {at for use in uses if use.where not in drawn for at in use.points} | {WHEEL_CENTRE_POINT}
     for body in file.bodies:
         if body not in bodies:
             raise InputError(f"{source}: the body {body!r} is connected with nothing; connect or remove it.")

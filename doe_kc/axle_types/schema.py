@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from doe_kc.axle.structure import KinematicJoint
 from doe_kc.ground.fields import Point, Strict
 
 
 class BushingTable(Strict):
     """x, y: default axes in the design position, left side, chassis components; an axle file may give others.
 
-    line: points along which z lies instead.
+    line: points along which z lies instead. joint: what stands in for it in pure kinematics.
     """
 
     label: str = ""
@@ -22,6 +23,7 @@ class BushingTable(Strict):
     x: Point | None = None
     y: Point | None = None
     line: list[str] | None = None
+    joint: KinematicJoint = "ball"
     single: bool = False
 
     @model_validator(mode="after")
@@ -41,6 +43,7 @@ class BallTable(Strict):
     b: str
     at: str
     single: bool = False
+    seat: str = ""
 
 
 class LineTable(Strict):
@@ -76,6 +79,20 @@ class SplitTable(Strict):
     centre: list[str]
 
 
+class ClampTable(Strict):
+    body: str
+    carrier: str
+    at: str
+    line: Annotated[list[str], Field(min_length=2, max_length=2)]
+
+
+class BeamTable(Strict):
+    body: str
+    carrier: str
+    root: str
+    at: str
+
+
 class AxleTypeFile(Strict):
     """The whole file. `schema` names the format and its version."""
 
@@ -96,3 +113,9 @@ class AxleTypeFile(Strict):
     arb: BarTable | None = None
     kingpin: KingpinTable | None = None
     subframe: SplitTable | None = None
+    strut: ClampTable | None = None
+    steer_arm: BeamTable | None = None
+    fixed_points: list[str] = Field(default_factory=list)
+    lines: dict[str, list[Annotated[list[str], Field(min_length=2, max_length=2)]]] = Field(
+        default_factory=dict
+    )

@@ -8,34 +8,47 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
-from doe_kc.correlation.problem import Evaluated
+if TYPE_CHECKING:
+    from doe_kc.correlation.problem import Evaluated
 
 INTERVAL = 10.0
 """Seconds between two lines at least; the first and the last are always written."""
+Tell = Callable[[str, int, int], None]
+"""Told (what, steps done, of how many)."""
 
 
 @contextmanager
 def progress_bar(what: str, total: int) -> Iterator[Callable[[int], None]]:
     """A function that advances by so many steps."""
-    with described_bar(what, total) as advance:
-        yield lambda steps: advance(steps, what)
+    with described_bar(what, total) as tell:
+        done = 0
+
+        def advance(steps: int) -> None:
+            nonlocal done
+            done += steps
+            tell(what, done, total)
+
+        yield advance
 
 
 @contextmanager
 def correlation_bar(budget: int) -> Iterator[Callable[[Sequence[Evaluated]], None]]:
     """A function that takes each round of evaluations, of `budget` at most."""
     best: list[Evaluated] = []
+    done = 0
 
-    def watch(advance: Callable[[int, str], None], new: Sequence[Evaluated]) -> None:
+    def watch(tell: Tell, new: Sequence[Evaluated]) -> None:
+        nonlocal done
+        done += len(new)
         solved = [e for e in [*best, *new] if e.rating is not None]
         if solved:
             best[:] = [max(solved, key=lambda e: e.merit)]
-        advance(len(new), _merit_words(best[0]) if best else "correlating")
+        tell(_merit_words(best[0]) if best else "correlating", done, budget)
 
-    with described_bar("correlating", budget) as advance:
-        yield partial(watch, advance)
+    with described_bar("correlating", budget) as tell:
+        yield partial(watch, tell)
 
 
 def _merit_words(best: Evaluated) -> str:
@@ -43,17 +56,17 @@ def _merit_words(best: Evaluated) -> str:
 
 
 @contextmanager
-def described_bar(what: str, total: int) -> Iterator[Callable[[int, str], None]]:
-    """A function that advances by so many steps and says what is under way.
+def described_bar(what: str, total: int) -> Iterator[Tell]:
+    """A function that says what is under way, how many steps are done, and of how many.
 
     A bar in a terminal; in a file or pipe a line at the start, then one every ten seconds, and at the end.
     """
-    with _bar(what, total) if sys.stderr.isatty() else _lines(what, total) as advance:
-        yield advance
+    with _bar(what, total) if sys.stderr.isatty() else _lines(what, total) as tell:
+        yield tell
 
 
 @contextmanager
-def _bar(what: str, total: int) -> Iterator[Callable[[int, str], None]]:
+def _bar(what: str, total: int) -> Iterator[Tell]:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
@@ -67,17 +80,18 @@ def _bar(what: str, total: int) -> Iterator[Callable[[int, str], None]]:
     with Progress(*columns, console=Console(stderr=True)) as progress:
         task = progress.add_task(what, total=total, rate="")
 
-        def advance(steps: int, words: str) -> None:
+        def tell(words: str, done: int, of: int) -> None:
             speed = progress.tasks[0].speed
-            progress.update(task, advance=steps, description=words, rate=f"{speed:.3g}/s" if speed else "")
+            rate = f"{speed:.3g}/s" if speed else ""
+            progress.update(task, completed=done, total=of, description=words, rate=rate)
 
-        yield advance
+        yield tell
 
 
 @contextmanager
-def _lines(what: str, total: int) -> Iterator[Callable[[int, str], None]]:
+def _lines(what: str, total: int) -> Iterator[Tell]:
     lines = ProgressLines(what, total, sys.stderr)
-    yield lines.advance
+    yield lines.tell
     lines.close()
 
 
@@ -96,10 +110,9 @@ class ProgressLines:
         self._started = self._written = clock()
         self._write(f"{what}: {total} steps")
 
-    def advance(self, steps: int, words: str) -> None:
-        """So many steps more; written when the last line is ten seconds old."""
-        self._done += steps
-        self._words = words
+    def tell(self, words: str, done: int, total: int) -> None:
+        """So many steps are done, of so many; written when the last line is ten seconds old."""
+        self._words, self._done, self._total = words, done, total
         now = self._clock()
         if now - self._written >= INTERVAL:
             self._written = now

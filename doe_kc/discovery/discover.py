@@ -15,9 +15,10 @@ from doe_kc.discovery.result import CurveGap, Discovery, Finding, FindingVerdict
 from doe_kc.discovery.screening.disagreement import raw_map
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
+from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import is_friction
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch, accepted_at, threshold
+from doe_kc.discovery.search.search import EffectSearch, threshold
 from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
@@ -163,16 +164,18 @@ def _statuses(
     search: EffectSearch, named: Sequence[Finding], count: int, *, resolved: bool
 ) -> tuple[HypothesisStatus, ...]:
     """named: the findings and traces that are reported."""
-    critical, last = float(np.sqrt(2.0 * threshold(count))), search.steps[-1].before
-    members: list[tuple[Screened, Status]] = []
+    last, critical = search.with_law_discrepancy, float(np.sqrt(2.0 * threshold(count)))
     statuses: dict[str, Status] = {f.hypothesis.name: "found" if f.relevant else "trace" for f in named}
-    for hypothesis in search.with_law_discrepancy.model.members:
-        step = accepted_at(search, hypothesis)
-        own = next(s for s in step.screened if s.hypothesis.name == hypothesis.name)
-        own = own.rewhitened(step.before.model.likelihood, last.model.likelihood)
-        members.append((own, statuses.get(hypothesis.name, "unresolved")))
-    names = {s.hypothesis.name for s, _ in members}
-    others = [s for s in search.steps[-1].screened if s.hypothesis.name not in names]
+    own = {h.name for h in last.model.members}
+    members: list[tuple[Screened, Status]] = [
+        (s, statuses.get(s.hypothesis.name, "unresolved"))
+        for s in search.screened
+        if s.hypothesis.name in own
+    ]
+    others = [
+        s for s in search.screened if s.hypothesis.name not in own and compatible(last.model, s.hypothesis)
+    ]
+    others.sort(key=lambda s: -s.gain)
     return hypothesis_statuses(last, others, members, critical, resolved=resolved)
 
 

@@ -30,6 +30,7 @@ from doe_kc.discovery.thresholds import (
     FIT_POOR_RATIO,
     FIT_STEPS,
     FRESH_DECREASE,
+    HOPELESS_SHARE,
     LARGEST_RADIUS,
     LAST_STEP_DECREASE,
     LEAST_STEP,
@@ -111,10 +112,8 @@ class Fit:
         """free: places in z that may move."""
         prior = self.model.prior_sd[free]
         offset = (self.z[free] - self.model.centre[free]) / prior
-        every = free.size == self.z.size
-        jacobian = self.jacobian if every else self.jacobian[:, free]
         gram = self.hessian[np.ix_(free, free)] if self.model.left_out is None else None
-        return Projection(jacobian, prior, offset, gram)
+        return Projection(self.jacobian, prior, offset, free, gram)
 
     @property
     def misfit(self) -> float:
@@ -150,23 +149,39 @@ class Fit:
         return np.asarray((low & (self.gradient > 0.0)) | (high & (self.gradient < 0.0)))
 
 
+@dataclass(frozen=True)
+class FitStart:
+    """Where a fit begins."""
+
+    model: EffectModel
+    """What is fitted."""
+    z: FloatArray
+    """(d + m,) the point."""
+    near: Fit
+    """Whose derivatives serve the first steps."""
+    ceiling: float = np.inf
+    """Cost above which the fit is of no use, see `fit`."""
+
+
 def fit(
     model: EffectModel,
     start: FloatArray,
     *,
     steps: int = FIT_STEPS,
-    tuning: FloatArray | None = None,
+    known: FloatArray | None = None,
     aged: float = np.inf,
+    ceiling: float = np.inf,
 ) -> Fit:
     """The most probable point reached from `start` (d + m,). NotConverged when the start has no solution.
 
-    tuning: (M, d) derivatives that are known. aged: decrease of the sum of squares since they were taken; by
-    default they are those of a model nearby, good enough for the first step.
+    known: (M, p + m) derivatives that are known, see `known_columns`. aged: decrease of the sum of squares
+    since they were taken; by default they are those of a model nearby, good enough for the first step.
+    ceiling: cost above which the fit is of no use; one whose steps promise no less is given up.
     """
     z = np.clip(start, model.lower, model.upper)
-    current = _expanded(model, z, model.residual(z), 1, tuning)
-    radius, aged = 1.0, 0.0 if tuning is None else aged
-    for _ in range(steps):
+    current = _expanded(model, z, model.residual(z), 1, known)
+    radius, aged = 1.0, 0.0 if known is None else aged
+    for taken in range(steps):
         gradient, hessian = current.gradient, current.hessian
         low = np.maximum(model.lower - current.z, -radius)
         high = np.minimum(model.upper - current.z, radius)
@@ -177,6 +192,8 @@ def fit(
             continue
         if predicted < FIT_DECREASE:
             return replace(current, converged=True)
+        if taken and _hopeless(current, ceiling):
+            return current
         trial, residual = current.z + step, None
         try:
             residual = model.residual(trial)
@@ -185,6 +202,10 @@ def fit(
             cost = np.inf
         current = replace(current, evaluations=current.evaluations + 1)
         ratio = (current.cost - cost) / predicted
+        if ratio < FIT_POOR_RATIO and max(predicted, aged) < FRESH_DECREASE:  # a law with corners: rough
+            if residual is not None and cost < current.cost:
+                current = replace(current, z=trial, residual=residual, cost=cost)
+            return replace(current, converged=True)
         if ratio < FIT_POOR_RATIO:
             radius = min(radius, float(np.abs(step).max())) / 4.0
         elif ratio > FIT_GOOD_RATIO:
@@ -194,13 +215,40 @@ def fit(
                 return replace(current, z=trial, residual=residual, cost=cost, converged=True)
             gained = current.cost - cost
             aged = aged + gained if gained < REUSE_DECREASE else 0.0
-            kept = current.jacobian[:, : model.dimension] if aged else None
+            if aged and abs(ratio - 1.0) < 1.0 - FIT_GOOD_RATIO:
+                jacobian = _secant(current, step, residual)
+                current = replace(current, z=trial, residual=residual, jacobian=jacobian, cost=cost)
+                continue
+            kept = current.jacobian[:, : model.calibrations.stop] if aged else None
             current = _expanded(model, trial, residual, current.evaluations, kept)
         elif aged > FRESH_DECREASE:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
         if radius < LEAST_STEP:
             return current
     return current
+
+
+def _hopeless(fit: Fit, ceiling: float) -> bool:
+    """Whether even half as much again as the whole Gauss-Newton step promises stays above a cost."""
+    if np.isinf(ceiling):
+        return False
+    model = fit.model
+    step = bounded_step(fit.hessian, fit.gradient, model.lower - fit.z, model.upper - fit.z)
+    promised = float(-(2.0 * fit.gradient @ step + step @ fit.hessian @ step))
+    return fit.cost - (1.0 + HOPELESS_SHARE) * promised > ceiling
+
+
+def _secant(fit: Fit, step: FloatArray, residual: FloatArray) -> FloatArray:
+    """(M, d + m) the derivatives that say what a step did, changed along it alone (C. G. Broyden, Mathematics
+    of Computation 19, 1965). Those to linear nuisances stay what they are."""
+    nuisances = range(fit.model.calibrations.stop, fit.model.dimension)
+    moved = step.copy()
+    moved[nuisances] = 0.0
+    square = float(moved @ moved)
+    if square == 0.0:
+        return fit.jacobian
+    missed = residual - fit.residual - fit.jacobian @ step
+    return fit.jacobian + np.outer(missed, moved / square)
 
 
 def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
@@ -252,18 +300,42 @@ def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:
     return replace(fit, model=moved, z=fit.z[order], jacobian=fit.jacobian[:, order])
 
 
+def known_columns(fit: Fit, model: EffectModel) -> FloatArray:
+    """(M, p + m) derivatives at a fit as far as they serve another model of the same records.
+
+    Those to parameters and calibrations, p together, then those to the sizes of its members; nan where the
+    fit's model has not got the member.
+    """
+    own = {h.name: (len(h.sizes), place) for h, place in fit.model.places()}
+    columns = [fit.jacobian[:, : fit.model.calibrations.stop]]
+    for member in model.members:
+        count, place = own.get(member.name, (0, slice(0)))
+        same = count == len(member.sizes)
+        none = np.full((fit.residual.size, len(member.sizes)), np.nan)
+        columns.append(fit.jacobian[:, place] if same else none)
+    return np.hstack(columns)
+
+
 def _expanded(
     model: EffectModel,
     z: FloatArray,
     residual: FloatArray,
     evaluations: int,
-    tuning: FloatArray | None = None,
+    known: FloatArray | None = None,
 ) -> Fit:
-    columns = model.amplitude_columns(z, residual)
-    known = model.tuning_columns(z, residual) if tuning is None else model.with_own_nuisances(tuning)
-    jacobian = np.hstack([known, columns])
+    """With derivatives at z, those that are `known` or lead the row of what is known taken from there."""
+    end, count = model.calibrations.stop, z.size - model.dimension
+    own = np.full((residual.size, count), np.nan)
+    if known is None:
+        tuning = model.tuning_columns(z, residual)
+    else:
+        tuning = model.with_own_nuisances(known)
+        own[:, : known.shape[1] - end] = known[:, end:]
+    missing = np.flatnonzero(np.isnan(own[0]))
+    own[:, missing] = model.amplitude_columns(z, residual, model.dimension + missing)
+    jacobian = np.hstack([tuning, own])
     cost = cost_of(model, z, residual)
-    return Fit(model, z, residual, jacobian, cost, evaluations + columns.shape[1], False)
+    return Fit(model, z, residual, jacobian, cost, evaluations + missing.size, False)
 
 
 def chord_fit(fit: Fit, model: EffectModel) -> Fit:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -219,11 +219,12 @@ class EffectModel:
         return out
 
     def amplitude_columns(
-        self, z: FloatArray, residual: FloatArray, *, which: slice | None = None
+        self, z: FloatArray, residual: FloatArray, places: Iterable[int] | None = None
     ) -> FloatArray:
-        """(M, m) derivative to the amplitudes by forward differences. residual: at z."""
+        """(M, k) derivative to amplitudes by forward differences. residual: at z. places: (k,) in z, default
+        all."""
         columns = []
-        for i in range(*(which or slice(self.dimension, z.size)).indices(z.size)):
+        for i in range(self.dimension, z.size) if places is None else places:
             step = AMPLITUDE_STEP if z[i] + AMPLITUDE_STEP <= self.upper[i] else -AMPLITUDE_STEP
             moved = z.copy()
             moved[i] += step

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csc_array
 
@@ -21,11 +22,13 @@ class Projection:
     """
 
     jacobian: FloatArray
-    """(M, d) derivative to what can be moved; parameters held at a bound still count as free."""
+    """(M, n) derivative to all unknowns; not copied, however few of them may move."""
     prior_sd: FloatArray
-    """(d,) standard deviations of the prior."""
+    """(d,) standard deviations of the prior of what can be moved."""
     offset: FloatArray
     """(d,) of the fitted point from the prior's mean, in its standard deviations."""
+    free: NDArray[np.int_]
+    """(d,) columns of what can be moved; parameters held at a bound still count as free."""
     gram: FloatArray | None = None
     """(d, d) J'J + P^-2 where it is known."""
 
@@ -38,7 +41,8 @@ class Projection:
         """
         gram = self.gram
         if gram is None:
-            gram = self.jacobian.T @ self.jacobian + np.diag(self.prior_sd**-2.0)
+            own = self.jacobian[:, self.free]
+            gram = own.T @ own + np.diag(self.prior_sd**-2.0)
         return np.asarray(cholesky(gram, lower=True))
 
     def __call__(self, rows: FloatArray) -> FloatArray:
@@ -54,10 +58,14 @@ class Projection:
 
         Without the projected rows, which are dense.
         """
-        absorbed = self._coordinates((rows.T @ self.jacobian).T)
-        slope = self._coordinates(self.jacobian.T @ residual + self.offset / self.prior_sd)
+        absorbed = self._coordinates((rows.T @ self.jacobian).T[self.free])
+        slope = self._coordinates(self._pulled(residual) + self.offset / self.prior_sd)
         gram = (rows.T @ rows).toarray() - absorbed.T @ absorbed
         return np.asarray(gram), np.asarray(rows.T @ residual - absorbed.T @ slope)
+
+    def _pulled(self, rows: FloatArray) -> FloatArray:
+        """(d, ...) J' rows, of what can be moved."""
+        return np.asarray((self.jacobian.T @ rows)[self.free])
 
     def _coordinates(self, pulled: FloatArray) -> FloatArray:
         """(d, ...) in the orthonormal basis, of [J; P^-1]' times rows."""
@@ -65,6 +73,8 @@ class Projection:
 
     def _complement(self, rows: FloatArray, prior: FloatArray) -> FloatArray:
         weight = (1.0 / self.prior_sd).reshape(-1, *[1] * (rows.ndim - 1))
-        coordinates = self._coordinates(self.jacobian.T @ rows + weight * prior)
+        coordinates = self._coordinates(self._pulled(rows) + weight * prior)
         move = solve_triangular(self._root, coordinates, lower=True, trans="T")
-        return np.concatenate([rows - self.jacobian @ move, prior - weight * move])
+        every = np.zeros((self.jacobian.shape[1], *rows.shape[1:]))
+        every[self.free] = move
+        return np.concatenate([rows - self.jacobian @ every, prior - weight * move])

@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from doe_kc.campaign.executors import InProcess
-from doe_kc.discovery.fit import Fit, cost_of, fit
+from doe_kc.discovery.fit import Fit, FitStart, cost_of, fit, known_columns
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
 from doe_kc.discovery.screening.scan import Scan, scan
@@ -20,8 +20,8 @@ from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
-Watch = Callable[[str, int], None]
-"""Told what has been done, and how many steps of the work that were."""
+Watch = Callable[[str, int, int], None]
+"""Told what has been done, how many steps of the work that were, and how many more are begun."""
 T = TypeVar("T")
 
 
@@ -38,13 +38,27 @@ class DiscoveryWorkers:
     ) -> None:
         self._executor = executor or InProcess()
         self._cache = cache or ResultCache(None)
-        self.watch = watch
+        self._told = watch
+        self._begun = 0
         self._workers = workers
 
-    def screenings(self, fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
-        """Every hypothesis added to a fitted model, in their order."""
+    def watch(self, words: str, steps: int) -> None:
+        """Tell of steps that are done."""
+        self._begun = max(0, self._begun - steps)
+        self._told(words, steps, self._begun)
+
+    def screenings(
+        self, fit: Fit, hypotheses: Sequence[Hypothesis], *, shapes: Sequence[FloatArray] | None = None
+    ) -> list[Screened]:
+        """Every hypothesis added to a fitted model, in their order. shapes: where each begins, see
+        `screen`."""
         base = fingerprint(fit.model)
-        keys = [key_of("screen", base, fit.z, repr(h)) for h in hypotheses]
+        begun: Sequence[FloatArray | None] = shapes or [None] * len(hypotheses)
+        own = [np.zeros(0) if shape is None else shape for shape in begun]
+        keys = [
+            key_of("screen", base, fit.z, repr(h), shape) for h, shape in zip(hypotheses, own, strict=True)
+        ]
+        self._begun += len(hypotheses)
         out: dict[int, Screened] = {}
         missing: list[int] = []
         for i, (key, h) in enumerate(zip(keys, hypotheses, strict=True)):
@@ -53,10 +67,12 @@ class DiscoveryWorkers:
                 missing.append(i)
             else:
                 out[i] = _unpacked(h, known)
+        if out:
+            self.watch("screening effects", len(out))
         missing.sort(key=lambda i: -effort(hypotheses[i]))  # the long ones first, or one worker ends alone
         parts = max(1, min(len(missing), CHUNKS * self._workers))
         groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
-        tasks = [(fit, [hypotheses[i] for i in part]) for part in groups]
+        tasks = [(fit, [(hypotheses[i], begun[i]) for i in part]) for part in groups]
         for at, results in self._run(_screen_many, tasks):
             part = groups[at]
             for i, result in zip(part, results, strict=True):
@@ -65,32 +81,34 @@ class DiscoveryWorkers:
             self.watch("screening effects", len(part))
         return [out[i] for i in range(len(hypotheses))]
 
-    def fits(
-        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
-    ) -> list[Fit | None]:
-        """Fits from several starts, None where one has no equilibrium. tuning: (M, d) for the first step.
+    def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
+        """Fits from several starts, None where one has no equilibrium.
 
-        They are of the very models of `starts`, wherever they were computed: whether two fits are to the
-        same errors is asked by identity.
+        They are of the very models of `starts`, wherever they were computed: whether two fits are to the same
+        errors is asked by identity.
         """
-        keys = [key_of("fit", fingerprint(m), z) for m, z in starts]
+        keys = [_fit_key(start) for start in starts]
+        self._begun += len(starts)
         stored = {i: self._cache.get(key) for i, key in enumerate(keys)}
         known: dict[int, Arrays] = {i: arrays for i, arrays in stored.items() if arrays is not None}
         if known:
             self.watch(what, len(known))
         missing = [i for i in range(len(starts)) if i not in known]
-        tasks = [(*starts[i], tuning[:, : starts[i][0].calibrations.stop]) for i in missing]
+        tasks = [
+            (s.model, s.z, known_columns(s.near, s.model), s.ceiling) for s in (starts[i] for i in missing)
+        ]
         for at, arrays in self._run(_fit_one, tasks):
             i = missing[at]
             known[i] = arrays
             self._cache.put(keys[i], arrays)
             self.watch(what, 1)
-        return [_unpacked_fit(m, known[i]) for i, (m, _) in enumerate(starts)]
+        return [_unpacked_fit(start.model, known[i]) for i, start in enumerate(starts)]
 
     def held_out(self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
         predictions: dict[int, HeldOut] = {}
+        self._begun += len(cases)
         for i, result in self._run(
             held_out, [(tuned, with_effects, with_discrepancy, case) for case in cases]
         ):
@@ -104,6 +122,7 @@ class DiscoveryWorkers:
         None when its axle has no equilibrium with the instruments in.
         """
         future = self._executor.submit(_scan, tuned, temper)
+        self._begun += 1
 
         def waited() -> Scan | None:
             result = future.result()
@@ -123,8 +142,8 @@ class DiscoveryWorkers:
             yield futures[future], future.result()
 
 
-def _screen_many(fit: Fit, hypotheses: Sequence[Hypothesis]) -> list[Screened]:
-    return [screen(fit, h) for h in hypotheses]
+def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:
+    return [screen(fit, h, shape) for h, shape in starts]
 
 
 def _scan(tuned: Fit, temper: float) -> Scan | None:
@@ -134,9 +153,14 @@ def _scan(tuned: Fit, temper: float) -> Scan | None:
         return None
 
 
-def _fit_one(model: EffectModel, start: FloatArray, tuning: FloatArray) -> Arrays:
+def _fit_key(start: FitStart) -> str:
+    limit = [] if np.isinf(start.ceiling) else [np.array(start.ceiling)]
+    return key_of("fit", fingerprint(start.model), start.z, *limit)
+
+
+def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: float) -> Arrays:
     try:
-        return _packed_fit(fit(model, start, tuning=tuning))
+        return _packed_fit(fit(model, start, known=known, ceiling=ceiling))
     except NotConverged:
         return {"z": np.zeros(0)}
 

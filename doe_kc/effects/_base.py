@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
+from doe_kc.axle.places import BALL_JOINT, Places, places_of
 from doe_kc.curves import CurveSet
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import checked_number
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError, nearest
@@ -25,8 +26,10 @@ class Option:
     choices: tuple[str, ...] = ()
 
 
-Part = Literal["axle", "rack", "rods", "damper", "subframe", "bar", "balls", "mcpherson"]
-"""axle: what every type has. rods: that the rack steers by. mcpherson: the parts of that axle alone."""
+Part = Literal[
+    "axle", "rack", "rods", "damper", "subframe", "bar", "balls", "ball_joint", "strut", "steer_arm"
+]
+"""axle: what every type has. rods: that the rack steers by. balls: ball joints but `ball_joint`."""
 
 
 class Effect(ABC):
@@ -50,7 +53,7 @@ class Effect(ABC):
     of its shape. Empty for an effect of one law."""
     replaces: ClassVar[tuple[str, ...]] = ()
     """Parameter paths that are this effect in other words: held while it is looked for."""
-    part: ClassVar[Part] = "mcpherson"
+    part: ClassVar[Part] = "axle"
     """What an axle must have for the effect to be possible."""
     odds: ClassVar[float] = 1.0
     """How much likelier than other effects it is before any measurement."""
@@ -61,8 +64,6 @@ class Effect(ABC):
     def possible(self, places: Places) -> bool:
         """Whether the axle has the part that the effect is of."""
         structure = places.structure
-        if structure is None:
-            return self.part != "balls"
         having: Mapping[Part, bool] = {
             "axle": True,
             "rack": structure.rack is not None,
@@ -70,8 +71,10 @@ class Effect(ABC):
             "damper": structure.damper is not None,
             "subframe": structure.subframe is not None,
             "bar": structure.bar is not None,
-            "balls": bool(structure.balls),
-            "mcpherson": False,
+            "balls": bool(places.balls),
+            "ball_joint": any(ball.name == BALL_JOINT for ball in structure.balls),
+            "strut": structure.strut is not None,
+            "steer_arm": structure.steer_arm is not None,
         }
         return having[self.part]
 
@@ -79,7 +82,7 @@ class Effect(ABC):
         """Whether the axle has the effect already, so that it is not looked for."""
         return self.id in axle.effects
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         """The places and sizes in which the effect is looked for on an axle with these places."""
         del places
         return (Hypothesis(self.id, None, self.sizes),)
@@ -120,7 +123,7 @@ class Effect(ABC):
         return self.extend(axle, self.read(options, source, places))
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         """Checked options, defaults filled in. places: of the axle."""
         for key in options:

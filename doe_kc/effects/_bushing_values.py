@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import FORCE_AXES, Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
+from doe_kc.axle.places import Places, places_of
 from doe_kc.axle.structure import of_side
 from doe_kc.effects._base import Effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import checked_flag, per_bushing
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError
@@ -33,7 +34,7 @@ class BushingValues(Effect):
     def default(self) -> dict[str, list[float]]:
         """Values of an empty table."""
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         out = []
         for name in places.all_bushings:
             value = self.typical.get(name, self.usual)
@@ -59,11 +60,11 @@ class BushingValues(Effect):
         return axle.values[of_side(f"{bushing}.{self.quantity}.{axis}", places.sides(bushing)[0])]
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         table = {key: value for key, value in options.items() if key != "added"}
         added = checked_flag(options.get("added", False), f"{source}: effect {self.id}: added")
-        if not table and places.structure is not None:
+        if not table and not set(self.default()) <= {name.upper() for name in places.all_bushings}:
             raise InputError(
                 f"{source}: effect {self.id}: names no bushing; expected a list of three numbers for one of "
                 f"{', '.join(name.upper() for name in places.all_bushings)}."

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.axle.topology import FrictionLaw
 from doe_kc.effects._base import Effect, Option
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import checked_number
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.errors import InputError
@@ -53,7 +54,7 @@ class DryFriction(Effect):
         """The axle whose equations have the law."""
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
         shares = checked["shares"]

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import internal_ball
 from doe_kc.effects._balls import BallEffect
 from doe_kc.effects._base import Option, Part, effect
 from doe_kc.effects.hypothesis import Size
@@ -33,14 +31,4 @@ class BallCompliance(BallEffect):
     sizes: ClassVar[tuple[Size, ...]] = (Size("k_N_mm", 12000.0, "N/mm", "compliance"),)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        names = [internal_ball(joint) for joint in options["joints"]]
-        values = {rate_of(name): options["k_N_mm"] for name in names}
-        there = {*axle.topology.elastic_balls, *names}
-        topology = replace(axle.topology, elastic_balls=tuple(sorted(there)))
-        return replace(axle.changed(values), topology=topology)
-
-
-def rate_of(ball: str) -> str:
-    """Internal name of a ball joint's stiffness: `tlo@L` -> `tlo.rate@L`."""
-    name, mark, side = ball.partition("@")
-    return f"{name}.rate{mark}{side}"
+        return self.in_joints(axle, options, "elastic_balls", {"rate": "k_N_mm"})

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import internal_ball
 from doe_kc.effects._balls import BallEffect
 from doe_kc.effects._base import Option, Part, effect
 from doe_kc.effects.hypothesis import Size
@@ -37,12 +35,4 @@ class BallFreePlay(BallEffect):
     )
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        names = [internal_ball(joint) for joint in options["joints"]]
-        values: dict[str, float] = {}
-        for ball in names:
-            name, mark, side = ball.partition("@")
-            values[f"{name}.gap{mark}{side}"] = options["gap_mm"]
-            values[f"{name}.contact{mark}{side}"] = options["contact_N_mm"]
-        there = {*axle.topology.play_balls, *names}
-        topology = replace(axle.topology, play_balls=tuple(sorted(there)))
-        return replace(axle.changed(values), topology=topology)
+        return self.in_joints(axle, options, "play_balls", {"gap": "gap_mm", "contact": "contact_N_mm"})

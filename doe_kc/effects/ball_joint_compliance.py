@@ -7,7 +7,10 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.axle.places import BALL_JOINT
+from doe_kc.axle.structure import of_side
+from doe_kc.curves import SIDES
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -16,6 +19,7 @@ class BallJointCompliance(Effect):
     """Lower-ball-joint compliance."""
 
     id: ClassVar[str] = "ball_joint_compliance"
+    part: ClassVar[Part] = "ball_joint"
     label: ClassVar[str] = "Lower-ball-joint compliance"
     options: ClassVar[Mapping[str, Option]] = {"k_N_mm": Option(12000.0, "N/mm")}
 
@@ -27,5 +31,7 @@ class BallJointCompliance(Effect):
     sizes: ClassVar[tuple[Size, ...]] = (Size("k_N_mm", 12000.0, "N/mm", "compliance"),)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        changed = axle.changed(both("ball_joint.rate", options["k_N_mm"]))
-        return replace(changed, topology=replace(axle.topology, ball_joint=True))
+        changed = axle.changed(both(f"{BALL_JOINT}.rate", options["k_N_mm"]))
+        own = {of_side(BALL_JOINT, side) for side in SIDES}
+        there = tuple(sorted({*axle.topology.elastic_balls, *own}))
+        return replace(changed, topology=replace(axle.topology, elastic_balls=there))

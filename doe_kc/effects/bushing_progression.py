@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.effects._base import Part, effect
 from doe_kc.effects._bushing_values import BushingValues
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.ground.errors import InputError
 
 
@@ -38,7 +39,7 @@ class BushingProgression(BushingValues):
         return {"LLR": [0.05, 0.05, 0.05], "UPB": [0.02, 0.02, 0.02]}
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
         for bushing, values in checked.items():

@@ -25,9 +25,11 @@ class HubCompliance(Effect):
     }
 
     physics: ClassVar[str] = (
-        "Wheel bearing and knuckle yield, so that the wheel tilts and steers against the strut under load."
+        "Wheel bearing and knuckle yield, so that the wheel tilts and turns against its carrier under load."
     )
-    mistaken_for: ClassVar[tuple[str, ...]] = ("strut_bending", "ball_joint_compliance", "upb.Fy")
+    mistaken_for: ClassVar[tuple[str, ...]] = (
+        *("strut_bending", "ball_joint_compliance", "ball_compliance", "upb.Fy"),
+    )
     shown_by: ClassVar[str] = (
         "camber at the hub against a target on the knuckle under lateral force; a pure overturning moment"
     )

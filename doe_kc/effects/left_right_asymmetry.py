@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
+from doe_kc.axle.places import Places, places_of
 from doe_kc.effects._base import Effect, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError
@@ -29,7 +30,7 @@ class LeftRightAsymmetry(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("bushing_preload", "bushing_progression", "tie_rod_free_play")
     shown_by: ClassVar[str] = "the bushings of both sides exchanged: the difference changes sides with them"
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(
             Hypothesis(self.id, key, (Size(key, 1.25, "-", "factor", signed=True),))
             for key in places.bushing_sides
@@ -40,7 +41,7 @@ class LeftRightAsymmetry(Effect):
         return {k: one.get(k, 1.0) * other.get(k, 1.0) for k in one | other}
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         nested = options.get("scale", {})
         if not isinstance(nested, Mapping):

@@ -10,8 +10,9 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.effects._base import Effect, Option, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.errors import InputError
 
@@ -45,7 +46,7 @@ class RackMountCompliance(Effect):
     )
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
         if checked["stiffening"] <= SOFTEST:

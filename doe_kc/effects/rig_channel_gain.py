@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
 from doe_kc.effects._base import Effect, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
@@ -31,7 +32,7 @@ class RigChannelGain(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("rig_input_gain", "steering_ratio", "roll_technique")
     shown_by: ClassVar[str] = "the channel against a gauge of known size; one gain in every load case"
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(
             Hypothesis(self.id, name, (Size(name, 1.05, "-", "factor", signed=True),))
             for name in RIG_RESPONSES
@@ -41,7 +42,7 @@ class RigChannelGain(Effect):
         return self.read(before, axle.name) | self.read(after, axle.name)
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         where = f"{source}: effect {self.id}"
         return named_numbers(options or {"toe": 1.05}, RIG_RESPONSES, where, "a response", positive=True)

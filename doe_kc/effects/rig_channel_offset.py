@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.curves import CurveSet
 from doe_kc.effects._base import Effect, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 
@@ -32,7 +33,7 @@ class RigChannelOffset(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("static.toe", "static.camber", "bushing_preload")
     shown_by: ClassVar[str] = "the wheels' alignment measured on another rig, or with the car turned around"
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(
             Hypothesis(self.id, name, (Size(key, 0.1, "deg", signed=True),))
             for key, name in OFFSET_KEYS.items()
@@ -42,7 +43,7 @@ class RigChannelOffset(Effect):
         return self.read(before, axle.name) | self.read(after, axle.name)
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         return named_numbers(
             options or {"toe_deg": 0.1}, OFFSET_KEYS, f"{source}: effect {self.id}", "an angle"

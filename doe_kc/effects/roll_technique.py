@@ -9,9 +9,10 @@ from typing import Any, ClassVar
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.curves import CurveSet
 from doe_kc.effects._base import Effect, Option, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.load_cases.roll import PadRoll, Roll
 
@@ -37,7 +38,7 @@ class RollTechnique(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("arb.radius", "rig_input_gain", "rig_channel_gain")
     shown_by: ClassVar[str] = "roll run both ways; camber in roll against camber of the same wheel travel"
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         return tuple(Hypothesis(self.id, None, (), {"technique": t}) for t in OTHER_TECHNIQUES)
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:

@@ -7,11 +7,12 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import BUSHINGS, Axle
-from doe_kc.axle.places import MCPHERSON_PLACES, Places, places_of
+from doe_kc.axle.places import Places, places_of
 from doe_kc.axle.structure import of_side
 from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects._dynamic_stiffness import dynamic_stiffness
 from doe_kc.effects._friction import SPREAD
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import checked_number, named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError, nearest
@@ -55,12 +56,11 @@ class RubberHysteresis(Effect):
     )
     sizes: ClassVar[tuple[Size, ...]] = (Size("share", 0.2, "-"), Size("yield_mm", 0.2, "mm", "shape"))
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         """All bushings by one share, and the two groups whose loops a rig tells apart."""
         names = [name.upper() for name in places.all_bushings]
-        everywhere = Hypothesis(
-            self.id, None, self.sizes, {} if places.structure is None else {"bushings": names}
-        )
+        usual = names == self.options["bushings"].default
+        everywhere = Hypothesis(self.id, None, self.sizes, {} if usual else {"bushings": names})
         if not set(REAR) <= set(names):
             return (everywhere,)
         rest = [name for name in names if name not in REAR]
@@ -98,7 +98,7 @@ class RubberHysteresis(Effect):
         }
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         checked = super().read({k: v for k, v in options.items() if k not in NUMBERS}, source)
         where = f"{source}: effect {self.id}"

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -16,6 +16,7 @@ class SteerArmCompliance(Effect):
     """Steer-arm compliance."""
 
     id: ClassVar[str] = "steer_arm_compliance"
+    part: ClassVar[Part] = "steer_arm"
     label: ClassVar[str] = "Steer-arm compliance"
     options: ClassVar[Mapping[str, Option]] = {
         "radius_mm": Option(14.0, "mm"),

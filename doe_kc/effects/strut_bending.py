@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.effects._base import Effect, Option, effect
+from doe_kc.effects._base import Effect, Option, Part, effect
 from doe_kc.effects.hypothesis import Size
 
 
@@ -16,6 +16,7 @@ class StrutBending(Effect):
     """Strut bending at the clamp."""
 
     id: ClassVar[str] = "strut_bending"
+    part: ClassVar[Part] = "strut"
     label: ClassVar[str] = "Strut bending at the clamp"
     options: ClassVar[Mapping[str, Option]] = {
         "k_Nm_deg": Option(8000.0, "Nm/deg"),

@@ -15,10 +15,11 @@ from doe_kc.effects.hypothesis import Size
 
 @effect
 class StrutFriction(DryFriction):
-    """Strut friction."""
+    """Friction of the damper's rod, on a McPherson axle of the strut's."""
 
     id: ClassVar[str] = "strut_friction"
-    label: ClassVar[str] = "Strut friction"
+    label: ClassVar[str] = "Damper friction"
+    table: ClassVar[str] = "damper_friction"
     part: ClassVar[Part] = "damper"
     options: ClassVar[Mapping[str, Option]] = friction_options(120.0, 0.3)
 

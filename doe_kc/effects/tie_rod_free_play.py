@@ -11,8 +11,9 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
-from doe_kc.axle.places import MCPHERSON_PLACES, Places
+from doe_kc.axle.places import Places
 from doe_kc.effects._base import Effect, Option, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError
 
@@ -43,7 +44,7 @@ class TieRodFreePlay(Effect):
     )
     shown_by: ClassVar[str] = "the wheel rocked by hand about the vertical, a dial gauge across the ball"
 
-    def hypotheses(self, places: Places = MCPHERSON_PLACES) -> tuple[Hypothesis, ...]:
+    def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         sizes = (
             Size("gap_mm", 0.2, "mm", needed=True),
             Size("contact_N_mm", 20000.0, "N/mm", "compliance"),
@@ -53,7 +54,7 @@ class TieRodFreePlay(Effect):
         return tuple(Hypothesis(self.id, p, sizes, {"joints": joints}) for p, joints in joints_of.items())
 
     def read(
-        self, options: Mapping[str, Any], source: str, places: Places = MCPHERSON_PLACES
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
         checked = super().read(options, source, places)
         joints = checked["joints"]

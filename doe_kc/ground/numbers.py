@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import math
 
-MOST_DECIMALS = 6
+MOST_DECIMALS = 7
+"""Of a number that is read: a nanometre of a millimetre, a tenth of a microdegree."""
+SD_DIGITS = 3
+"""Significant digits of a standard deviation: its value is written to the last of them."""
 
 
 def short(value: float) -> str:
@@ -28,24 +31,31 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def decimals(sd: float) -> int | None:
-    """Decimals that show the second significant digit of a sd, 6 at most; None without one."""
-    if not math.isfinite(sd) or sd <= 0.0:
+    """Decimals that show the last significant digit of a sd, 7 at most; None without a sd, or below them."""
+    if not math.isfinite(sd) or sd <= 0.0 or _place(sd) >= MOST_DECIMALS + SD_DIGITS:
         return None
-    return max(0, min(1 - math.floor(math.log10(sd)), MOST_DECIMALS))
+    return max(0, min(_place(sd), MOST_DECIMALS))
+
+
+def _place(sd: float) -> int:
+    return SD_DIGITS - 1 - math.floor(math.log10(sd))
 
 
 def with_sd(value: float, sd: float) -> str:
-    """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
+    """`value ± sd`, both to the third significant digit of sd; four digits of a value without one."""
     digits = decimals(sd)
     if digits is None:
         return short(value)
-    place = min(1 - math.floor(math.log10(sd)), MOST_DECIMALS)
+    place = min(_place(sd), MOST_DECIMALS)
     return f"{round(value, place) + 0.0:.{digits}f} ± {round(sd, place):.{digits}f}"
 
 
 def at_sd(value: float, sd: float) -> str:
-    """The value alone as `with_sd` writes it; a dash for none."""
-    return with_sd(value, sd).partition(" ")[0] if math.isfinite(value) else "–"
+    """The value alone as `with_sd` writes it, 0 for what rounds to it; a dash for none."""
+    if not math.isfinite(value):
+        return "–"
+    text = with_sd(value, sd).partition(" ")[0]
+    return text if float(text) else "0"
 
 
 def signed(value: float, sd: float) -> str:

@@ -66,13 +66,14 @@ def turning_points(values: FloatArray, threshold: float) -> list[int]:
     points: list[int] = []
     high = low = 0
     way = 0
-    for i, value in enumerate(values):
-        high = i if value > values[high] else high
-        low = i if value < values[low] else low
-        if way >= 0 and values[high] - value > threshold:
+    samples = values.tolist()  # one by one, numbers of Python are faster than those of an array
+    for i, value in enumerate(samples):
+        high = i if value > samples[high] else high
+        low = i if value < samples[low] else low
+        if way >= 0 and samples[high] - value > threshold:
             points.append(high)
             way, low = -1, i
-        elif way <= 0 and value - values[low] > threshold:
+        elif way <= 0 and value - samples[low] > threshold:
             points.append(low)
             way, high = 1, i
     return [*points, high if way > 0 else low]

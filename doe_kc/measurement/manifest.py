@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 from types import UnionType
-from typing import Annotated, Any, Union, get_args, get_origin
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
@@ -94,6 +94,18 @@ class Setup(_Section):
     rack_mm_per_rev: Positive = 52.0
 
 
+class RigState(_Section):
+    """What state the car was in, as far as it changes the model. Further keys (engine, tyre pressure) are
+    kept as notes.
+
+    arb: whether the anti-roll bar of the measured axle was connected.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="allow")
+
+    arb: Literal["on", "off"] = "on"
+
+
 class SideAlignment(_Section):
     """Static angles of one wheel at ride height, deg.
 
@@ -148,6 +160,7 @@ class Manifest(_Section):
     name: Annotated[str, Field(strict=True, min_length=1)]
     axle: Text = ""
     setup: Setup = Setup()
+    state: RigState = RigState()
     alignment: Alignment | None = None
     sensor_resolution: SensorResolution = SensorResolution()
     channels: Text | MapFile = "doe_kc"

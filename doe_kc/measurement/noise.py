@@ -23,18 +23,32 @@ _KEPT = 0.95
 
 
 def white_sd(samples: FloatArray) -> float:
-    """sd of the white noise in the last axis of `samples` (k, n), n >= 5, in their unit.
+    """sd of the white noise in the last axis of `samples` (k, n), n >= 5, all rows together, in their unit.
 
     Fourth differences annul any cubic; their median absolute value does not see turning points and
     kinks. When more than half of them vanish (coarse quantisation): rms of the smallest 95 %.
     Source: Gasser, Sroka & Jennen-Steinmetz, Biometrika 73 (1986) 625, with order 4 and a robust scale.
     """
-    differences = np.diff(samples, n=_ORDER, axis=-1).ravel() / _BINOMIAL_NORM
-    robust = _MAD_TO_SD * float(np.median(np.abs(differences)))
-    if robust > 0.0:
-        return robust
-    kept = np.sort(np.abs(differences))[: int(_KEPT * differences.size)]
-    return float(np.sqrt(np.mean(kept**2)))
+    return float(_robust_sds(_differences(samples).reshape(1, -1))[0])
+
+
+def white_sds(samples: FloatArray) -> FloatArray:
+    """(k,) sd of the white noise in each row of `samples` (k, n), as `white_sd`."""
+    return _robust_sds(_differences(samples))
+
+
+def _differences(samples: FloatArray) -> FloatArray:
+    return np.asarray(np.diff(samples, n=_ORDER, axis=-1) / _BINOMIAL_NORM)
+
+
+def _robust_sds(differences: FloatArray) -> FloatArray:
+    """(k,) of differences (k, m) of unit weight."""
+    sizes = np.abs(differences)
+    out = _MAD_TO_SD * np.median(sizes, axis=1)
+    for k in np.flatnonzero(out <= 0.0):
+        kept = np.sort(sizes[k])[: int(_KEPT * sizes.shape[1])]
+        out[k] = np.sqrt(np.mean(kept**2))
+    return np.asarray(out)
 
 
 def pooled_white_sd(runs: Sequence[FloatArray]) -> float:

@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement.noise import white_sd
+from doe_kc.measurement.noise import white_sds
 
 MEDIAN_SAMPLES = 7
 """Of the running median: sees up to three outliers in a row, and follows any monotone curve with its
@@ -43,13 +43,14 @@ def without_outliers(
 
     The input is cleaned first: where it turns, its channels do.
     """
-    turning = near_turning(_cleaned(values[input_role], None)[0])
-    out: dict[str, FloatArray] = {}
-    removed: list[Outlier] = []
-    for role, channel in values.items():
-        clean, at = _cleaned(channel, turning)
-        out[role] = clean
-        removed += [Outlier(role, int(i), float(channel[i]), float(clean[i])) for i in at]
+    clean_input = _replaced(values[input_role], _far(values[input_role][None, :], None)[0])
+    roles, channels = list(values), np.array(list(values.values()))
+    far = _far(channels, near_turning(clean_input))
+    out = {role: _replaced(values[role], row) for role, row in zip(roles, far, strict=True)}
+    removed = [
+        Outlier(roles[k], int(i), float(values[roles[k]][i]), float(out[roles[k]][i]))
+        for k, i in zip(*np.nonzero(far), strict=True)
+    ]
     return out, tuple(removed)
 
 
@@ -65,30 +66,34 @@ def near_turning(values: FloatArray) -> NDArray[np.bool_]:
 
 
 def running_median(values: FloatArray) -> FloatArray:
-    """(n,) median over `MEDIAN_SAMPLES`, the ends continued by reflection about their own value."""
+    """(..., n) median over `MEDIAN_SAMPLES`, the ends continued by reflection about their own value."""
     half = MEDIAN_SAMPLES // 2
-    padded = np.pad(values, half, mode="reflect", reflect_type="odd")
-    return np.asarray(np.median(sliding_window_view(padded, MEDIAN_SAMPLES), axis=1))
+    ends = [(0, 0)] * (values.ndim - 1)
+    padded = np.pad(values, [*ends, (half, half)], mode="reflect", reflect_type="odd")
+    around = sliding_window_view(padded, MEDIAN_SAMPLES, axis=-1)
+    return np.asarray(np.partition(around, half, axis=-1)[..., half])
 
 
-def _cleaned(values: FloatArray, turning: NDArray[np.bool_] | None) -> tuple[FloatArray, NDArray[np.intp]]:
-    if values.size <= 2 * MEDIAN_SAMPLES:
-        return values, np.array([], dtype=np.intp)
-    bounded = np.clip(values, -LARGEST, LARGEST)
+def _far(channels: FloatArray, turning: NDArray[np.bool_] | None) -> NDArray[np.bool_]:
+    """(k, n) whether a sample of the channels (k, n) is an outlier."""
+    if channels.shape[1] <= 2 * MEDIAN_SAMPLES:
+        return np.zeros(channels.shape, dtype=bool)
+    bounded = np.clip(channels, -LARGEST, LARGEST)
     smooth = running_median(bounded)
     steps = np.abs(np.diff(smooth))
-    low, high = np.quantile(smooth, (0.05, 0.95))
-    level = np.full(values.size, OUTLIER_SDS * max(_sd(bounded), RANGE_FLOOR * float(high - low)))
-    lag = TURNING_STEPS * float(np.quantile(steps, 0.9))
-    level[slice(None) if turning is None else turning] += lag
-    at = np.flatnonzero(np.abs(bounded - smooth) > level)
-    if not at.size:
-        return values, at
-    clean = values.copy()
-    kept = np.setdiff1d(np.arange(values.size), at)
-    clean[at] = np.interp(at, kept, values[kept])
-    return clean, at
+    low, high = np.quantile(smooth, (0.05, 0.95), axis=1)
+    least = OUTLIER_SDS * np.maximum(white_sds(bounded), RANGE_FLOOR * (high - low))
+    level = np.repeat(least[:, None], channels.shape[1], axis=1)
+    lag = TURNING_STEPS * np.quantile(steps, 0.9, axis=1)
+    level[:, slice(None) if turning is None else turning] += lag[:, None]
+    return np.asarray(np.abs(bounded - smooth) > level)
 
 
-def _sd(values: FloatArray) -> float:
-    return white_sd(values[None, :])
+def _replaced(channel: FloatArray, far: NDArray[np.bool_]) -> FloatArray:
+    """(n,) the channel with interpolation in place of its outliers."""
+    if not far.any():
+        return channel
+    clean = channel.copy()
+    at = np.arange(channel.size)
+    clean[far] = np.interp(at[far], at[~far], channel[~far])
+    return clean

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +15,7 @@ from doe_kc.load_cases import LoadCase
 from doe_kc.measurement.channel_map import INPUT_ROLE, ChannelMap, ColumnTerm, named_map
 from doe_kc.measurement.channels import TIME
 from doe_kc.measurement.containers import read_table
+from doe_kc.measurement.noise import white_sds
 from doe_kc.measurement.one_wheel import with_mirror_image
 from doe_kc.measurement.outliers import Outlier, without_outliers
 from doe_kc.measurement.tables import ChannelTable
@@ -46,6 +47,12 @@ class RigRecord:
     ignored: tuple[str, ...] = ()
     outliers: tuple[Outlier, ...] = ()
     mirrored: tuple[str, ...] = ()
+
+    @cached_property
+    def white(self) -> Mapping[str, FloatArray]:
+        """Response -> (2,) sd of its sensors' white noise, left and right, in its unit."""
+        levels = white_sds(np.concatenate(list(self.channels.values()))).reshape(-1, 2)
+        return dict(zip(self.channels, levels, strict=True))
 
 
 def read_record(

@@ -22,7 +22,8 @@ ZIP_MAGIC = b"PK\x03\x04"
 OLE_MAGIC = b"\xd0\xcf\x11\xe0"
 _DECIMAL = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _NUMBER = re.compile(_DECIMAL)
-_NUMBERS = re.compile(rf"(?:{_DECIMAL}\n)*+")
+_OF_NUMBERS = b"0123456789+-.eE"
+"""Of texts of these characters alone, `float` takes those that are numbers and no others."""
 
 
 class ChannelTable(Protocol):
@@ -74,6 +75,11 @@ class RecordTable:
     def size(self) -> int:
         """Number of samples."""
         return len(self.rows)
+
+    @cached_property
+    def columns(self) -> tuple[Sequence[Cell], ...]:
+        """Cells by column."""
+        return tuple(zip(*self.rows, strict=True))
 
     def numbers(self, column: int) -> FloatArray:
         """As `column_numbers`."""
@@ -132,7 +138,7 @@ def read_bytes(path: Path) -> bytes:
 
 def column_numbers(table: RecordTable, column: int) -> FloatArray:
     """(n,) finite numbers of a column; InputError as `number_at` for the first cell that holds none."""
-    cells = [row[column] for row in table.rows]
+    cells = table.columns[column] if table.rows else ()
     values = _plain_numbers(cells, table.decimal_comma)
     if values is not None and np.isfinite(values).all():
         return values
@@ -146,11 +152,15 @@ def _plain_numbers(cells: Sequence[Cell], decimal_comma: bool) -> FloatArray | N
         return np.array(cells, dtype=float)
     if kinds != {str}:
         return None
-    text = "\n".join([*cells, ""])  # type: ignore[list-item]  # the kinds say that they are texts
-    text = text.replace(",", ".") if decimal_comma else text
-    if not _NUMBERS.fullmatch(text) or text.count("\n") != len(cells):
+    text = "".join(cells)  # type: ignore[arg-type]  # the kinds say that they are texts
+    if decimal_comma:
+        text, cells = text.replace(",", "."), [c.replace(",", ".") for c in cells]  # type: ignore[union-attr]
+    if text.encode(errors="replace").translate(None, _OF_NUMBERS):
         return None
-    return np.array(text.split(), dtype=float)
+    try:
+        return np.array(list(map(float, cells)))  # type: ignore[arg-type]
+    except ValueError:
+        return None
 
 
 def number_at(table: RecordTable, row: int, column: int) -> float:

@@ -10,7 +10,9 @@ from numpy.polynomial import chebyshev
 from doe_kc.ground.typing import FloatArray
 
 MAX_DEGREE = 15
+"""Beyond, a polynomial over the whole travel rings between the samples of a kink."""
 SAMPLES_PER_DEGREE = 5
+"""Fewer leave a fold of the cross-validation without a say in every coefficient."""
 TREND_FOLDS = 10
 """Usual (Breiman, Spector, Int. Stat. Rev. 60, 1992)."""
 BLOCKS = 40

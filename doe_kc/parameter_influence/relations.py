@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 STRONG_PERCENT = 20.0
 """Entries below this share of a column's peak are left out."""
 AT_MOST = 8
+"""Entries of one characteristic or parameter that a sheet has columns for."""
 TOGETHER = 0.9
 """|correlation| of two columns from which they count as one."""
 

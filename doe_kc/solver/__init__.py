@@ -1,1 +1,1 @@
-"""The quasi-static K&C solver of a McPherson front axle."""
+"""The quasi-static K&C solver of an axle."""

@@ -6,7 +6,6 @@ from functools import lru_cache
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.solver.builder import Builder
-from doe_kc.solver.elements import ELEMENTS
 from doe_kc.solver.equations import Equations, finish
 from doe_kc.solver.structure.assembly import assemble_structure
 
@@ -20,9 +19,5 @@ def assemble(topology: Topology) -> Equations:
 def collected(topology: Topology) -> Builder:
     """Bodies, forces and outputs of every element of the topology's type, in order."""
     builder = Builder(topology)
-    if topology.structure is not None:
-        assemble_structure(builder, topology.structure)
-        return builder
-    for unit in ELEMENTS:
-        unit.assemble(builder)
+    assemble_structure(builder)
     return builder

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import inspect
 import os
 import platform
 import shutil
@@ -19,7 +18,6 @@ from types import MappingProxyType
 import casadi as ca
 
 from doe_kc.axle.topology import Topology
-from doe_kc.solver.elements import ELEMENTS
 
 CACHE_VARIABLE = "DOE_KC_CACHE"
 COMPILE_VARIABLE = "DOE_KC_COMPILE"
@@ -119,9 +117,8 @@ def _write_entry(entry: Path, text: str) -> None:
 
 @lru_cache(maxsize=1)
 def _origins() -> str:
-    """Digest of the sources that equations are assembled from, elements of other packages included."""
+    """Digest of the sources that equations are assembled from."""
     files = {file for pattern in ORIGINS for file in PACKAGE.glob(pattern)}
-    files |= {Path(inspect.getfile(type(unit))) for unit in ELEMENTS}
     return hashlib.sha256(b"\0".join(file.read_bytes() for file in sorted(files))).hexdigest()
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from importlib import import_module
 
 import numpy as np
-from scipy.linalg import lapack
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.kernel import Buffered, Kernel
@@ -25,6 +25,10 @@ class NewtonSettings:
     refresh: float = 0.1
     max_iterations: int = 25
     max_halvings: int = 10
+
+
+RIGID_SETTINGS = NewtonSettings(tol=1e-3)
+"""Of an axle with joints in place of its bushings: at 1e9 N/mm the rounding of a coordinate is 1e-4 N."""
 
 
 @dataclass(frozen=True)
@@ -52,6 +56,7 @@ class Newton:
     counts: np.ndarray = field(default_factory=lambda: np.zeros(4, dtype=np.int64))
 
     def __post_init__(self) -> None:
+        self._lapack = import_module("scipy.linalg.lapack")  # slow to import, and compiled kernels need none
         self._res, self._jac = (Buffered(self.kernel.functions[n]) for n in ("residual", "jacobian"))
         m = self.active
         self._keep = (self.kernel.rows < m) & (self.kernel.cols < m)
@@ -122,13 +127,13 @@ class Newton:
         self.counts[1:3] += 1
         if not np.isfinite(matrix).all():
             return False
-        lu, pivots, info = lapack.dgetrf(matrix, overwrite_a=True)
+        lu, pivots, info = self._lapack.dgetrf(matrix, overwrite_a=True)
         self._lu = (lu, pivots) if info == 0 else None
         return bool(info == 0)
 
     def _solved(self, r: FloatArray) -> FloatArray:
         assert self._lu is not None
-        step, _ = lapack.dgetrs(*self._lu, r[: self.active] / self._scale)
+        step, _ = self._lapack.dgetrs(*self._lu, r[: self.active] / self._scale)
         self.counts[3] += 1
         return np.asarray(step)
 

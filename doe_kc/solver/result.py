@@ -108,6 +108,11 @@ class Solution:
         return self.output_names.index(name)
 
     @property
+    def has_kingpin(self) -> bool:
+        """False for an axle whose design vertical stands in for it."""
+        return "scrub_radius@L" in self.output_names
+
+    @property
     def equilibria(self) -> int:
         """Number of equilibria solved."""
         return sum(len(b.path.x) for c in self.cases.values() for b in c.branches)

@@ -21,28 +21,6 @@ from doe_kc.solver.equations import finish
 from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.result import BranchSolution
 
-CARRIERS: Mapping[str, str] = {
-    "LLF": "arm",
-    "LLR": "arm",
-    "LWB": "knuckle",
-    "LWD": "tube",
-    "LWS": "tube",
-    "UPB": "rod",
-    "SAH": "knuckle",
-    "ROB": "steer arm",
-    "SFF": "subframe",
-    "SFR": "subframe",
-    "WLC": "wheel",
-}
-"""Hardpoint -> body of its side that carries it; RIB lies on the rack, the others on the vehicle body."""
-SHAPE_POINTS = (*CARRIERS, "RIB", "UPS", "UPBBI")
-"""Hardpoints of a McPherson axle's shape, in its order."""
-
-
-def shape_points(topology: Topology) -> tuple[str, ...]:
-    """Hardpoints of a side that a shape shows."""
-    return SHAPE_POINTS if topology.structure is None else topology.structure.points
-
 
 @dataclass(frozen=True)
 class Shape:
@@ -56,7 +34,7 @@ class Shape:
 
 def shape_at(axle: Axle, branch: BranchSolution, row: int) -> Shape:
     """The axle at one equilibrium of a branch that was solved for it."""
-    names = shape_points(axle.topology)
+    names = axle.topology.structure.design_points
     c = kernel(axle.topology).constant_values(dict(axle.values))
     design = np.concatenate([_design(axle, name, side) for side in SIDES for name in names])
     state = (branch.x[row], c, branch.u[row], branch.z[row])
@@ -77,7 +55,7 @@ def _function(topology: Topology) -> ca.Function:
 
     The design places are an input of its own: a topology without a sprung steer arm does not know SAH.
     """
-    names, b = shape_points(topology), collected(topology)
+    names, b = topology.structure.design_points, collected(topology)
     design = {f"{name}@{side}": ca.SX.sym(f"{name}@{side}", 3) for side in SIDES for name in names}
     places = [_place(b, name, side, design[f"{name}@{side}"]) for side in SIDES for name in names]
     places += [b.points[f"{what}.{side}"] for what in ("spin", "contact") for side in SIDES]
@@ -88,9 +66,5 @@ def _function(topology: Topology) -> ca.Function:
 
 def _place(b: Builder, name: str, side: str, design: ca.SX) -> ca.SX:
     structure = b.topology.structure
-    if structure is not None:
-        body = f"wheel.{side}" if name == "WLC" else structure.on_side(structure.body_at(name), side)
-        return b.bodies[body].point(design)
-    if name in CARRIERS:
-        return b.bodies[f"{CARRIERS[name]}.{side}"].point(design)
-    return b.bodies["rack"].point(design) if name == "RIB" else design
+    part = f"wheel.{side}" if name == "WLC" else structure.part_on_side(structure.body_at(name), side)
+    return b.bodies[part].point(design)

@@ -15,9 +15,10 @@ from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.characteristics.reduction import FEWEST_POINTS, default_window
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD, CaseCurves, CurveSet
-from doe_kc.ground.errors import nearest
+from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
+from doe_kc.true_solver.adams_answer import vertical_frame
 
 ROW_KEYS = ("load_case", "branch", "input", "input_unit", "side")
 NEARLY = 1e-9
@@ -68,6 +69,7 @@ def _case(
     case: str, rows: pd.DataFrame, columns: Mapping[str, str], axle: Axle, window: float | None
 ) -> tuple[CaseCurves, dict[str, FloatArray]]:
     unit = _unit(case, rows, axle)
+    columns = {name: column for name, column in columns.items() if rows[column].notna().any()}
     needed = rows[["input", *columns.values()]]
     try:
         numbers = needed.to_numpy(dtype=float)
@@ -167,10 +169,18 @@ __all__ = ["Unreadable", "read_characteristics", "read_curves"]
 def read_curves(
     file: Path, axle: Axle, load_cases: Iterable[str], windows: Mapping[str, float]
 ) -> CurveSet | None:
-    """Curves of a curves.csv, None when there is no such file; Unreadable names what is wrong with it."""
-    if not file.exists():
+    """Curves of a curves.csv, and of ADAMS's own results of parallel travel beside it; None when there is no
+    such file. Unreadable names what is wrong with it."""
+    tables = [_frame(file)] if file.exists() else []
+    if not tables or "vertical" not in set(tables[0].get("load_case", [])):
+        try:
+            vertical = vertical_frame(file.parent, axle)
+        except InputError as error:
+            raise Unreadable(str(error)) from None
+        tables += [] if vertical is None else [vertical]
+    if not tables:
         return None
-    frame = _frame(file)
+    frame = pd.concat(tables, ignore_index=True)
     return curves_from_frame(frame, axle, tuple(load_cases) or tuple(axle.load_cases), windows)
 
 

@@ -25,7 +25,9 @@ from doe_kc.true_solver.own import describe_axle
 from doe_kc.true_solver.protocol import Values, digest
 
 OUTPUT_TAIL = 4096
+"""Bytes at the end of a failed solver's output in which its last words are looked for."""
 LONGEST_LINE = 300
+"""Characters of them that a message quotes."""
 
 
 @dataclass(frozen=True)

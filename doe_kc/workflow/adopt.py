@@ -11,7 +11,7 @@ from doe_kc.correlation.record import EffectRecord
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screening.contrasts import LOOP_SHAPES, Contrast
 from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.report.discovery_words import effect_label
+from doe_kc.reports.discovery_words import effect_label
 from doe_kc.study import Study
 
 PLACES_LISTED = 8

@@ -9,23 +9,23 @@ from pathlib import Path
 from typing import Any
 
 from doe_kc.axle_file.write import write_axle
-from doe_kc.characteristics import reduce_all
+from doe_kc.characteristics import characteristics_of, reduce_all
 from doe_kc.correlation.answer_record import AnswerRecord, EffectWords, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
-from doe_kc.report.correlation_characteristics import characteristic_table
-from doe_kc.report.discovery_words import effect_label, size_words
-from doe_kc.report.effect_words import effect_words
-from doe_kc.report.names import case_label, response_name
-from doe_kc.report.overview import Overview
-from doe_kc.report.overview_sheet import write_overview
-from doe_kc.report.page.answer import files_there, write_answer_page
-from doe_kc.report.page.links import link_pages
-from doe_kc.report.page.simulation import write_simulation_page
-from doe_kc.report.render.json import table_records
+from doe_kc.reports.correlation_characteristics import characteristic_table
+from doe_kc.reports.discovery_words import effect_label, size_words
+from doe_kc.reports.effect_words import effect_words
+from doe_kc.reports.names import case_label, response_name
+from doe_kc.reports.overview import Overview
+from doe_kc.reports.overview_sheet import write_overview
+from doe_kc.reports.page.answer import files_there, write_answer_page
+from doe_kc.reports.page.links import link_pages
+from doe_kc.reports.page.simulation import write_simulation_page
+from doe_kc.reports.render.json import table_records
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discovery_document import effect_entry
@@ -199,7 +199,10 @@ def write_answer(
     RunError when the folder cannot be written.
     """
     axle = write_axle(
-        correlation.axle, study.axle_path, study.out / AXLE, note=axle_note(correlation, assessment)
+        study.as_designed(correlation.axle),
+        study.axle_path,
+        study.out / AXLE,
+        note=axle_note(correlation, assessment),
     )
     given = _write_given(study, correlation)
     document = summary_document(correlation, assessment, record, str(study.out / AXLE))
@@ -226,6 +229,7 @@ def _write_given(study: Study, correlation: Correlation) -> list[Path]:
     curves = correlation.baseline.outcome.curves
     if curves is None:
         return []
-    values, today = reduce_all(curves, study.windows), date.today().isoformat()
+    reduced, today = reduce_all(curves, study.windows), date.today().isoformat()
+    values = {entry.id: reduced[entry.id] for entry in characteristics_of(study.axle)}
     path = study.out / "simulate" / "report.html"
     return [write_simulation_page(path, curves, values, study=study.name, date=today)]

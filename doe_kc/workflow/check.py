@@ -182,7 +182,7 @@ def _check_work(study: Study, collect: _Collector) -> None:
 
         collect("sampling", lambda: study_design(study, method=None, n=None))
     for model in study.surrogates.models:
-        from doe_kc.surrogates.models import make
+        from doe_kc.surrogate_models.models import make
 
         collect("surrogates", lambda model=model: make(model))  # type: ignore[misc]
 
@@ -219,6 +219,11 @@ def _warnings(study: Study, manifest: Manifest | None) -> Iterator[Fault]:
     if manifest is not None:
         for sentence in setup_differences(study.axle, manifest):
             yield _fault("setup", sentence)
+        if manifest.state.arb == "off" and study.solver.command:
+            yield _fault(
+                "setup",
+                f"{manifest.name}: the anti-roll bar was off; the outside solver has to be run without it.",
+            )
     elif study.measurement is None and all(c.target is None for c in study.characteristics):
         yield _fault(
             "targets",

@@ -9,10 +9,10 @@ from doe_kc.curves import CurveSet
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
-from doe_kc.report.comparison_tables import compared_characteristic_table, compared_curve_table
-from doe_kc.report.render.csv import table_columns
-from doe_kc.report.render.json import table_records
-from doe_kc.report.render.terminal import table_lines
+from doe_kc.reports.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.reports.render.csv import table_columns
+from doe_kc.reports.render.json import table_records
+from doe_kc.reports.render.terminal import table_lines
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison, compare
 
@@ -28,8 +28,8 @@ def write_comparison(
     comparison: Comparison, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
     """characteristics.csv, curves.csv (RMS), report.html and one figure a load case."""
-    from doe_kc.report.page.comparison import write_comparison_page
-    from doe_kc.report.page.links import link_pages
+    from doe_kc.reports.page.comparison import write_comparison_page
+    from doe_kc.reports.page.links import link_pages
 
     written = [
         write_columns(
@@ -41,7 +41,7 @@ def write_comparison(
     link_pages(folder.parent)
     if pictures == "none":
         return written
-    from doe_kc.report.comparison_figures import write_comparison_figures
+    from doe_kc.reports.comparison_figures import write_comparison_figures
 
     return written + write_comparison_figures(comparison, folder, workers=workers, pictures=pictures)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -16,13 +16,15 @@ from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.result_cache import ResultCache
-from doe_kc.discovery.workers import DiscoveryWorkers, Watch
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study
 from doe_kc.variables import Space, VariableOptions, build_space
+
+Progress = Callable[[str, int, int], None]
 
 
 def discover_study(
@@ -31,11 +33,12 @@ def discover_study(
     *,
     exclude: Sequence[str] = (),
     workers: int | None = None,
-    watch: Watch = lambda *_: None,
+    progress: Progress = lambda *_: None,
 ) -> Discovery:
     """Look for effects that the study's axle lacks.
 
-    exclude: ids of effects that are not looked for. InputError for an unknown one, an outside solver, or
+    exclude: ids of effects that are not looked for. progress: told (what, steps done, of how many); more are
+    added as they are begun. InputError for an unknown effect, an outside solver, or
     records and sweeps without a common load case. Results are remembered in `discovery.sqlite` of the
     study's folder, so that the same call goes on where it was interrupted.
     """
@@ -54,8 +57,16 @@ def discover_study(
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
     count = workers or available_cores()
+    done, total = 0, expected_steps(study)
+
+    def counted(words: str, steps: int, begun: int) -> None:
+        nonlocal done, total
+        done += steps
+        total = max(total, done + begun)
+        progress(words, done, total)
+
     with processes(count) as executor, ResultCache(study.discovery_store) as cache:
-        return discover(model, library, DiscoveryWorkers(executor, cache, watch, workers=count))
+        return discover(model, library, DiscoveryWorkers(executor, cache, counted, workers=count))
 
 
 def recorded(axle: Axle, measurement: Measurement) -> Axle:
@@ -65,7 +76,7 @@ def recorded(axle: Axle, measurement: Measurement) -> Axle:
 
 
 def expected_steps(study: Study) -> int:
-    """Steps that a discovery reports, about: one for each screening, refit and held-out load case."""
+    """Steps that a discovery reports at least: one for each screening, refit and held-out load case."""
     return len(effect_library(study.axle)) + 2 * len(study.axle.load_cases) + 10
 
 
@@ -109,10 +120,12 @@ def discover_folder(
     """
     from doe_kc.axle_file import read_axle
     from doe_kc.measurement import reduce_measurement
+    from doe_kc.measurement.rig_state import axle_in_state
     from doe_kc.workflow.discovery_document import discovery_document
 
     axle = read_axle(axle_path)
     measurement = reduce_measurement(measurement_dir, half_track=axle.half_track)
+    axle = axle_in_state(axle, measurement.manifest.state)
     axle = recorded(axle, measurement)
     library = effect_library(axle, exclude)
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))

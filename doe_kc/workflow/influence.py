@@ -9,7 +9,7 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from doe_kc.characteristics import CHARACTERISTICS, appendix_c
+from doe_kc.characteristics import appendix_c, characteristics_of
 from doe_kc.correlation.options import ObjectiveKind
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
@@ -17,8 +17,10 @@ from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.relations import relations
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.parameter_influence.study import Influence, influence_study
-from doe_kc.report.influence_workbook import write_influence_workbook
+from doe_kc.parameter_influence.study import NONLINEAR_PERCENT, Influence, influence_study
+from doe_kc.reports.influence_tables import strongest_table
+from doe_kc.reports.influence_workbook import InfluenceBook
+from doe_kc.reports.render.terminal import table_lines
 from doe_kc.study import Study
 from doe_kc.targets import Target, build_targets
 from doe_kc.targets.comparison import constraint_interval
@@ -29,7 +31,8 @@ FORECAST_SHARE = 0.2
 
 @dataclass(frozen=True)
 class StudyInfluence:
-    """matrix: the 21 columns of Appendix C; everything: all of them; selection: None without targets."""
+    """matrix: the columns of Appendix C that the axle has; everything: all that it has; selection: None
+    without targets."""
 
     matrix: Influence
     everything: Influence
@@ -51,7 +54,7 @@ def study_influence(
     everything = influence_study(
         study.axle,
         study.parameters,
-        list(CHARACTERISTICS.values()),
+        characteristics_of(study.axle),
         workers=workers,
         windows=study.windows,
         progress=progress,
@@ -65,7 +68,8 @@ def study_influence(
         values = {t.entry.id: t.value for t in chosen}
         if values:
             selection = select_variables(everything, values, sd={t.entry.id: _sd(t) for t in chosen})
-    return StudyInfluence(everything.only(appendix_c()), everything, selection)
+    shown = [c for c in appendix_c() if c in everything.characteristics]
+    return StudyInfluence(everything.only(shown), everything, selection)
 
 
 def _sought(target: Target, objective: ObjectiveKind) -> bool:
@@ -81,6 +85,18 @@ def _sd(target: Target) -> float:
     return math.hypot(target.sd, (high - low) / 2.0 * FORECAST_SHARE)
 
 
+def influence_lines(matrix: Influence) -> list[str]:
+    """Strongest parameters of every characteristic, and what went wrong, for a terminal."""
+    nonlinear = int(matrix.nonlinear.sum())
+    return [
+        *table_lines(strongest_table(relations(matrix))),
+        *(f"{path}: {reason}" for path, reason in matrix.failures.items()),
+        f"{len(matrix.parameters)} parameters x {len(matrix.characteristics)} characteristics in "
+        f"{matrix.seconds:.1f} s; {nonlinear} entries differ from the exact sensitivity by more than "
+        f"{NONLINEAR_PERCENT:g} %",
+    ]
+
+
 def influence_runs(study: Study) -> int:
     """Number of true-solver runs of the study, for progress."""
     return 1 + 2 * len(study.parameters)
@@ -91,8 +107,7 @@ def write_influence(
 ) -> list[Path]:
     """influence.xlsx, report.html, heat map and top-ten bars, and the three matrices as CSV."""
     matrix = study_influence.matrix
-    book = write_influence_workbook(
-        folder / "influence.xlsx",
+    book = InfluenceBook(
         matrix,
         relations=relations(matrix),
         study=study.name,
@@ -104,22 +119,26 @@ def write_influence(
             "Effects": ", ".join(study.axle.effects) or "none",
         },
         windows=study.windows,
-    )
+    ).write(folder / "influence.xlsx")
     tables = {"percent": matrix.percent, "absolute": matrix.absolute, "exact": matrix.exact}
     csv = [
         write_columns(folder / f"influence_{name}.csv", matrix.columns(values))
         for name, values in tables.items()
     ]
-    from doe_kc.report.page.influence import write_influence_page
-    from doe_kc.report.page.links import link_pages
+    from doe_kc.reports.page.influence import write_influence_page
+    from doe_kc.reports.page.links import link_pages
 
     page = write_influence_page(
-        folder / "report.html", matrix, study=study.name, date=date.today().isoformat()
+        folder / "report.html",
+        matrix,
+        study=study.name,
+        date=date.today().isoformat(),
+        labels=study.axle.labels,
     )
     link_pages(folder.parent)
     if study.pictures == "none":
         return [book, page, *csv]
-    from doe_kc.report.influence_figures import write_influence_figures
+    from doe_kc.reports.influence_figures import write_influence_figures
 
     pictures = write_influence_figures(
         matrix, folder, study=study.name, workers=workers, pictures=study.pictures

@@ -15,14 +15,14 @@ from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, RideHeight, infer_ride_height, reduce_measurement
-from doe_kc.report.measurement_tables import (
+from doe_kc.reports.measurement_tables import (
     gradient_table,
     measured_characteristic_table,
     measured_curve_columns,
     noise_table,
 )
-from doe_kc.report.render.csv import table_columns
-from doe_kc.report.render.json import table_records
+from doe_kc.reports.render.csv import table_columns
+from doe_kc.reports.render.json import table_records
 from doe_kc.solver.curve_set import curve_set, mean_and_half_width, rising
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
@@ -112,15 +112,15 @@ def write_reduced(
         "gradients.csv": table_columns(gradient_table(measurement)),
         "noise.csv": table_columns(noise_table(measurement)),
     }
-    from doe_kc.report.page.links import link_pages
-    from doe_kc.report.page.measurement import write_measurement_page
+    from doe_kc.reports.page.links import link_pages
+    from doe_kc.reports.page.measurement import write_measurement_page
 
     written = [write_columns(folder / name, table) for name, table in tables.items()]
     written.append(write_measurement_page(folder / "report.html", measurement))
     link_pages(folder.parent)
     if pictures == "none":
         return written
-    from doe_kc.report.rig_figures import write_rig_figures
+    from doe_kc.reports.rig_figures import write_rig_figures
 
     return written + write_rig_figures(measurement, folder, workers=workers, pictures=pictures)
 

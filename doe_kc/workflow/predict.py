@@ -14,9 +14,9 @@ from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
 from doe_kc.sampling.table import HEADER_ROWS, LABEL, read_frame
-from doe_kc.surrogates.report import SurrogateReport
-from doe_kc.surrogates.saved import Input, Output, SavedSurrogate
-from doe_kc.surrogates.validation import NOMINAL_WIDTH
+from doe_kc.surrogate_models.report import SurrogateReport
+from doe_kc.surrogate_models.saved import Input, Output, SavedSurrogate
+from doe_kc.surrogate_models.validation import NOMINAL_WIDTH
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -19,13 +19,13 @@ from doe_kc.campaign.store import read_store
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
-from doe_kc.report.render.json import table_records
-from doe_kc.report.render.terminal import table_lines
-from doe_kc.report.sample_tables import CharacteristicSpan, span_table
-from doe_kc.report.table import Table
+from doe_kc.reports.render.json import table_records
+from doe_kc.reports.render.terminal import table_lines
+from doe_kc.reports.sample_tables import CharacteristicSpan, span_table
+from doe_kc.reports.table import Table
 from doe_kc.sampling import Design, find_sampler, sample
 from doe_kc.study import Study
-from doe_kc.surrogates.designs import place
+from doe_kc.surrogate_models.designs import place
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
 

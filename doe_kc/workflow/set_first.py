@@ -13,6 +13,7 @@ from doe_kc.study import Study
 from doe_kc.workflow.measure import Reduced
 
 STATIC_CORRECTIONS = 4
+"""Newton steps at most; of slope 1, which is nearly the axle's, so that each leaves little of the miss."""
 ANGLE_TOLERANCE = 1e-4
 """deg: a static angle that near to the measured one is set."""
 

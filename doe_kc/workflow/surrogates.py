@@ -20,22 +20,22 @@ from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import reduce_measurement
 from doe_kc.parameter_influence.study import influence_study
-from doe_kc.report import surrogate_tables as tables
-from doe_kc.report.render.csv import table_frame
-from doe_kc.report.render.terminal import table_lines
-from doe_kc.report.surrogate_evaluator import write_evaluator
-from doe_kc.report.surrogate_figures import write_surrogate_figures
-from doe_kc.report.surrogate_workbook import write_surrogate_workbook
+from doe_kc.reports import surrogate_tables as tables
+from doe_kc.reports.render.csv import table_frame
+from doe_kc.reports.render.terminal import table_lines
+from doe_kc.reports.surrogate_evaluator import write_evaluator
+from doe_kc.reports.surrogate_figures import write_surrogate_figures
+from doe_kc.reports.surrogate_workbook import write_surrogate_workbook
 from doe_kc.study import Study
-from doe_kc.surrogates.designs import Designs, designs_in_space
-from doe_kc.surrogates.influence import agreement, free_variables, surrogate_changes
-from doe_kc.surrogates.models import SURROGATES, make
-from doe_kc.surrogates.models.gp import FirstOrderTrend
-from doe_kc.surrogates.models.gp_slopes import SlopeProcess
-from doe_kc.surrogates.report import SurrogateReport
-from doe_kc.surrogates.saved import save_surrogate
-from doe_kc.surrogates.shares import total_shares
-from doe_kc.surrogates.study import VALIDATION_DESIGNS, default_models, fit_study, number_of_tasks
+from doe_kc.surrogate_models.designs import Designs, designs_in_space
+from doe_kc.surrogate_models.influence import agreement, free_variables, surrogate_changes
+from doe_kc.surrogate_models.models import SURROGATES, make
+from doe_kc.surrogate_models.models.gp import FirstOrderTrend
+from doe_kc.surrogate_models.models.gp_slopes import SlopeProcess
+from doe_kc.surrogate_models.report import SurrogateReport
+from doe_kc.surrogate_models.saved import save_surrogate
+from doe_kc.surrogate_models.shares import total_shares
+from doe_kc.surrogate_models.study import VALIDATION_DESIGNS, default_models, fit_study, number_of_tasks
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.workflow.predict import saved_surrogate
 

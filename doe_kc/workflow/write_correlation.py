@@ -13,19 +13,19 @@ from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
-from doe_kc.report.correlation_characteristics import characteristic_table
-from doe_kc.report.correlation_evaluations import evaluation_table
-from doe_kc.report.correlation_parameters import parameter_table, remark_sentences
-from doe_kc.report.correlation_summary import summary
-from doe_kc.report.correlation_terms import curve_table, term_columns
-from doe_kc.report.correlation_workbook import write_correlation_workbook
-from doe_kc.report.hysteresis import hysteresis_table, loop_widths
-from doe_kc.report.page import write_correlation_page
-from doe_kc.report.page.links import link_pages
-from doe_kc.report.render.csv import table_columns
-from doe_kc.report.render.json import table_records
-from doe_kc.report.render.terminal import table_lines
-from doe_kc.report.table import Table
+from doe_kc.reports.correlation_characteristics import characteristic_table
+from doe_kc.reports.correlation_evaluations import evaluation_table
+from doe_kc.reports.correlation_parameters import parameter_table, remark_sentences
+from doe_kc.reports.correlation_summary import summary
+from doe_kc.reports.correlation_terms import curve_table, term_columns
+from doe_kc.reports.correlation_workbook import write_correlation_workbook
+from doe_kc.reports.hysteresis import hysteresis_table, loop_widths
+from doe_kc.reports.page.correlation import write_correlation_page
+from doe_kc.reports.page.links import link_pages
+from doe_kc.reports.render.csv import table_columns
+from doe_kc.reports.render.json import table_records
+from doe_kc.reports.render.terminal import table_lines
+from doe_kc.reports.table import Table
 from doe_kc.study import Study
 
 CORRELATION_TABLES: Mapping[str, Callable[[Correlation], Table[Any]]] = {
@@ -53,7 +53,8 @@ def write_correlation(
     own. workers: processes that draw. RunError when the folder cannot be written.
     """
     verdict = assessment or assess(correlation)
-    axle = write_axle(correlation.axle, study.axle_path, folder / AXLE, note=axle_note(correlation, verdict))
+    designed = study.as_designed(correlation.axle)
+    axle = write_axle(designed, study.axle_path, folder / AXLE, note=axle_note(correlation, verdict))
     notes = {
         "Axle": f"{correlation.axle.name}: {AXLE}, from {study.axle_path.name}",
         "Measurement": measurement.manifest.name if measurement is not None else "none, targets are typed",
@@ -99,7 +100,7 @@ def _write_figures(
 ) -> list[Path]:
     if study.pictures == "none":
         return []
-    from doe_kc.report.correlation_figures import write_correlation_figures
+    from doe_kc.reports.correlation_figures import write_correlation_figures
 
     return write_correlation_figures(
         correlation, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
@@ -125,7 +126,7 @@ def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[P
     table = write_columns(folder / "pareto_front.csv", front.columns())
     if study.pictures == "none":
         return [table]
-    from doe_kc.report.pareto_figure import write_pareto_figure
+    from doe_kc.reports.pareto_figure import write_pareto_figure
 
     return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
 

@@ -11,18 +11,18 @@ from doe_kc.axle_file.write import write_axle
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
-from doe_kc.report.discovery_effects import effect_table
-from doe_kc.report.discovery_figures import write_discovery_figures
-from doe_kc.report.discovery_isolability import isolability_table
-from doe_kc.report.discovery_library import library_table
-from doe_kc.report.discovery_parameters import tuned_table
-from doe_kc.report.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.report.discovery_words import HEADLINES, hypothesis_words
-from doe_kc.report.discovery_workbook import write_discovery_workbook
-from doe_kc.report.page import write_discovery_page
-from doe_kc.report.page.links import link_pages
-from doe_kc.report.render.csv import table_columns
-from doe_kc.report.table import Table
+from doe_kc.reports.discovery_effects import effect_table
+from doe_kc.reports.discovery_figures import write_discovery_figures
+from doe_kc.reports.discovery_isolability import isolability_table
+from doe_kc.reports.discovery_library import library_table
+from doe_kc.reports.discovery_parameters import tuned_table
+from doe_kc.reports.discovery_tables import disagreement_table, gap_table, held_out_table
+from doe_kc.reports.discovery_words import HEADLINES, hypothesis_words
+from doe_kc.reports.discovery_workbook import write_discovery_workbook
+from doe_kc.reports.page.discovery import write_discovery_page
+from doe_kc.reports.page.links import link_pages
+from doe_kc.reports.render.csv import table_columns
+from doe_kc.reports.table import Table
 from doe_kc.study import Study
 from doe_kc.workflow.write_correlation import AXLE
 
@@ -53,9 +53,10 @@ def write_discovery(
     Returns the paths. workers: processes that draw. RunError when the folder cannot be written.
     """
     axle = discovery.fitted.model.axle_at(discovery.fitted.z)
-    written = [write_axle(axle, study.axle_path, folder / AXLE, note=axle_note(discovery))]
+    written = [write_axle(study.as_designed(axle), study.axle_path, folder / AXLE, note=axle_note(discovery))]
     if discovery.fitted.model.members:
         extended = discovery.fitted.model.with_effects(discovery.fitted.z)
+        extended = study.as_designed(extended)
         written.append(write_axle(extended, study.axle_path, folder / EFFECTS_ONLY, note="effects only"))
     notes = {
         "Axle": f"{axle.name}: {AXLE}, from {study.axle_path.name}",

@@ -53,6 +53,7 @@ def write_example(root: Path) -> Path:
     folder = root / "examples" / "front_axle"
     (folder / "rig").mkdir(parents=True)
     shutil.copy(EXAMPLE / "axle.toml", folder)
+    shutil.copytree(EXAMPLE.parent / "adams", root / "examples" / "adams")
     (folder / "study.toml").write_text(STUDY, encoding="utf-8")
     car, rng = measured_car(), np.random.default_rng(1)
     solved = curve_set(solve(car, MEASURED))

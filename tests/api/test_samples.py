@@ -29,6 +29,17 @@ def test_designs_and_responses(result: kc.SamplingResult) -> None:
     np.testing.assert_allclose(result.responses.loc[3, again.index], again, rtol=1e-9)
 
 
+def test_extend_runs_only_what_completes_the_designs(folder: Path, tmp_path: Path) -> None:
+    first = kc.sample(folder, 3, out=tmp_path, workers=1)
+    more = kc.sample(folder, 5, out=tmp_path, extend=True, workers=1)
+    assert (more.sampled.runs, more.sampled.kept) == (2, 3)
+    np.testing.assert_allclose(more.designs.iloc[:3], first.designs, rtol=1e-9)
+    with pytest.raises(kc.InputError, match="holds 5 designs"):
+        kc.sample(folder, 4, out=tmp_path, extend=True, workers=1)
+    with pytest.raises(kc.InputError, match="without a store"):
+        kc.sample(folder, 4, extend=True, workers=1)
+
+
 def test_nothing_is_written_unless_asked(result: kc.SamplingResult, folder: Path, tmp_path: Path) -> None:
     assert result.sampled.runs == 12 and not (folder / "out").exists()
     first = kc.sample(folder, 3, out=tmp_path, workers=1)

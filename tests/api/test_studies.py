@@ -47,3 +47,11 @@ def test_answers_of_an_outside_solver_are_never_lost(folder: Path, tmp_path: Pat
 
 def test_errors_are_of_one_kind() -> None:
     assert issubclass(kc.InputError, kc.DoeKcError) and issubclass(kc.RunError, kc.DoeKcError)
+
+
+def test_the_example_of_another_axle_type(tmp_path: Path) -> None:
+    study = kc.init(tmp_path / "new", "double_wishbone_front")
+    assert study.axle.topology.structure.type == "double_wishbone_front"
+    assert study.measurement == tmp_path / "new" / "rig"
+    with pytest.raises(kc.InputError, match="expected one of mcpherson_front"):
+        kc.init(tmp_path / "other", "swing_axle")

@@ -16,7 +16,6 @@ from tests.axle_type_reference import TYPES, nominal
 def without(axle_type: str, kind: str, name: str) -> Structure:
     """The type without one element."""
     structure = nominal(axle_type).topology.structure
-    assert structure is not None
     rest: Any = tuple(e for e in getattr(structure, kind) if e.name != name)
     assert len(rest) < len(getattr(structure, kind))
     return replace(structure, **{kind: rest})
@@ -25,7 +24,6 @@ def without(axle_type: str, kind: str, name: str) -> Structure:
 @pytest.mark.parametrize("axle_type", TYPES)
 def test_a_sound_type_has_neither(axle_type: str) -> None:
     axle = nominal(axle_type)
-    assert axle.topology.structure is not None
     check_freedoms(axle, axle.topology.structure, "type")
 
 
@@ -47,7 +45,6 @@ def test_what_nothing_resists_is_named(axle_type: str, kind: str, name: str, mot
 def test_joints_that_hold_a_motion_twice_are_named() -> None:
     axle = nominal("five_link_rear")
     structure = axle.topology.structure
-    assert structure is not None
     more = tuple(BallConnection(f"extra_{at.lower()}", "toe_link", "knuckle", at) for at in ("UFO", "URO"))
     check_freedoms(axle, replace(structure, balls=(*structure.balls, *more[:0])), "type")
     with pytest.raises(InputError, match=r"held twice by .*tlo.*; put a bushing"):

@@ -9,9 +9,12 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
-from doe_kc.axle_file import read_axle, write_axle
+from doe_kc.axle_file import read_axle
+from doe_kc.axle_file.write import write_axle
+from doe_kc.axle_types.read import FOLDER
 from doe_kc.solver.suite import solve
 from tests.reference import EXAMPLE
+from tests.solver.tangent import Rig
 
 PAGE = EXAMPLE.parents[1] / "docs" / "axle_types.md"
 STIFF = "{ Fx = 1e7, Fy = 1e7, Fz = 1e7, Tx = 0.5, Ty = 0.5, Tz = 0.5 }"
@@ -73,3 +76,31 @@ def test_it_is_written_back_into_another_folder(trailing_arm: Axle, tmp_path: Pa
     changed = with_values(trailing_arm, {"AOB.x": -398.5, "aib.Fx": 0.75, "right.LWS.z": 281.0})
     written = write_axle(changed, folder / "axle.toml", tmp_path / "out" / "deep" / "axle.toml")
     assert read_axle(written).values == changed.values
+
+
+def test_a_double_wishbone_with_its_spring_on_the_upper_arm_is_a_changed_file(tmp_path: Path) -> None:
+    """No Python: the spring's lower end is named on another body. It carries the wheel at another rate, and
+    the axle stores energy: what a pad does to the other wheel's load, that pad does to this one's."""
+    shipped = (FOLDER / "double_wishbone_front.toml").read_text(encoding="utf-8")
+    spring = 'at_a = "UPS"\nb = "lower_arm"\nat_b = "LWS"\n\n[damper]'
+    assert spring in shipped
+    own = shipped.replace(spring, 'at_a = "UPS"\nb = "upper_arm"\nat_b = "SPU"\n\n[damper]')
+    own = own.replace('LWS = "', 'SPU = "Spring on the upper arm"\nLWS = "')
+    (tmp_path / "own.toml").write_text(own, encoding="utf-8")
+    example = EXAMPLE.parent / "double_wishbone_front" / "axle.toml"
+    axle_text = example.read_text(encoding="utf-8").replace(
+        'type = "double_wishbone_front"', 'type = "own.toml"'
+    )
+    axle_text = axle_text.replace("[hardpoints]\n", "[hardpoints]\nSPU = [22.0, -600.0, 632.0]\n")
+    (tmp_path / "axle.toml").write_text(axle_text, encoding="utf-8")
+    lower, upper = read_axle(example), read_axle(tmp_path / "axle.toml")
+    rates = []
+    for axle in (lower, upper):
+        rig = Rig(axle)
+        inputs, outputs = ("pad_L", "pad_R", "rack"), ("tyre_load@L", "tyre_load@R", "column_force")
+        hessian = rig.tangent(rig.static.x, rig.static.u, outputs, inputs)
+        np.testing.assert_allclose(hessian, hessian.T, rtol=0, atol=1e-9 * np.abs(hessian).max())
+        rates.append(hessian[0, 0])
+        loads = [rig.static.y[rig.kernel.layout.output_names.index(f"tyre_load@{side}")] for side in "LR"]
+        assert loads == pytest.approx([axle.values["tyre.static_load"]] * 2, rel=1e-9)
+    assert abs(rates[1] - rates[0]) > 1.0

@@ -9,17 +9,19 @@ import pytest
 
 from doe_kc.axle import design_parameters
 from doe_kc.axle_file import read_axle
-from doe_kc.axle_types import BUILT_IN, read_axle_type
+from doe_kc.axle_types import BUILT_IN, DEFAULT_TYPE, read_axle_type
 from doe_kc.axle_types.read import FOLDER, bushing_axes
 from doe_kc.ground.errors import InputError
 from tests.axle_type_reference import EXAMPLES, TYPES, nominal
+from tests.reference import nominal as default_axle
 
 TEXT = (FOLDER / "five_link_rear.toml").read_text(encoding="utf-8")
 
 
 def test_every_built_in_type_has_an_example_and_is_compared_with_another_code() -> None:
-    assert set(BUILT_IN) == set(TYPES)
-    assert all((EXAMPLES / name / "axle.toml").is_file() for name in BUILT_IN)
+    assert set(BUILT_IN) == {*TYPES, DEFAULT_TYPE}
+    assert all((EXAMPLES / name / "axle.toml").is_file() for name in TYPES)
+    assert default_axle().topology.structure.type == DEFAULT_TYPE
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
@@ -74,7 +76,7 @@ def test_a_type_of_the_user_s_own_beside_the_axle_file(tmp_path: Path) -> None:
 
 
 def test_axes_are_orthonormal_and_e1_lies_along_x() -> None:
-    axes = bushing_axes([1.0, 1.0, 0.0], [0.0, 2.0, 0.5], "here")
+    axes = np.array(bushing_axes([1.0, 1.0, 0.0], [0.0, 2.0, 0.5], "here"))
     assert np.allclose(axes.T @ axes, np.eye(3), atol=1e-15)
     assert np.allclose(axes[:, 0], np.array([1.0, 1.0, 0.0]) / np.sqrt(2.0))
     with pytest.raises(InputError, match="here: x and y span no plane"):
@@ -83,10 +85,11 @@ def test_axes_are_orthonormal_and_e1_lies_along_x() -> None:
 
 @pytest.mark.parametrize("name", BUILT_IN)
 def test_design_parameters_are_those_of_the_type(name: str) -> None:
-    paths = {p.path for p in design_parameters(nominal(name))}
-    structure = nominal(name).topology.structure
-    assert structure is not None
-    assert {f"{p}.{axis}" for p in (*structure.points, *structure.single_points) for axis in "xyz"} <= paths
+    axle = default_axle() if name == DEFAULT_TYPE else nominal(name)
+    paths, structure = {p.path for p in design_parameters(axle)}, axle.topology.structure
+    points = {*structure.design_points, *structure.single_points} - set(axle.follow)
+    assert {f"{p}.{axis}" for p in points for axis in "xyz"} <= paths
+    assert not {path for path in paths if path.split(".")[0] in structure.fixed_points}
     assert {f"{b.name}.Fy" for b in structure.bushings} <= paths
     assert ("scb.Tz" in paths) == (structure.rack is not None)
     assert ("arb.radius" in paths) == (structure.bar is not None)

@@ -18,9 +18,9 @@ from functools import partial
 from pathlib import Path
 import numpy as np
 from doe_kc.campaign.executors import processes
-from doe_kc.report.series import draw_series
-from doe_kc.surrogates.models import gp
-from doe_kc.surrogates.study import fit_study
+from doe_kc.reports.series import draw_series
+from doe_kc.surrogate_models.models import gp
+from doe_kc.surrogate_models.study import fit_study
 
 folder = Path(sys.argv[2])
 

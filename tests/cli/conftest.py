@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.report import comparison_figures, correlation_figures, influence_figures, rig_figures
+from doe_kc.reports import comparison_figures, correlation_figures, influence_figures, rig_figures
 from doe_kc.workflow import write_discovery
 
 

@@ -14,8 +14,8 @@ import pytest
 
 from doe_kc.ground import output
 from doe_kc.ground.errors import RunError
-from doe_kc.report import style
-from doe_kc.report.render import workbook
+from doe_kc.reports import style
+from doe_kc.reports.render import workbook
 from tests.cli.runner import (
     AXLE,
     Outcome,

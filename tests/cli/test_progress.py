@@ -20,7 +20,7 @@ def test_a_line_at_the_start_every_ten_seconds_and_at_the_end() -> None:
     lines = ProgressLines("correlating", 100, stream, lambda: now[0])
     for second in range(1, 26):
         now[0] = float(second)
-        lines.advance(2, f"rating {second}")
+        lines.tell(f"rating {second}", 2 * second, 100)
     lines.close()
     assert stream.getvalue().splitlines() == [
         "correlating: 100 steps",

@@ -289,3 +289,16 @@ def test_the_deformed_shape_is_drawn_where_asked_for(tmp_path: Path) -> None:
     succeeds("simulate", str(AXLE), "--case", "drive", "--out", str(tmp_path), "--pictures", "svg")
     assert (tmp_path / "shape_drive.svg").stat().st_size > 5000
     fails(2, "--pictures: needs a folder", "simulate", str(AXLE), "--case", "drive", "--pictures", "png")
+
+
+def test_kinematic_has_no_compliance(tmp_path: Path) -> None:
+    outcome = succeeds("simulate", AXLE, "--kinematic", "--case", "lateral", "--json", tmp_path / "k.json")
+    elastic = succeeds("simulate", AXLE, "--case", "lateral", "--json", tmp_path / "e.json")
+    assert not outcome.err and elastic.out != outcome.out
+    rigid, soft = (
+        json.loads((tmp_path / f"{name}.json").read_text())["characteristics"]["lateral.wc_lateral_disp"]
+        for name in "ke"
+    )
+    assert abs(rigid["value"]) < 0.05 * abs(soft["value"])
+    fails(2, "--kinematic: the axle has the effect hub_compliance", "simulate", AXLE, "--kinematic",
+          "--effect", "hub_compliance")  # fmt: skip

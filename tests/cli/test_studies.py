@@ -5,14 +5,16 @@ from __future__ import annotations
 import csv
 import json
 import shutil
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 import pytest
 
+from doe_kc.examples import EXAMPLE_TYPES
 from doe_kc.load_cases import CASE_ORDER
-from doe_kc.report import comparison_figures, rig_figures
+from doe_kc.reports import comparison_figures, rig_figures
 from doe_kc.workflow.discover import effect_library
 from tests.cli.runner import FEW, SHORT, Outcome, fails, invoke, leftovers, succeeds, write_study
 from tests.reference import EXAMPLE, nominal
@@ -29,9 +31,9 @@ def appendix_c_columns() -> list[str]:
 @pytest.mark.parametrize(
     ("command", "options"),
     [
-        ("init", ["DIR"]),
+        ("init", ["DIR", "--type"]),
         ("check", ["STUDY", "--measurement", "--out"]),
-        ("simulate", ["AXLE", "--set", "--effect", "--case", "--roll", "--out", "--json"]),
+        ("simulate", ["AXLE", "--set", "--effect", "--case", "--roll", "--kinematic", "--out", "--json"]),
         ("reduce", ["STUDY", "--measurement", "--out", "--json"]),
         ("influence", ["STUDY", "--measurement", "--out", "--json", "--seed", "--workers"]),
         ("run", ["STUDY", "--measurement", "--out", "--json", "--seed", "--workers"]),
@@ -76,6 +78,23 @@ def test_init_takes_an_empty_folder_and_no_other(tmp_path: Path) -> None:
     file.write_text("mine")
     fails(2, "not an empty folder", "init", file)
     assert file.read_text() == "mine"
+
+
+@pytest.mark.parametrize("axle_type", EXAMPLE_TYPES)
+def test_init_writes_a_sound_study_of_every_type(axle_type: str, tmp_path: Path) -> None:
+    outcome = succeeds("init", tmp_path / "new", "--type", axle_type)
+    study = tmp_path / "new" / "study.toml"
+    command = "run" if (study.parent / "rig").is_dir() else "influence"
+    assert outcome.out.rstrip().endswith(f"next: doe-kc {command} {study}")
+    assert "all sound" in succeeds("check", study).out
+    written = tomllib.loads((study.parent / "axle.toml").read_text())
+    assert written.get("type", "mcpherson_front") == axle_type
+
+
+def test_init_names_the_types_that_have_an_example(tmp_path: Path) -> None:
+    words = "'five_links' is no axle type.*mcpherson_front.*Did you mean .five_link_rear"
+    fails(2, words, "init", tmp_path / "new", "--type", "five_links")
+    assert not (tmp_path / "new").exists()
 
 
 def test_check_tells_effects_and_the_parameters_selected(tmp_path: Path) -> None:

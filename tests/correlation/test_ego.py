@@ -24,7 +24,7 @@ from doe_kc.correlation.modelled.proposal import gauss_newton
 from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Candidate, Evaluated, RatingForecast
-from doe_kc.surrogates.models.gp import GaussianProcess
+from doe_kc.surrogate_models.models.gp import GaussianProcess
 from doe_kc.targets import Score, improvements, mean_improvement
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import VariableOptions

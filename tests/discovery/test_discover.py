@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -129,19 +130,15 @@ def test_white_noise_assumed_where_it_is_not_does_not_pass_for_agreement() -> No
     assert not found.tuned_map.agrees
 
 
-def test_with_a_cache_nothing_is_computed_twice(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_with_a_cache_nothing_is_computed_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "discovery.sqlite"
-    told: list[str] = []
     car, few = model("named", LATERAL), library("hub_compliance")
     with ResultCache(path) as cache:
         first = discover(car, few, DiscoveryWorkers(cache=cache))
+    for task in ("_screen_many", "_fit_one"):
+        monkeypatch.setattr(f"doe_kc.discovery.workers.{task}", lambda *_: pytest.fail("computed twice"))
     with ResultCache(path) as cache:
-        again = discover(
-            model("named", LATERAL),
-            few,
-            DiscoveryWorkers(cache=cache, watch=lambda words, _: told.append(words)),
-        )
-    assert "screening effects" not in told
+        again = discover(model("named", LATERAL), few, DiscoveryWorkers(cache=cache))
     assert again.sentences == first.sentences
     assert np.array_equal(again.fitted.z, first.fitted.z)
     assert np.array_equal(again.fitted.jacobian, first.fitted.jacobian)

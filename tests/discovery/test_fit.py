@@ -9,8 +9,9 @@ import pytest
 from scipy.stats import multivariate_normal, norm
 
 from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
+from doe_kc.discovery.fit import Fit, _secant, chord_fit, cost_of, fit, known_columns
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.search import tune
 from doe_kc.discovery.thresholds import FIT_DECREASE
 from tests.discovery.cases import library, model
 
@@ -110,3 +111,37 @@ def test_evidence_integrates_what_a_bound_holds_back_along_its_half_line() -> No
     held[0] = bound
     assert at(held).held.tolist() == [True] + [False] * (count - 1)
     assert at(held).evidence - at(open_).evidence == pytest.approx(norm.logcdf(-1.3), abs=1e-6)
+
+
+def test_derivatives_that_are_known_are_not_taken_anew(with_hub: Fit) -> None:
+    """Beside a member the derivatives of all others are known; a new one's are not."""
+    (rod,) = library("tie_rod_compliance")[:1]
+    extended = with_hub.model.extended(rod)
+    known = known_columns(with_hub, extended)
+    assert known.shape[1] == with_hub.model.calibrations.stop + len(extended.sizes)
+    new = np.isnan(known).all(axis=0)
+    assert new.sum() == len(rod.sizes) and new[-len(rod.sizes) :].all()
+    back = known_columns(with_hub, with_hub.model.without(with_hub.model.members[0]))
+    np.testing.assert_array_equal(back, with_hub.jacobian[:, : with_hub.model.calibrations.stop])
+
+
+def test_a_fit_that_cannot_come_near_another_is_given_up(with_hub: Fit) -> None:
+    """From far away, with the ceiling far below what it reaches: fewer solutions, no end."""
+    start = with_hub.model.centre
+    whole = fit(with_hub.model, start)
+    early = fit(with_hub.model, start, ceiling=whole.cost - 1e6)
+    assert whole.converged and not early.converged
+    assert early.evaluations < whole.evaluations
+
+
+def test_derivatives_follow_a_step_and_leave_linear_nuisances() -> None:
+    """The secant condition; what is exactly linear stays what it is."""
+    tuned = tune(model("named"))
+    rng = np.random.default_rng(3)
+    step = 0.05 * rng.standard_normal(tuned.z.size) * tuned.model.prior_sd
+    residual = tuned.model.residual(tuned.z + step)
+    changed = _secant(tuned, step, residual)
+    linear = slice(tuned.model.calibrations.stop, tuned.model.dimension)
+    np.testing.assert_array_equal(changed[:, linear], tuned.jacobian[:, linear])
+    np.testing.assert_allclose(changed @ step, residual - tuned.residual, atol=1e-8)
+    assert not np.allclose(tuned.jacobian @ step, residual - tuned.residual, atol=1e-8)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.fit import Fit, amplitude_estimates, fit
+from doe_kc.discovery.fit import Fit, amplitude_estimates, fit, known_columns
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import INPUT_GAIN
 from doe_kc.effects.hypothesis import Hypothesis
@@ -49,7 +49,8 @@ def test_the_calibration_is_the_effect_s_own_column(tuned: Fit, case: str) -> No
 def test_a_sound_rig_gives_no_wrong_input(tuned: Fit, case: str) -> None:
     """Neither one that cancels its calibration nor a sum of both."""
     place = tuned.model.calibrations.start + tuned.model.cases.index(case)
-    found = fit(tuned.model.extended(wrong_input(case)), np.append(tuned.z, 0.0), tuning=tuned.jacobian)
+    model = tuned.model.extended(wrong_input(case))
+    found = fit(model, np.append(tuned.z, 0.0), known=known_columns(tuned, model))
     assert found.evidence < tuned.evidence - 1.5
     assert abs(tuned.z[place]) < 3.0 * np.sqrt(tuned.covariance[place, place])
     (total,), (sd,) = amplitude_estimates(found, wrong_input(case))

@@ -9,7 +9,7 @@ import pytest
 
 from doe_kc.campaign.executors import processes
 from doe_kc.discovery import result_cache
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache
 from doe_kc.discovery.screening.screen import effort
@@ -31,24 +31,24 @@ def start(tuned: Fit) -> tuple[EffectModel, np.ndarray]:
 def test_a_fit_of_a_worker_is_of_the_very_model_and_errors_of_its_start(tuned: Fit) -> None:
     extended, z = start(tuned)
     with processes(2) as executor:
-        (there,) = DiscoveryWorkers(executor, workers=2).fits([(extended, z)], "", tuned.jacobian)
-    (here,) = DiscoveryWorkers().fits([(extended, z)], "", tuned.jacobian)
+        (there,) = DiscoveryWorkers(executor, workers=2).fits([FitStart(extended, z, tuned)], "")
+    (here,) = DiscoveryWorkers().fits([FitStart(extended, z, tuned)], "")
     assert there is not None and here is not None
     assert there.model is extended and there.model.likelihood is tuned.model.likelihood
     assert np.array_equal(there.z, here.z) and np.array_equal(there.jacobian, here.jacobian)
 
 
 def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:
-    begun, steps = [start(tuned)], []
+    begun, steps = [FitStart(*start(tuned), tuned)], []
     fits = []
     for _ in range(2):
         with ResultCache(tmp_path / "discovery.sqlite") as cache:
             workers = DiscoveryWorkers(cache=cache, watch=lambda *step: steps.append(step))
-            fits += workers.fits(begun, "refitting", tuned.jacobian)
+            fits += workers.fits(begun, "refitting")
     computed, stored = fits
     for name in ("z", "residual", "jacobian", "cost", "evaluations", "converged", "evidence"):
         assert np.array_equal(getattr(computed, name), getattr(stored, name)), name
-    assert steps == [("refitting", 1), ("refitting", 1)]
+    assert steps == [("refitting", 1, 0), ("refitting", 1, 0)]
 
 
 def test_what_the_model_says_is_not_stored_and_comes_back_in_its_place(tuned: Fit) -> None:
@@ -61,7 +61,7 @@ def test_what_the_model_says_is_not_stored_and_comes_back_in_its_place(tuned: Fi
 
     workers = DiscoveryWorkers(cache=Widths(None))
     model, z = start(tuned)
-    computed, stored = (workers.fits([(model, z)], "", tuned.jacobian)[0] for _ in range(2))
+    computed, stored = (workers.fits([FitStart(model, z, tuned)], "")[0] for _ in range(2))
     assert computed is not None and stored is not None and model.sides is not None
     assert widths == [z.size - model.sides.shape[1]]
     assert np.array_equal(stored.jacobian, computed.jacobian)

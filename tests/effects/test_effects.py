@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from doe_kc.axle.model import BUSHINGS
 from doe_kc.axle.topology import Topology
 from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
+from doe_kc.axle_types import DEFAULT_TYPE, built_in
 from doe_kc.effects import Option, apply_effect
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE, nominal
@@ -51,8 +53,9 @@ DEFAULTS: dict[str, dict[str, float]] = {
     "tie_rod_free_play": {"tie_rod.gap": 0.2, "tie_rod.contact": 20000.0},
     "tyre_horizontal_compliance": {"tyre.lat_rate": 180.0, "tyre.long_rate": 250.0},
 }
+PLAIN = Topology(built_in(DEFAULT_TYPE).structure)
 TOPOLOGIES: dict[str, dict[str, Any]] = {
-    "ball_joint_compliance": {"ball_joint": True},
+    "ball_joint_compliance": {"elastic_balls": ("ball_joint@L", "ball_joint@R")},
     "hub_compliance": {"hub": True},
     "power_assist": {"power_assist": True},
     "rack_mount_compliance": {"rack_mount": True},
@@ -113,10 +116,10 @@ def test_defaults_are_those_of_the_reference(ident: str) -> None:
     axle = applied(ident)
     for path, value in DEFAULTS[ident].items():
         assert parameter_value(axle, path) == value, path
-    assert axle.topology == Topology(**TOPOLOGIES.get(ident, {}))
+    assert axle.topology == replace(PLAIN, **TOPOLOGIES.get(ident, {}))
     assert axle.effects == {ident: {}}
     assert nominal().effects == {}
-    assert nominal().topology == Topology()
+    assert nominal().topology == PLAIN
 
 
 @pytest.mark.parametrize("ident", EFFECTS)
@@ -238,7 +241,7 @@ def test_free_play_of_one_joint_as_text() -> None:
 def test_a_rigid_sub_frame_takes_the_effect_back() -> None:
     flexible = applied("subframe_flexibility")
     rigid = apply_effect(flexible, "subframe_flexibility", {"mode": "rigid"}, source="t")
-    assert rigid.topology == Topology()
+    assert rigid.topology == PLAIN
 
 
 def test_the_command_line_s_dotted_key_is_the_nested_one() -> None:

@@ -11,6 +11,7 @@ import pytest
 from doe_kc.axle import Axle
 from doe_kc.axle.parameters import design_parameters, settable_paths
 from doe_kc.curves import CurveSet
+from doe_kc.effects import EFFECTS as ALL_EFFECTS
 from doe_kc.effects import apply_effect, observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.curve_set import curve_set
@@ -79,7 +80,7 @@ def test_every_effect_says_what_it_is_and_how_it_shows(name: str) -> None:
     assert effect.physics[0].isupper() and effect.physics.endswith(".")
     assert not effect.shown_by[0].isupper() and not effect.shown_by.endswith(".")
     assert effect.mistaken_for and effect.id not in effect.mistaken_for
-    known = {*EFFECTS, *settable_paths(nominal())}
+    known = {*ALL_EFFECTS, *settable_paths(nominal())}
     assert set(effect.mistaken_for) <= known
     assert set(effect.replaces) <= {p.path for p in design_parameters(nominal())}
     assert effect.hypotheses()

@@ -20,7 +20,7 @@ from doe_kc.measurement import infer_ride_height, reduce_measurement
 from doe_kc.parameter_influence.study import influence_study
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from doe_kc.surrogates.study import fit_study
+from doe_kc.surrogate_models.study import fit_study
 from doe_kc.workflow.measure import vertical_scatter
 from tests.correlation.synthetic import solver as synthetic_solver
 from tests.correlation.synthetic import synthetic

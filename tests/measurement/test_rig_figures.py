@@ -10,9 +10,9 @@ from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.measurement import Measurement
-from doe_kc.report.rig_figures import rig_figure
-from doe_kc.report.sheet import sheet
-from doe_kc.report.style import PALETTE, save
+from doe_kc.reports.rig_figures import rig_figure
+from doe_kc.reports.sheet import sheet
+from doe_kc.reports.style import PALETTE, save
 
 
 def test_every_panel_has_its_unit(car_a: Measurement) -> None:
@@ -24,7 +24,7 @@ def test_every_panel_has_its_unit(car_a: Measurement) -> None:
         assert panels[3 * row].y_label.text.endswith(f" [{unit}]")
         assert panels[3 * row + 2].y_label.text == f"residual [{unit}]"
     assert [panel.x_label.text for panel in panels[-3:]] == ["Pad travel [mm]"] * 3
-    assert any("26.264 ± 0.045 N/mm" in t.text for t in panels[18].texts)
+    assert any("26.2636 ± 0.0449 N/mm" in t.text for t in panels[18].texts)
     assert fig.outside == []
 
 

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
-from doe_kc.axle.topology import Topology
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, CurveSet
 from doe_kc.effects import apply_effect
 from doe_kc.effects.subframe_flexibility import JOINT_STIFFNESS
@@ -239,7 +238,7 @@ def test_probes_add_no_unknowns_and_nothing_to_the_axle_without_them(name: str) 
 
 
 def test_probes_have_names_units_and_mirror_images() -> None:
-    probes = assemble(Topology(probes=True)).probes
+    probes = assemble(replace(nominal().topology, probes=True)).probes
     names = [p.name for p in probes]
     assert len(set(names)) == len(names) > 150
     sides = {side: [p for p in probes if p.side == side] for side in ("L", "R", "")}

@@ -11,7 +11,6 @@ import pytest
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.model import BUSHINGS, FORCE_AXES
 from doe_kc.axle.sliders import RUBBER_SLIDERS
-from doe_kc.curves import SIDES
 from doe_kc.effects import apply_effect
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.curve_set import curve_set
@@ -127,11 +126,7 @@ def strengths(axle: Axle) -> np.ndarray:
     )  # fmt: skip
 
 
-BUSHING_ORDER = (
-    *((n, s) for s in SIDES for n in ("sff", "sfr")),
-    *((n, s) for s in SIDES for n in ("llf", "llr")),
-    *(("upb", s) for s in SIDES),
-)
+BUSHING_ORDER = [(name, side) for name in BUSHINGS for side in "LR"]
 
 PATHS = {
     "llr.rubber.share": 3e-5, "llr.rubber.yield": 1e-4, "llr.Fy": 1e-4, "hub.toe": 0.9,

@@ -17,9 +17,9 @@ from doe_kc.correlation.record import run_document
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_json
-from doe_kc.report.correlation_characteristics import characteristic_table
-from doe_kc.report.correlation_evaluations import evaluation_table
-from doe_kc.report.correlation_terms import term_columns
+from doe_kc.reports.correlation_characteristics import characteristic_table
+from doe_kc.reports.correlation_evaluations import evaluation_table
+from doe_kc.reports.correlation_terms import term_columns
 from doe_kc.study import Study, read_study
 from doe_kc.targets import CharacteristicOptions
 from doe_kc.true_solver.make import solver_for
@@ -27,7 +27,7 @@ from doe_kc.workflow.measure import Reduced
 from doe_kc.workflow.reload_correlation import recall, write_run
 from tests.correlation.cases import measured
 from tests.reference import EXAMPLE
-from tests.report.correlations import CAR, ODD_WEIGHTS, odd, real
+from tests.reports.correlations import CAR, ODD_WEIGHTS, odd, real
 
 REDUCED = Reduced(measured(CAR), None)
 

@@ -16,7 +16,7 @@ from doe_kc.study import Study, read_study
 from doe_kc.workflow.write_correlation import correlation_document, correlation_lines, write_correlation
 from tests.correlation.cases import measured, outcome
 from tests.reference import EXAMPLE
-from tests.report.correlations import CAR, all_three, odd, real
+from tests.reports.correlations import CAR, all_three, odd, real
 
 KEYS = {
     "name", "unit", "target", "sd", "baseline", "final", "improvement_percent", "low", "high", "role", "held",

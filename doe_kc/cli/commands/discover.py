@@ -52,11 +52,5 @@ def discovered(
     study: Study, records: Measurement, *, exclude: Sequence[str] = (), workers: int | None = None
 ) -> Discovery:
     """The discovery, its progress shown."""
-    with described_bar("discovery", expected_steps(study)) as advance:
-        return discover_study(
-            study,
-            records,
-            exclude=exclude,
-            workers=workers,
-            watch=lambda words, steps: advance(steps, words),
-        )
+    with described_bar("discovery", expected_steps(study)) as tell:
+        return discover_study(study, records, exclude=exclude, workers=workers, progress=tell)

@@ -9,12 +9,11 @@ from doe_kc.cli.options import StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
-from doe_kc.parameter_influence.relations import relations
-from doe_kc.parameter_influence.study import Influence
 from doe_kc.study import Study
 from doe_kc.workflow.influence import (
     StudyInfluence,
     influence_document,
+    influence_lines,
     influence_runs,
     study_influence,
     write_influence,
@@ -43,18 +42,3 @@ def influence_shown(
     """The influence study, its progress shown."""
     with progress_bar("one at a time", influence_runs(study)) as advance:
         return study_influence(study, measurement, workers=workers, progress=advance)
-
-
-def influence_lines(matrix: Influence) -> list[str]:
-    """Strongest parameters of every characteristic, and what went wrong."""
-    lines = [f"{'characteristic':32}strongest parameters, percent of the strongest"]
-    for entry in relations(matrix).by_characteristic:
-        strongest = ", ".join(f"{k.parameter} {k.percent:+.0f}" for k in entry.links[:4])
-        lines.append(f"{entry.characteristic.id:32}{strongest}")
-    lines += [f"{path}: {reason}" for path, reason in matrix.failures.items()]
-    lines.append(
-        f"{len(matrix.parameters)} parameters x {len(matrix.characteristics)} characteristics in "
-        f"{matrix.seconds:.1f} s; {int(matrix.nonlinear.sum())} entries differ from the exact sensitivity "
-        "by more than 5 %"
-    )
-    return lines

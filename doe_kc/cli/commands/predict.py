@@ -11,7 +11,7 @@ import typer
 from doe_kc.cli._app import app
 from doe_kc.cli.options import JsonOption
 from doe_kc.ground.output import write_json
-from doe_kc.surrogates.saved import load_surrogate
+from doe_kc.surrogate_models.saved import load_surrogate
 from doe_kc.workflow.predict import (
     predict_table,
     prediction_lines,

@@ -10,20 +10,20 @@ import typer
 from doe_kc.cli._app import app
 from doe_kc.cli.commands.correlate import correlated, leave_unless_usable
 from doe_kc.cli.commands.discover import discovered
-from doe_kc.cli.commands.influence import influence_lines, influence_shown
+from doe_kc.cli.commands.influence import influence_shown
 from doe_kc.cli.commands.reduce import ride_height_line
 from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_json
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.report.simulation_tables import characteristics_document
+from doe_kc.reports.simulation_tables import characteristics_document
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.answer import PAGE, answer_lines, summary_document
 from doe_kc.workflow.chain import Chain, Steps, run_chain
 from doe_kc.workflow.compare import comparison_document
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
-from doe_kc.workflow.influence import influence_document
+from doe_kc.workflow.influence import influence_document, influence_lines
 from doe_kc.workflow.measure import Reduced, reduced_document
 from doe_kc.workflow.run_files import RunFiles
 from doe_kc.workflow.write_correlation import AXLE, correlation_document, correlation_lines

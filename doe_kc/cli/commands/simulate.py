@@ -14,6 +14,7 @@ import typer
 
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.geometry import check_geometry
+from doe_kc.axle.kinematics import as_mechanism
 from doe_kc.axle.model import with_roll
 from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.axle_file import read_axle
@@ -23,7 +24,8 @@ from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_json
 from doe_kc.ground.picture_format import PictureFormat
-from doe_kc.report.simulation_tables import characteristics_document, write_simulation
+from doe_kc.reports.simulation_tables import characteristics_document, write_simulation
+from doe_kc.solver.newton import RIGID_SETTINGS
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 
@@ -116,6 +118,10 @@ def simulate(
     ] = None,
     case: Annotated[list[str] | None, typer.Option(help="Load case; all by default.")] = None,
     roll: Annotated[str | None, typer.Option(help="Roll technique: body or counter_phase.")] = None,
+    kinematic: Annotated[
+        bool,
+        typer.Option("--kinematic", help="Joints in place of all bushings: pure kinematics."),
+    ] = False,
     out: Annotated[
         Path | None, typer.Option(help="Folder for curves.csv, characteristics.csv and pictures.")
     ] = None,
@@ -131,8 +137,10 @@ def simulate(
         raise InputError("--pictures: needs a folder to draw into; add --out DIR.")
     for sentence in axle_warnings(model):
         log.warning(sentence)
+    if kinematic:
+        model = as_mechanism(model, source="--kinematic")
     started = time.perf_counter()
-    solution = solve(model, checked_cases(model, case))
+    solution = solve(model, checked_cases(model, case), settings=RIGID_SETTINGS if kinematic else None)
     seconds = time.perf_counter() - started
     document = characteristics_document(solution, seconds)
     if json is not None:
@@ -147,7 +155,7 @@ def simulate(
 def _shapes(axle: Axle, solution: Solution, folder: Path, pictures: PictureFormat) -> list[Path]:
     if pictures == "none":
         return []
-    from doe_kc.report.axle_shapes import write_shape_figures
+    from doe_kc.reports.axle_shapes import write_shape_figures
 
     return write_shape_figures(axle, solution, folder, pictures=pictures)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from doe_kc.axle_types import BUILT_IN, read_axle_type
+from doe_kc.axle_types import BUILT_IN, DEFAULT_TYPE, read_axle_type
 from doe_kc.axle_types.read import FOLDER
 from doe_kc.cli._app import app
 
@@ -14,7 +14,6 @@ from doe_kc.cli._app import app
 @app.command("types")
 def types() -> None:
     """List the axle types: what each is made of, and the files that describe them."""
-    typer.echo(f"{'mcpherson_front':24}McPherson strut, front (an axle file without type)")
     for name in BUILT_IN:
         axle_type = read_axle_type(name, Path(), source=name)
         s = axle_type.structure
@@ -22,5 +21,6 @@ def types() -> None:
         counts = ", ".join(f"{n} {word}{'s' if n > 1 else ''}" for n, word in parts if n)
         rack = ", rack" if s.rack is not None else ""
         bodies = ", ".join(body.replace("_", " ") for body in (*s.single_bodies, *s.bodies))
-        typer.echo(f"{name:24}{axle_type.label}: {bodies}; {counts}{rack}")
+        default = " (an axle file without type)" if name == DEFAULT_TYPE else ""
+        typer.echo(f"{name:24}{axle_type.label}{default}: {bodies}; {counts}{rack}")
     typer.echo(f'Type files: {FOLDER}. A type of your own: type = "own.toml" in the axle file, beside it.')

@@ -11,9 +11,9 @@ from doe_kc.correlation.modelled.archive import Archive, build_archive
 from doe_kc.correlation.modelled.proposal import fit_outputs, level_steps
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted
-from doe_kc.surrogates.learning import Learning
-from doe_kc.surrogates.training import constant_outputs
+from doe_kc.surrogate_models.interface import Fitted
+from doe_kc.surrogate_models.learning import Learning
+from doe_kc.surrogate_models.training import constant_outputs
 
 ROWS = 160
 """Designs that surrogates are fitted to, those nearest the best one: the cost grows with their cube."""

@@ -46,6 +46,8 @@ class InitialDesign:
 
 
 def _evened(n: int, dimension: int, seed: int) -> FloatArray:
+    if n == 1:  # nothing to even out
+        return latin_hypercube(n, dimension, seed)
     from scipy.stats import qmc  # takes half a second
 
     engine = qmc.LatinHypercube(dimension, rng=np.random.default_rng(seed), optimization="random-cd")

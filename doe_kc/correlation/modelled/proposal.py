@@ -19,11 +19,11 @@ from doe_kc.correlation.modelled.composite import Composite
 from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.correlation.problem import Problem, RatingForecast
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted
-from doe_kc.surrogates.learning import Learning
-from doe_kc.surrogates.models.gp import FirstOrderTrend, GaussianProcess
-from doe_kc.surrogates.training import constant_outputs
-from doe_kc.surrogates.varying import fit_varying
+from doe_kc.surrogate_models.interface import Fitted
+from doe_kc.surrogate_models.learning import Learning
+from doe_kc.surrogate_models.models.gp import FirstOrderTrend, GaussianProcess
+from doe_kc.surrogate_models.training import constant_outputs
+from doe_kc.surrogate_models.varying import fit_varying
 from doe_kc.variables import Space
 
 PROPOSAL_STEPS = 30

@@ -67,32 +67,52 @@ class Screened:
         return replace(self, change=change, columns=columns, bend=bend)
 
 
-def screen(fit: Fit, hypothesis: Hypothesis) -> Screened:
-    """The hypothesis on its own; one without equilibria comes back as failed."""
+def screen(fit: Fit, hypothesis: Hypothesis, shape: FloatArray | None = None) -> Screened:
+    """The hypothesis on its own; one without equilibria comes back as failed.
+
+    shape: (s,) its shapes to begin with, by default the most promising of `SHAPE_STARTS`.
+    """
     model = fit.model.extended(hypothesis)
     try:
-        starts = zip(_starts(hypothesis, PROBE), _starts(hypothesis, PROBE_FACTOR * PROBE), strict=True)
-        results = [amplitude_solution(model, fit, *s) for s in starts]
+        shape = _promising_shape(model, fit, hypothesis) if shape is None else shape
+        starts = _start(hypothesis, PROBE, shape), _start(hypothesis, PROBE_FACTOR * PROBE, shape)
+        best = amplitude_solution(model, fit, *starts)
         change = _typical(model, fit, hypothesis)
     except NotConverged as error:
-        empty = np.zeros(len(hypothesis.sizes))
-        nothing = np.zeros((fit.residual.size, 1 + empty.size))
-        return Screened(
-            hypothesis,
-            empty,
-            empty + np.inf,
-            -np.inf,
-            0.0,
-            nothing[:, 1:],
-            nothing[:, 0],
-            nothing[:, 0],
-            0.0,
-            0.0,
-            empty,
-            str(error),
-        )
-    best = min(results, key=lambda r: r.cost)
+        return _failure(fit, hypothesis, str(error))
     return _summary(fit, hypothesis, best, change)
+
+
+def shape_of(screened: Screened) -> FloatArray:
+    """(s,) the shapes at which a hypothesis was screened, as a start for the next time."""
+    own = [a for s, a in zip(screened.hypothesis.sizes, screened.amplitudes, strict=True) if s.shape]
+    return np.asarray(np.clip(own, min(SHAPE_STARTS), max(SHAPE_STARTS)), dtype=np.float64)
+
+
+def _failure(fit: Fit, hypothesis: Hypothesis, reason: str) -> Screened:
+    empty = np.zeros(len(hypothesis.sizes))
+    nothing = np.zeros((fit.residual.size, empty.size))
+    none = np.zeros(fit.residual.size)
+    return Screened(
+        hypothesis, empty, empty + np.inf, -np.inf, 0.0, nothing, none, none, 0.0, 0.0, empty, reason
+    )
+
+
+def _promising_shape(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
+    """(s,) of `SHAPE_STARTS`, all shapes alike, the one along which one solution promises most."""
+    count = sum(s.shape for s in hypothesis.sizes)
+    starts = [np.full(count, shape) for shape in SHAPE_STARTS]
+    if not count:
+        return starts[0]
+    promised = [_promise(model, fit, _start(hypothesis, PROBE, shape)) for shape in starts]
+    return starts[int(np.argmax(promised))]
+
+
+def _promise(model: EffectModel, fit: Fit, amplitudes: FloatArray) -> float:
+    """Decrease of the cost along the straight line to a true solution, as far as it goes one way."""
+    along = fit.projection(model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual)
+    slope = min(0.0, float(along @ fit.remainder))
+    return slope**2 / (float(along @ along) + float(amplitudes @ amplitudes))
 
 
 def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
@@ -106,19 +126,14 @@ def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray
 
 
 def effort(hypothesis: Hypothesis) -> int:
-    """Work of its screening, relative to others: starts times solutions of a step."""
-    return len(_starts(hypothesis, PROBE)) * (1 + len(hypothesis.sizes))
+    """Work of its screening, relative to others: solutions of a step."""
+    return 1 + len(hypothesis.sizes)
 
 
-def _starts(hypothesis: Hypothesis, first: float) -> list[FloatArray]:
-    base = np.array([0.0 if s.shape or s.signed else first for s in hypothesis.sizes])
-    shapes = [i for i, s in enumerate(hypothesis.sizes) if s.shape]
-    out = []
-    for shape in SHAPE_STARTS if shapes else (0.0,):
-        start = base.copy()
-        start[shapes] = shape
-        out.append(start)
-    return out
+def _start(hypothesis: Hypothesis, first: float, shape: FloatArray) -> FloatArray:
+    start = np.array([0.0 if s.shape or s.signed else first for s in hypothesis.sizes])
+    start[[i for i, s in enumerate(hypothesis.sizes) if s.shape]] = shape
+    return start
 
 
 @dataclass(frozen=True)
@@ -201,7 +216,7 @@ def _solved(
 def _derived(model: EffectModel, fit: Fit, best: _AmplitudeSolution, place: slice) -> _AmplitudeSolution:
     """The same with columns taken there. place: of the amplitudes in z."""
     z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change
-    columns = model.amplitude_columns(z, residual, which=place)
+    columns = model.amplitude_columns(z, residual, range(place.start, place.stop))
     return replace(best, columns=columns, projected=fit.projection(columns))
 
 

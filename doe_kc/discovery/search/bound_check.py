@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.search import EffectSearch, search
 from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, SHARE_AT_BOUNDS
@@ -47,7 +47,8 @@ def bound_evidence(fit: Fit, workers: DiscoveryWorkers) -> float:
     best, most = 1.0, fit.evidence + BOUND_EVIDENCE
     for factor in BOUND_FACTORS:
         model, z = with_wider_bounds(fit, factor)
-        (wider,) = workers.fits([(model, z)], "wider bounds", fit.jacobian * _stretch(fit, model, z))
+        near = replace(fit, jacobian=fit.jacobian * _stretch(fit, model, z))
+        (wider,) = workers.fits([FitStart(model, z, near)], "wider bounds")
         if wider is None or wider.evidence < most:
             break
         best, most = factor, wider.evidence

@@ -41,8 +41,8 @@ class EffectSignal:
 def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
     """The fit with the discrepancy of its effects' laws that the records ask for, and each member's share.
 
-    exact: to the records' own errors. The share of each effect is the one of DISCREPANCY_SHARES with the
-    largest evidence, one effect after the other, largest first: the errors of the records grow by what its
+    exact: to the records' own errors. The share of each effect is raised along DISCREPANCY_SHARES as long as
+    the evidence grows, one effect after the other, largest first: the errors of the records grow by what its
     law may do to the curves, and with them their determinant, so that a law that fits is left as it is.
     """
     signals = effect_signals(exact)
@@ -53,8 +53,9 @@ def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
             candidate = [share if k == i else s for k, s in enumerate(shares)]
             wider = rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate))
             evidence = marginal(wider)
-            if evidence > most:
-                best, most, shares[i] = wider, evidence, share
+            if evidence <= most:
+                break
+            best, most, shares[i] = wider, evidence, share
     names = [h.name for h in exact.model.members]
     settled = chord_fit(best, best.model) if any(shares) else exact
     return settled, dict(zip(names, shares, strict=True))

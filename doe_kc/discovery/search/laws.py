@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -57,7 +57,7 @@ def _opened(
     if current.residual_map.chance >= NOISE_CHANCE:
         return current
     model, z = with_law(current, member, law)
-    (refit,) = workers.fits([(model, z)], "opening laws", current.jacobian)
+    (refit,) = workers.fits([FitStart(model, z, current)], "opening laws")
     if refit is None or refit.evidence < current.evidence - window:
         return current
     return refit

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, refit_to_errors
+from doe_kc.discovery.fit import Fit, FitStart, refit_to_errors
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -33,11 +33,10 @@ def backward_elimination(
         members = [(h, p) for h, p in places if losses[h.name] < REMOVAL_FACTOR * needed[h.name]]
         withs = [refit_to_errors(fit, without_own.get(h.name, fit.model.likelihood)) for h, _ in members]
         starts = [
-            (w.model.without(h), np.delete(w.z, np.r_[place]))
+            FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit)
             for w, (h, place) in zip(withs, members, strict=True)
         ]
-        tuning = fit.jacobian[:, : fit.model.dimension]
-        fewer = workers.fits(starts, "taking effects out", tuning)
+        fewer = workers.fits(starts, "taking effects out")
         for (h, _), w, f in zip(members, withs, fewer, strict=True):
             if f is not None:
                 losses[h.name] = w.evidence - f.evidence

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.projection import Projection
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.proposals import SetProposal
@@ -44,8 +44,10 @@ class HypothesisFit:
     """ln of those odds before the records, part of `gain`."""
 
 
-def leaders(screened: Sequence[Screened], projection: Projection, least: float) -> list[Screened]:
-    """The best and its rivals, which would explain the same; a decoy of another kind is among them.
+def leaders(
+    screened: Sequence[Screened], projection: Projection, least: float, *, decoy: bool = True
+) -> list[Screened]:
+    """The best and its rivals, which would explain the same; with `decoy` one of another kind is among them.
 
     Effects that explain something else are no rivals: they have their own step.
     """
@@ -63,7 +65,7 @@ def leaders(screened: Sequence[Screened], projection: Projection, least: float) 
     small = (
         best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT
     )  # a trace needs no decoy
-    if not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
+    if decoy and not small and all(s.hypothesis.effect == best.hypothesis.effect for s in out):
         out += [s for s in screened if s.hypothesis.effect != best.hypothesis.effect and not s.failed][:1]
     return out
 
@@ -97,12 +99,19 @@ def joint_refits(
     current: Fit, screened: Sequence[Screened], prior: SetPrior, workers: DiscoveryWorkers
 ) -> list[HypothesisFit]:
     """The joint refits from the screened sizes, best first; those without a solution are left out."""
-    starts = [
-        (current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes])) for s in screened
-    ]
-    fits = workers.fits(starts, "refitting leaders", current.jacobian)
+    fits = workers.fits(refit_starts(current, screened), "refitting leaders")
     trials = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
     return sorted(trials, key=lambda t: -t.gain)
+
+
+def refit_starts(current: Fit, screened: Sequence[Screened], ceiling: float = np.inf) -> list[FitStart]:
+    """Where the joint refits begin: at the screened sizes. ceiling: see `fit`."""
+    return [
+        FitStart(
+            current.model.extended(s.hypothesis), np.concatenate([current.z, s.amplitudes]), current, ceiling
+        )
+        for s in screened
+    ]
 
 
 def set_refits(
@@ -111,9 +120,10 @@ def set_refits(
     """The joint refits of whole sets, each against the set of `current`."""
     fixed = current.z[: current.model.dimension]
     starts = [
-        (replace(current.model, members=p.members), np.concatenate([fixed, p.amplitudes])) for p in proposals
+        FitStart(replace(current.model, members=p.members), np.concatenate([fixed, p.amplitudes]), current)
+        for p in proposals
     ]
-    fits = workers.fits(starts, "refitting sets", current.jacobian)
+    fits = workers.fits(starts, "refitting sets")
     before = prior.log(current.model.members)
     return [
         HypothesisFit(

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.clutter import Clutter
-from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, refit_to_errors
+from doe_kc.discovery.fit import Fit, FitStart, chord_fit, cost_of, fit, known_columns, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
-from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.discovery.screening.screen import Screened, score_test
+from doe_kc.discovery.screening.screen import Screened, score_test, shape_of
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
 from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
@@ -35,6 +34,7 @@ from doe_kc.discovery.thresholds import (
     EFFECTS_MOST,
     FALSE_ALARM,
     LOOP_EVIDENCE,
+    LOOPS_SURE,
     MOST_STEPS,
     NOISE_CHANCE,
     OVERLOOKED_MOST,
@@ -51,13 +51,44 @@ from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
+class HypothesisGain:
+    """A hypothesis that a step looked at."""
+
+    hypothesis: Hypothesis
+    """The effect in its place; of several at once the last one."""
+    gain: float
+    """ln of the posterior odds of the model with it against that without it."""
+    joint: bool
+    """Whether that is of a joint refit, else of its screening."""
+
+
+@dataclass(frozen=True)
 class Step:
-    """One step of the search: a screening, refits of what it proposes, the decision on the first."""
+    """One step of the search: what it looked at and what it decided."""
+
+    members: tuple[Hypothesis, ...]
+    """Effects that were in the model before."""
+    gap: float
+    """Whitened RMS of all records before, in their own errors."""
+    candidates: tuple[HypothesisGain, ...]
+    """Best first; those of a plausible size that pass the threshold before all others."""
+    temper: float
+    """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
+    added: tuple[Hypothesis, ...]
+    """Effects that the step brought in."""
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the first refit passes the threshold, so that its effects are the model from here on."""
+        return bool(self.added)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """A screening, refits of what it proposes, the decision on the first; with all that was solved for it."""
 
     before: Fit
     """The fit that the step began with."""
-    map: Map
-    """Where that fit and the records disagree."""
     screened: tuple[Screened, ...]
     """Every hypothesis that the fit can take, added to it; the largest gain first."""
     trials: tuple[HypothesisFit, ...]
@@ -66,15 +97,21 @@ class Step:
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
     accepted: bool
-    """Whether the first refit passes the threshold, so that its effects are the model from here on."""
+    """Whether the first refit passes the threshold."""
 
-    @property
-    def added(self) -> tuple[Hypothesis, ...]:
-        """Effects that the step brought in."""
-        if not self.accepted:
-            return ()
-        before = {h.name for h in self.before.model.members}
-        return tuple(h for h in self.trials[0].fit.model.members if h.name not in before)
+    def step(self, own: Likelihood) -> Step:
+        """What is told of it. own: the records' own errors."""
+        before = self.before.model.members
+        names = {h.name for h in before}
+        refits = {t.hypothesis.name for t in self.trials}
+        there = [s for s in self.screened if s.hypothesis.name not in refits and not s.failed]
+        candidates = [HypothesisGain(t.hypothesis, t.gain, True) for t in self.trials]
+        candidates += [HypothesisGain(s.hypothesis, s.gain, False) for s in there]
+        after = self.trials[0].fit.model.members if self.accepted else ()
+        added = tuple(h for h in after if h.name not in names)
+        residual = rewhitened(self.before.residual, self.before.model.likelihood, own)
+        gap = float(np.sqrt(np.mean(residual**2)))
+        return Step(before, gap, tuple(candidates), self.temper, added)
 
 
 @dataclass(frozen=True)
@@ -85,6 +122,10 @@ class EffectSearch:
     """The re-tuned axle without any effect, nor traces of them: the baseline of every comparison."""
     steps: tuple[Step, ...]
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
+    first: Decision
+    """The first step whole: all that the verdict on a single effect takes."""
+    screened: tuple[Screened, ...]
+    """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
     with_law_discrepancy: Fit
     """With all accepted effects; the errors of the records hold the discrepancy of the effects' laws."""
     with_effects: Fit
@@ -108,18 +149,22 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
     screened = workers.screenings(tuned, library)
     current = with_clutter(tuned, screened)
     steps: list[Step] = []
+    first: Decision | None = None
     shares: dict[str, float] = {}
     without_own: dict[str, Likelihood] = {}
+    loops_known = False
     while True:
-        step = _step(current, library, prior, workers, screened)
-        steps.append(step)
-        full = step.accepted and len(step.trials[0].fit.model.members) > EFFECTS_MOST
+        decision = _decision(current, library, prior, workers, screened)
+        first = first or decision
+        steps.append(decision.step(model.likelihood))
+        full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
         if full or len(steps) == MOST_STEPS:
             break
-        if step.accepted:
-            current = step.trials[0].fit
-            if any(is_friction(current, h) for h in step.added):
-                current = with_conditioning(current, model.axle, workers)
+        before = current.model.likelihood
+        if decision.accepted:
+            current = decision.trials[0].fit
+            if not loops_known and any(is_friction(current, h) for h in steps[-1].added):
+                current, loops_known = with_conditioning(current, model.axle, workers)
             current = with_open_laws(current, workers)
         else:
             following = with_free_laws(current, workers)
@@ -130,11 +175,12 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
         exact = refit_to_errors(own_loops(current, model.axle), model.likelihood)
         current, shares = fit_discrepancy(exact)
         without_own = without_own_discrepancy(exact, shares)
-        if current.model.likelihood is not step.before.model.likelihood:
+        if current.model.likelihood is not before:
             current = converged_fit(current, workers)
-        screened = _latest(screened, step, current)
+        screened = _latest(screened, decision, current)
+    last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)
-    return EffectSearch(tuned, tuple(steps), current, with_effects, shares, without_own, prior)
+    return EffectSearch(tuned, tuple(steps), first, last, current, with_effects, shares, without_own, prior)
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
@@ -157,8 +203,9 @@ def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
     return chord_fit(begun, model)
 
 
-def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> Fit:
-    """The fit with one loop before the record or with none, as the records with friction ask for.
+def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> tuple[Fit, bool]:
+    """The fit with one loop before the record or with none, as the records with friction ask for, and whether
+    they are sure of it.
 
     A rig runs until loops close; a simulated record may begin right after the first rise. Nothing in the
     files tells. Effects are looked for beside the better of the two. own: the axle as given, whose load cases
@@ -166,12 +213,13 @@ def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> Fit
     """
     model = current.model
     if not model.with_effects(current.z).topology.frictional:
-        return own_loops(current, own)
+        return own_loops(current, own), False
     other = replace(model, axle=model.axle.conditioned(0 if model.axle.conditioning else 1))
-    (refit,) = workers.fits([(other, current.z)], "loops before the record", current.jacobian)
-    if refit is None or refit.evidence < current.evidence + LOOP_EVIDENCE:
-        return current
-    return refit
+    (refit,) = workers.fits([FitStart(other, current.z, current)], "loops before the record")
+    if refit is None:
+        return current, False
+    gain = refit.evidence - current.evidence
+    return (refit if gain >= LOOP_EVIDENCE else current), abs(gain) > LOOPS_SURE
 
 
 def own_loops(current: Fit, own: Axle) -> Fit:
@@ -189,7 +237,7 @@ def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
     What parameters hide almost wholly shows by what is left between two large columns, which derivatives of
     a model nearby do not give.
     """
-    (refit,) = workers.fits([(current.model, current.z)], "settling", current.jacobian)
+    (refit,) = workers.fits([FitStart(current.model, current.z, current)], "settling")
     return refit or current
 
 
@@ -199,7 +247,7 @@ def tune(model: EffectModel) -> Fit:
     sides = side_differences(model.axle_at(first.z), model.space, model.likelihood)
     sided = replace(model, sides=sides)
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
-    return fit(sided, start, tuning=first.jacobian, aged=0.0)
+    return fit(sided, start, known=known_columns(first, sided), aged=0.0)
 
 
 def threshold(count: int) -> float:
@@ -207,41 +255,35 @@ def threshold(count: int) -> float:
     return float(np.log(count / FALSE_ALARM))
 
 
-def accepted_steps(search: EffectSearch) -> list[Step]:
-    """Steps that brought in an effect, the latest first."""
-    return [s for s in reversed(search.steps) if s.accepted]
-
-
-def accepted_at(search: EffectSearch, hypothesis: Hypothesis) -> Step:
-    """The step that brought a member in, the latest one."""
-    return next(s for s in accepted_steps(search) if hypothesis.name in {h.name for h in s.added})
-
-
-def _step(
+def _decision(
     current: Fit,
     library: Sequence[Hypothesis],
     prior: SetPrior,
     workers: DiscoveryWorkers,
     known: Sequence[Screened],
-) -> Step:
-    """known: every hypothesis as it was screened last, in the errors of `current`."""
-    before, least = current.residual_map, threshold(len(library))
+) -> Decision:
+    """known: every hypothesis as it was screened last, in the errors of `current`.
+
+    A decoy of another kind is refitted beside the first effect alone: beside further ones the verdict does so
+    at the last set.
+    """
+    least = threshold(len(library))
     screened = _screened(current, known, workers)
     trials = set_refits(current, _proposed(current, screened, prior), prior, workers)
     if not any(_passes(t, current) for t in trials):
-        near = leaders(screened, current.without_traces, least / 2.0)
+        near = leaders(screened, current.without_traces, least / 2.0, decoy=not current.model.members)
         trials += joint_refits(current, near, prior, workers)
-    if before.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
+    if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:
-        return Step(current, before, tuple(screened), (), 1.0, False)
+        return Decision(current, tuple(screened), (), 1.0, False)
     temper = max(1.0, trials[0].fit.residual_map.mean_square)
     passes = trials[0].gain / temper > ACCEPTED_ODDS
-    return Step(current, before, tuple(screened), tuple(trials), temper, passes)
+    return Decision(current, tuple(screened), tuple(trials), temper, passes)
 
 
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
@@ -255,16 +297,20 @@ def _screened(current: Fit, known: Sequence[Screened], workers: DiscoveryWorkers
     if current.model.members:  # without any, they are screened at the very same axle
         there = [score_test(current, s) for s in there]
         there.sort(key=lambda s: -s.gain)
-        again = [s.hypothesis for s in there[:RESCREENED_MOST] if s.gain > PROMISING]
-        full = {s.hypothesis.name: s for s in workers.screenings(current, again)}
+        again = [s for s in there[:RESCREENED_MOST] if s.gain > PROMISING]
+        shapes = [shape_of(s) for s in again]
+        full = {
+            s.hypothesis.name: s
+            for s in workers.screenings(current, [s.hypothesis for s in again], shapes=shapes)
+        }
         there = [full.get(s.hypothesis.name, s) for s in there]
     return sorted(there, key=lambda s: -s.gain)
 
 
-def _latest(known: Sequence[Screened], step: Step, current: Fit) -> list[Screened]:
+def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list[Screened]:
     """Every hypothesis as it was screened last, in the errors of `current`; known: in those of the step."""
-    newer = {s.hypothesis.name: s for s in step.screened}
-    errors = step.before.model.likelihood, current.model.likelihood
+    newer = {s.hypothesis.name: s for s in decision.screened}
+    errors = decision.before.model.likelihood, current.model.likelihood
     return [newer.get(s.hypothesis.name, s).rewhitened(*errors) for s in known]
 
 

@@ -10,19 +10,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from doe_kc.discovery.fit import Fit, last_member, refit_to_errors
+from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, score_test
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     hypothesis_fit,
-    joint_refits,
     leaders,
     plausible,
+    refit_starts,
 )
-from doe_kc.discovery.search.search import EffectSearch, Step, accepted_at, threshold
+from doe_kc.discovery.search.search import Decision, EffectSearch, threshold
 from doe_kc.discovery.search.set_prior import SetPrior
+from doe_kc.discovery.thresholds import BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
@@ -59,25 +60,42 @@ class Alternatives:
 
 
 def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
-    """The alternatives of every member of the last set, in its order."""
-    members = search.with_law_discrepancy.model.members
-    bases = [_without_own_law(search, h) for h in members]
-    steps = [_same_set(search, base) for base in bases]
-    missing = [base for base, step in zip(bases, steps, strict=True) if step is None]
-    starts = [(b.model.without(b.model.members[-1]), b.z[: _first_size(b)]) for b in missing]
-    refits = iter(workers.fits(starts, "taking effects out", search.with_law_discrepancy.jacobian))
-    out = []
-    for base, step in zip(bases, steps, strict=True):
-        if step is not None:
-            out.append(_from_step(search, base, step, temper, workers))
-            continue
-        without = next(refits)
-        if without is None:  # no equilibrium without it: all that is known is how it came in
-            step = accepted_at(search, base.model.members[-1])
-            out.append(_from_step(search, base, step, temper, workers))
-        else:
-            out.append(_at_final_set(search, base, without, temper, workers))
-    return tuple(out)
+    """The alternatives of every member of the last set, in its order.
+
+    A decoy of another kind is put in the place of the one whose removal costs most, where a reader looks
+    for it.
+    """
+    final = search.with_law_discrepancy
+    bases = [_without_own_law(search, h) for h in final.model.members]
+    if len(bases) == 1 and _is_first(search, bases[0]):
+        return (_from_first_step(search, bases[0], search.first, temper, workers),)
+    removals = workers.fits([_removal(base) for base in bases], "taking effects out")
+    withouts = [w or search.tuned for w in removals]  # no equilibrium without it: nothing in the model at all
+    losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
+    places = [
+        _place(search, base, without, workers, decoy=loss == max(losses))
+        for base, without, loss in zip(bases, withouts, losses, strict=True)
+    ]
+    starts = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
+    refits = iter(workers.fits([start for own in starts for start in own], "refitting rivals"))
+    return tuple(
+        _judged(place, [next(refits) for _ in own], search, temper)
+        for place, own in zip(places, starts, strict=True)
+    )
+
+
+@dataclass(frozen=True)
+class _Place:
+    """The place of one effect in the last set."""
+
+    base: Fit
+    """The set with it as the last member."""
+    without: Fit
+    """The set without it."""
+    screened: tuple[Screened, ...]
+    """Itself, then what may take its place."""
+    near: tuple[Screened, ...]
+    """Its rivals that are worth a refit."""
 
 
 def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
@@ -86,66 +104,78 @@ def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
     return last_member(refit_to_errors(search.with_law_discrepancy, errors), member)
 
 
-def _first_size(base: Fit) -> int:
-    return base.z.size - len(base.model.members[-1].sizes)
+def _removal(base: Fit) -> FitStart:
+    """The last set without the last member, to be fitted as far as anything turns on it."""
+    member = base.model.members[-1]
+    z = base.z[: base.z.size - len(member.sizes)]
+    return FitStart(base.model.without(member), z, base, _ceiling(base))
 
 
-def _same_set(search: EffectSearch, base: Fit) -> Step | None:
-    """The step that brought the last member in, if it began with exactly the set without it."""
-    step = accepted_at(search, base.model.members[-1])
-    before, without = step.before.model, base.model.members[:-1]
-    same = {h.name for h in before.members} == {h.name for h in without}
+def _ceiling(base: Fit) -> float:
+    """Cost above which another set is out of the question."""
+    return base.cost + 2.0 * BEYOND_DOUBT
+
+
+def _is_first(search: EffectSearch, base: Fit) -> bool:
+    """Whether the first step began with exactly the set without the last member, in the same errors."""
+    before = search.first.before.model
     errors = zip(before.likelihood.curves, base.model.likelihood.curves, strict=True)
-    return step if same and all(a is b for a, b in errors) else None
+    return len(base.model.members) == 1 and all(a is b for a, b in errors)
 
 
-def _from_step(
-    search: EffectSearch, base: Fit, step: Step, temper: float, workers: DiscoveryWorkers
+def _from_first_step(
+    search: EffectSearch, base: Fit, first: Decision, temper: float, workers: DiscoveryWorkers
 ) -> Alternatives:
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
-    own = _own(base, step.before, search.prior)
+    own = _own(base, first.before, search.prior)
     kept = [
         t
-        for t in step.trials
-        if plausible(t)
-        and len(t.fit.model.members) == len(base.model.members)
-        and _may_replace(base, t.hypothesis)
+        for t in first.trials
+        if plausible(t) and len(t.fit.model.members) == 1 and _may_replace(base, t.hypothesis)
     ]
     axle = base.model.axle
     stale = [t for t in kept if t.fit.model.axle != axle and _frictional(t.fit)]
-    starts = [(replace(t.fit.model, axle=axle), t.fit.z) for t in stale]
-    fits = workers.fits(starts, "refitting rivals", step.before.jacobian) if starts else []
+    starts = [FitStart(replace(t.fit.model, axle=axle), t.fit.z, t.fit) for t in stale]
+    fits = workers.fits(starts, "refitting rivals")
     again = {
-        t.hypothesis.name: hypothesis_fit(f, step.before, search.prior)
+        t.hypothesis.name: hypothesis_fit(f, first.before, search.prior)
         for t, f in zip(stale, fits, strict=True)
         if f is not None
     }
     rivals = sorted((again.get(t.hypothesis.name, t) for t in kept), key=lambda t: -t.gain)
-    first = next(s for s in step.screened if s.hypothesis.name == own.hypothesis.name)
-    others = [s for s in step.screened if _may_replace(base, s.hypothesis)]
-    return Alternatives(step.before, (first, *others), (own, *rivals), temper)
+    itself = next(s for s in first.screened if s.hypothesis.name == own.hypothesis.name)
+    others = [s for s in first.screened if _may_replace(base, s.hypothesis)]
+    return Alternatives(first.before, (itself, *others), (own, *rivals), temper)
 
 
-def _at_final_set(
-    search: EffectSearch, base: Fit, without: Fit, temper: float, workers: DiscoveryWorkers
-) -> Alternatives:
-    """The alternatives from refits of the last set without the member and with each rival in its place."""
-    own = _own(base, without, search.prior)
+def _place(
+    search: EffectSearch, base: Fit, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
+) -> _Place:
+    """The place of the last member of `base`, and what is worth a refit in it."""
     known = {s.hypothesis.name: s for s in _screened(search, without)}
+    own = _own(base, without, search.prior)
     first = score_test(without, known.pop(own.hypothesis.name))
     first = replace(first, gain=max(first.gain, own.gain))
     there = [score_test(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
-    near = _near([first, *there], threshold(len(known) + 1), without, workers)
-    rivals = [t for t in joint_refits(without, near, search.prior, workers) if plausible(t)]
-    return Alternatives(without, (first, *there), (own, *rivals), temper)
+    near = _near([first, *there], threshold(len(known) + 1), without, workers, decoy=decoy)
+    return _Place(base, without, (first, *there), tuple(near))
+
+
+def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float) -> Alternatives:
+    """The alternatives from refits of the last set without the member and with each rival in its place."""
+    trials = [hypothesis_fit(f, place.without, search.prior) for f in refits if f is not None]
+    rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
+    own = _own(place.base, place.without, search.prior)
+    return Alternatives(place.without, place.screened, (own, *rivals), temper)
 
 
 def _near(
-    screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers
+    screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
 ) -> list[Screened]:
     """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
-    chosen = [s.hypothesis for s in leaders(screened, without.without_traces, least / 2.0)[1:]]
+    near = leaders(screened, without.without_traces, least / 2.0, decoy=decoy)
+    chosen = [s.hypothesis for s in near[1:]]
     return [s for s in workers.screenings(without, chosen) if not s.failed]
 
 
@@ -171,7 +201,5 @@ def _frictional(fit: Fit) -> bool:
 
 def _screened(search: EffectSearch, without: Fit) -> list[Screened]:
     """Every hypothesis as it was screened last, in the errors of `without`."""
-    latest = {s.hypothesis.name: (s, step) for step in search.steps for s in step.screened}
-    return [
-        s.rewhitened(step.before.model.likelihood, without.model.likelihood) for s, step in latest.values()
-    ]
+    errors = search.with_law_discrepancy.model.likelihood, without.model.likelihood
+    return [s.rewhitened(*errors) for s in search.screened]

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
-from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, known_columns
 from doe_kc.discovery.thresholds import CHORD_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
 from doe_kc.ground.typing import FloatArray
 
@@ -62,13 +62,17 @@ def held_out(tuned: Fit, with_effects: Fit, with_discrepancy: Fit, case: str) ->
 
 
 def fit_without(start: Fit, case: str) -> Fit:
-    """The model fitted to the other load cases, from where it is; on new derivatives where it goes far."""
+    """The model fitted to the other load cases, from where it is; on new derivatives where it goes far.
+
+    What is far is counted in what remains of the records: a model that is off by five standard deviations
+    is not told apart by one.
+    """
     model = replace(start.model, left_out=case)
     near = chord_fit(start, model)
     gained = cost_of(model, start.z, start.residual) - near.cost
-    if near.converged and gained <= CHORD_DECREASE:
+    if near.converged and gained <= CHORD_DECREASE * max(1.0, start.rms**2):
         return near
-    return fit(model, near.z, steps=REFIT_STEPS, tuning=near.jacobian[:, : model.dimension], aged=gained)
+    return fit(model, near.z, steps=REFIT_STEPS, known=known_columns(near, model), aged=gained)
 
 
 def held_out_score(fit: Fit) -> HeldOutScore:

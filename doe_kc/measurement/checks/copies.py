@@ -38,7 +38,7 @@ def _channels(case: str, record: RigRecord) -> Iterator[RecordFinding]:
         if f"{r}_{'LR'[s]}" not in record.mirrored
     }
     for (name, one), (other_name, other) in combinations(names.items(), 2):
-        if np.ptp(one) > 0.0 and np.array_equal(one, other):
+        if np.array_equal(one, other) and np.ptp(one) > 0.0:
             yield RecordFinding(
                 kind="copy",
                 severity="error",

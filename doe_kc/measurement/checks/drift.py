@@ -36,8 +36,8 @@ def drift(test: RigTest) -> Iterator[RecordFinding]:
 
 def _openings(record: RigRecord) -> tuple[FloatArray, FloatArray]:
     """(k,) end minus beginning at the same input of each channel, and what noise and the coarseness of
-    samples
-    allow of it; nan where the record is no closed loop."""
+    samples allow
+    of it; nan where the record is no closed loop."""
     values = np.concatenate(list(record.channels.values()))
     n, u = END_SAMPLES, record.input
     span = float(np.ptp(u))
@@ -48,7 +48,7 @@ def _openings(record: RigRecord) -> tuple[FloatArray, FloatArray]:
     ends = np.concatenate([values[:, :n], values[:, -n:]], axis=1)
     basis = np.stack([np.ones(2 * n), inputs - inputs.mean(), np.repeat([0.0, 1.0], n)], axis=1)
     _, slope, opening = np.linalg.pinv(basis) @ ends.T
-    white = np.array([white_sd(channel[None, :]) for channel in values])
+    white = np.concatenate(list(record.white.values()))
     sd = np.hypot(white, np.abs(slope) * white_sd(u[None, :])) * (2.0 / n) ** 0.5
     # A sample's neighbours lie a step of the input apart: the line is that coarse.
     limit = NOISE_TIMES * sd + RANGE_SHARE * np.ptp(values, axis=1) + np.abs(slope) * step
@@ -64,6 +64,5 @@ def _finding(case: str, record: RigRecord, channel: str, opening: float) -> Reco
         where=record.label,
         evidence=f"{channel} ends {opening:+.3g} from where it began at the same input",
         cure="let the rig run warm and settle, then record the loop again; the mean curve is moved by "
-        "half of "
-        "it at most",
+        "half of it at most",
     )

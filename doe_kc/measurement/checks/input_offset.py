@@ -18,6 +18,8 @@ EXPLAINED = 0.85
 OFFSET_SDS = 8.0
 """Standard deviations."""
 SERIOUS_OFFSET = 0.1
+"""Share of the sweep's amplitude from which it is an error: the fit window is a quarter to a half of it,
+and would lie off static by a fifth to two fifths of itself."""
 
 
 @rig_check

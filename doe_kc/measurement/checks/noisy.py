@@ -8,7 +8,6 @@ import numpy as np
 
 from doe_kc.curves import RIG_RESPONSES
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
-from doe_kc.measurement.noise import white_sd
 
 TIMES = 5.0
 """Of the usual noise of the response over all records and both wheels."""
@@ -21,7 +20,7 @@ def noise(test: RigTest) -> Iterator[RecordFinding]:
     """Of each response over all records."""
     for response in RIG_RESPONSES:
         levels = [
-            (case, run.record, side, white_sd(run.record.channels[response][side][None, :]))
+            (case, run.record, side, float(run.record.white[response][side]))
             for case, runs in test.runs.items()
             for run in runs
             if response in run.record.channels

@@ -23,8 +23,7 @@ def branches(test: RigTest) -> Iterator[RecordFinding]:
                 channel="*",
                 where=record.label,
                 evidence="holds one branch of the loop: the loop is unknown, so that friction, play and "
-                "rubber "
-                "hysteresis cannot be tested, and the curve is off by half of it",
+                "rubber hysteresis cannot be tested, and the curve is off by half of it",
                 cure="record the whole loop where these matter",
             )
         elif min(runs[0].loop.unload.size, runs[0].loop.load.size) < FEW_SAMPLES:

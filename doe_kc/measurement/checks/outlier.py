@@ -11,6 +11,7 @@ from doe_kc.measurement.records import RigRecord
 MOST = 0.02
 """Share of a channel's samples beyond which its outliers are no single ones."""
 LISTED_OUTLIERS = 4
+"""That a sentence names; it tells how many more there are."""
 
 
 @rig_check

@@ -21,6 +21,7 @@ SNIFFED_LINES = 400
 """Lines that are looked at to tell the separator: more than any head of settings has."""
 _CONTROL_CHARACTER = re.compile("[\x00-\x08\x0e-\x1f]")
 _PLAIN_SHARE = 0.5
+"""Share of the first line of samples that must be numbers: most channels are, remarks are not."""
 Line = tuple[int, str]
 """Number in the file, counted from 1, and text of a line that is not empty."""
 
@@ -42,7 +43,7 @@ def read_text_table(path: Path, part: str | None, load_case: str) -> RecordTable
         )
     split = SEPARATORS[separator]
     headings = _cells(filled[layout.headings][1], split)
-    body = [(number, _cells(line, split)) for number, line in filled[layout.first :]]
+    body = _body(filled[layout.first :], split)
     _refuse_ragged(path, headings, body)
     return RecordTable(
         label=str(path),
@@ -85,9 +86,15 @@ def _text(path: Path, data: bytes) -> str:
     return data.decode("cp1252", errors="replace")
 
 
+def _body(lines: Sequence[Line], split: Callable[[str], list[str]]) -> list[tuple[int, list[str]]]:
+    """Cells of each line, and its number."""
+    text = "\n".join(line for _, line in lines)
+    if '"' not in text and len(text.split()) == len(lines):  # nothing to strip
+        return [(number, split(line)) for number, line in lines]
+    return [(number, _cells(line, split)) for number, line in lines]
+
+
 def _cells(line: str, split: Callable[[str], list[str]]) -> list[str]:
-    if '"' not in line and len(line.split()) == 1:  # nothing to strip
-        return split(line)
     return [cell.strip().strip('"').strip() for cell in split(line)]
 
 

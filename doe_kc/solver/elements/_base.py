@@ -1,9 +1,6 @@
-"""The contract of an element, and helpers that several elements share."""
+"""Mirror images, hardpoints and units that several elements share."""
 
 from __future__ import annotations
-
-from abc import ABC, abstractmethod
-from typing import ClassVar, Literal
 
 import casadi as ca
 
@@ -11,32 +8,6 @@ from doe_kc.axle.structure import of_side
 from doe_kc.solver.builder import Builder
 
 DEG = 180 / ca.pi
-
-Stage = Literal["body", "force", "output"]
-STAGES: tuple[Stage, ...] = ("body", "force", "output")
-
-
-class Element(ABC):
-    """Stateless: `assemble` adds bodies, forces or outputs of one kind to the builder."""
-
-    id: ClassVar[str]
-    stage: ClassVar[Stage]
-    rank: ClassVar[int] = 50
-    """Order inside the stage: a body is assembled after the bodies it hangs on."""
-
-    @abstractmethod
-    def assemble(self, b: Builder) -> None:
-        """Add this element to `b`."""
-
-
-ELEMENTS: list[Element] = []
-
-
-def element(cls: type[Element]) -> type[Element]:
-    """Class decorator: register an element, kept in the order of assembly."""
-    ELEMENTS.append(cls())
-    ELEMENTS.sort(key=lambda e: (STAGES.index(e.stage), e.rank, e.id))
-    return cls
 
 
 def mirror(side: str) -> int:

@@ -1,4 +1,4 @@
-"""Anti-roll bar: vertical forces F = k (dz_L - dz_R) at the drop links on the tubes.
+"""Anti-roll bar: vertical forces F = k (dz_L - dz_R) at the drop links.
 
 dz is the travel from design: the links are assembled to the length at which the bar is free of force there,
 whatever the design heights of the two sides.
@@ -11,25 +11,13 @@ either end is in series with it, 1 / k = 1 / k_bar + 2 c.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import ClassVar
 
 import casadi as ca
 
 from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Body, Builder, Response
-from doe_kc.solver.elements._base import Element, Stage, element, hardpoint
+from doe_kc.solver.elements._base import hardpoint
 from doe_kc.solver.elements._cuts import stretch
-
-
-@element
-class AntiRollBar(Element):
-    """Couples the two sides."""
-
-    id: ClassVar[str] = "anti_roll_bar"
-    stage: ClassVar[Stage] = "force"
-
-    def assemble(self, b: Builder) -> None:
-        add_anti_roll_bar(b, [b.bodies[f"tube.{side}"] for side in SIDES], "ARB")
 
 
 def add_anti_roll_bar(b: Builder, bodies: Sequence[Body], at: str) -> None:

@@ -1,33 +1,31 @@
-"""Lower ball joint: the ball at LWB sits rigidly in the lower arm, or on a spring equal in all directions."""
+"""Ball joint: a body on a ball that sits in another, rigidly or on a spring (see `_sprung`)."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+import casadi as ca
 
-from doe_kc.curves import SIDES
-from doe_kc.solver.builder import Body, Builder
-from doe_kc.solver.elements._base import Element, Stage, element, hardpoint
-from doe_kc.solver.elements._cuts import SHIFTS, cut
-from doe_kc.solver.elements._sprung import sprung_ball
-
-
-@element
-class BallJoint(Element):
-    """Body `ball joint.L`/`.R`: carries the knuckle's ball; its force is k times its displacement."""
-
-    id: ClassVar[str] = "ball_joint"
-    stage: ClassVar[Stage] = "body"
-    rank: ClassVar[int] = 25
-
-    def assemble(self, b: Builder) -> None:
-        for side in SIDES:
-            arm = b.bodies[f"arm.{side}"]
-            arm = cut(b, "ball joint|arm", side, arm, [("LWB", side)], dofs=SHIFTS)
-            b.bodies[f"ball joint.{side}"] = _sprung_ball(b, arm, side) if b.topology.ball_joint else arm
+from doe_kc.solver import rotation
+from doe_kc.solver.builder import Body, Builder, body
+from doe_kc.solver.elements._cuts import ROTATION_AXES, side_axes, turn_pair
+from doe_kc.solver.freedoms import rotations
 
 
-def _sprung_ball(b: Builder, arm: Body, side: str) -> Body:
-    """Massless body at LWB, displaced in the arm's axes."""
-    rate = b.constant(b.parameter(f"ball_joint.rate@{side}"))
-    ball = hardpoint(b, "LWB", side)
-    return sprung_ball(b, f"ball joint {side}", arm, ball, lambda deflection: rate * deflection)
+def ball_body(b: Builder, name: str, carrier: Body, ball: ca.SX) -> Body:
+    """Body that turns about the ball at the design point `ball` of its carrier, free of moments."""
+    turned, turns = rotations(name)
+    child = body(name, ball, carrier.point(ball), turned)
+    return b.join(name, child, carrier, turns, carries_moment=False)
+
+
+def turning_ball(b: Builder, interface: str, carrier: Body, child: Body, side: str) -> None:
+    """Probes against a ball joint's rotations, in the carrier's axes."""
+    if not b.topology.probes:
+        return
+    gibbs = rotation.relative(carrier.gibbs, child.gibbs)
+    kappa, slope = rotation.angle_ratio(ca.dot(gibbs, gibbs))
+    axes = side_axes(b, side)
+    phi = axes.T @ (kappa * gibbs)
+    pairs = [turn_pair(b, interface, dof, side, phi[i]) for i, dof in enumerate(ROTATION_AXES)]
+    moment = carrier.axes @ rotation.spring_moment(gibbs, axes @ ca.vertcat(*pairs), kappa, slope)
+    b.turn(carrier, moment)
+    b.turn(child, -moment)

@@ -1,4 +1,4 @@
-"""Dry friction with state: steering rack in its housing, strut rod in its tube.
+"""Dry friction with state: steering rack in its housing, damper rod in its tube.
 
 Dahl: dF/dx = (Fc / x_pre)(1 - F/Fc sgn dx), exact over a monotone step,
 F -> s Fc - (s Fc - F) exp(-|dx| / x_pre). Duhem's class: the same with (1 - F/Fc sgn dx)^i, which is Dahl's
@@ -12,16 +12,12 @@ backbone of decreasing slope is near one of them.
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import casadi as ca
 import numpy as np
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.axle.topology import FrictionLaw
-from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder
-from doe_kc.solver.elements._base import Element, Stage, element
 from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
 IWAN_ELEMENTS = 8
@@ -99,23 +95,3 @@ def _sliders(b: Builder, law: FrictionLaw, prefix: str, suffix: str) -> tuple[ca
     count = len(BACKBONE_YIELDS)
     weights = ca.vertcat(*[b.parameter(f"{prefix}.share{i}{suffix}") for i in range(count)])
     return ca.SX(BACKBONE_YIELDS), weights / ca.sum1(weights)
-
-
-@element
-class Friction(Element):
-    """`friction.steering`, `friction.strut.L`/`.R`: force in N against the sliding coordinate."""
-
-    id: ClassVar[str] = "friction"
-    stage: ClassVar[Stage] = "force"
-
-    def assemble(self, b: Builder) -> None:
-        steering, strut = b.topology.steering_friction, b.topology.strut_friction
-        if steering != "none":
-            b.points["friction.steering"] = add_friction(
-                b, "rack", steering, b.points["rack"], "steering_friction", ""
-            )
-        if strut != "none":
-            for side in SIDES:
-                b.points[f"friction.strut.{side}"] = add_friction(
-                    b, f"strut slide {side}", strut, b.points[f"slide.{side}"], "strut_friction", side
-                )

@@ -1,4 +1,4 @@
-"""Rack on the sub-frame, driven through the steering column's spring, perhaps in a sprung housing.
+"""Rack on its carrier, driven through the steering column's spring, perhaps in a sprung housing.
 
 Power assist pushes the rack the way the column does, and the more the column is wound up: with the column's
 own force S = k w the rack receives S (1 + g s^2 / (1 + s^2)), s = S / S_0. So S_0 is the force at which
@@ -7,31 +7,18 @@ half of the largest assistance g is there.
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import casadi as ca
 
 from doe_kc.solver.builder import Body, Builder
-from doe_kc.solver.elements._base import Element, Stage, element
 from doe_kc.solver.elements._cuts import cut, push_pair, stretch
 from doe_kc.solver.freedoms import slide
 
 
-@element
-class Steering(Element):
-    """Body `rack`; `rack`: its travel relative to its housing, mm; `column force`: on the rack, N."""
+def add_rack(b: Builder, carrier: Body, at: str, carrier_noun: str) -> Body:
+    """The rack on its carrier, which probes call `carrier_noun`; at: hardpoint of either side at its ends.
 
-    id: ClassVar[str] = "steering"
-    stage: ClassVar[Stage] = "body"
-    rank: ClassVar[int] = 60
-
-    def assemble(self, b: Builder) -> None:
-        b.bodies["rack"] = add_rack(b, b.bodies["subframe.centre"], "RIB")
-
-
-def add_rack(b: Builder, carrier: Body, at: str) -> Body:
-    """The rack on its carrier; at: hardpoint of either side at its ends. Points `rack`, `column force`."""
-    carrier = cut(b, "rack housing|sub-frame", "", carrier, [(at, "L"), (at, "R")])
+    Points `rack`: travel relative to the housing, mm; `column force`: on the rack, N."""
+    carrier = cut(b, f"rack housing|{carrier_noun}", "", carrier, [(at, "L"), (at, "R")])
     if b.topology.rack_mount:
         carrier, housing = _slider(b, "rack housing", carrier)
         b.resist("rack housing", _mount(b, housing))

@@ -1,4 +1,4 @@
-"""Tie rod between RIB on the rack and ROB on the knuckle: of axial compliance c, by default rigid, and
+"""Rod between points of two bodies, such as a tie rod: of axial compliance c, by default rigid, and
 perhaps with free play in its ball joint.
 
 Free play: F = k0 dl + k1 (s(dl - gap/2) - s(-dl - gap/2)), s(x) = (x + sqrt(x^2 + e^2)) / 2, with
@@ -7,14 +7,11 @@ k0 = 20 N/mm, k1 = 20000 N/mm and e = 2e-3 mm by default; e k1 = 40 N, so that a
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import casadi as ca
 
 from doe_kc.axle.structure import of_side
-from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Body, Builder, Response
-from doe_kc.solver.elements._base import Element, Stage, element, hardpoint
+from doe_kc.solver.elements._base import hardpoint
 from doe_kc.solver.elements._cuts import stretch
 
 CENTRING_STIFFNESS = 20.0
@@ -38,20 +35,6 @@ def free_play_force(dl: ca.SX, gap: ca.SX, contact: ca.SX, compliance: ca.SX) ->
         return (x + ca.sqrt(x**2 + smoothing**2)) / 2
 
     return inside * dl + outside * (ramp(dl - half) - ramp(-dl - half))
-
-
-@element
-class TieRod(Element):
-    """`tie rod.L`/`.R`: tension in N; `tie rod pull.L`/`.R`: force on the rack."""
-
-    id: ClassVar[str] = "tie_rod"
-    stage: ClassVar[Stage] = "force"
-
-    def assemble(self, b: Builder) -> None:
-        for side in SIDES:
-            plays = b.topology.free_play_left if side == "L" else b.topology.free_play_right
-            rack, arm = (b.bodies["rack"], "RIB"), (b.bodies[f"steer arm.{side}"], "ROB")
-            add_rod(b, "tie_rod", side, rack, arm, plays=plays)
 
 
 def add_rod(

@@ -8,46 +8,37 @@ force.
 
 from __future__ import annotations
 
-from typing import ClassVar
-
 import casadi as ca
 
 from doe_kc.curves import SIDES
 from doe_kc.solver.builder import LENGTH_SCALE, Builder
-from doe_kc.solver.elements._base import Element, Stage, element, mirror
+from doe_kc.solver.elements._base import mirror
 from doe_kc.solver.elements._cuts import stretch
 
 
-@element
-class Tyre(Element):
+def add_tyres(b: Builder) -> None:
     """`contact.L`/`.R`: P in mm; `tyre.L`/`.R`: load N in N; `pad.L`/`.R`; pad height equations."""
-
-    id: ClassVar[str] = "tyre"
-    stage: ClassVar[Stage] = "force"
-    rank: ClassVar[int] = 60
-
-    def assemble(self, b: Builder) -> None:
-        roll = b.control("roll")
-        normal = ca.vertcat(0, -ca.sin(roll), ca.cos(roll))
-        b.points["pad normal"] = normal
-        static_load = b.constant(b.parameter("tyre.static_load"))
-        for side in SIDES:
-            pad = b.tail_unknown(f"pad {side}", f"pad {side}", LENGTH_SCALE)
-            rate = b.constant(b.parameter(f"tyre.rate@{side}"))
-            centre, spin = b.points[f"wheel centre.{side}"], b.points[f"spin.{side}"]
-            sine = ca.dot(normal, spin)
-            cosine = ca.sqrt(1 - sine**2)
-            distance = (ca.dot(normal, centre) - pad) / cosine
-            radius, held = _unloaded_radius(b, side), b.control("bilateral")
-            squash = radius - distance
-            squash = held * squash + (1 - held) * ca.fmax(squash, 0)
-            reach = held * distance + (1 - held) * ca.fmin(distance, radius)
-            load, contact = rate * squash / cosine, centre - reach * (normal - sine * spin) / cosine
-            b.points[f"tyre.{side}"], b.points[f"pad.{side}"] = load, pad
-            b.points[f"contact.{side}"] = contact + _horizontal_deflection(b, side) + _patch_probes(b, side)
-            _loads(b, side, load * normal)
-            b.close_tail(f"pad {side}", _pad_equation(b, side, pad, static_load, rate))
-        _close_preload(b)
+    roll = b.control("roll")
+    normal = ca.vertcat(0, -ca.sin(roll), ca.cos(roll))
+    b.points["pad normal"] = normal
+    static_load = b.constant(b.parameter("tyre.static_load"))
+    for side in SIDES:
+        pad = b.tail_unknown(f"pad {side}", f"pad {side}", LENGTH_SCALE)
+        rate = b.constant(b.parameter(f"tyre.rate@{side}"))
+        centre, spin = b.points[f"wheel centre.{side}"], b.points[f"spin.{side}"]
+        sine = ca.dot(normal, spin)
+        cosine = ca.sqrt(1 - sine**2)
+        distance = (ca.dot(normal, centre) - pad) / cosine
+        radius, held = _unloaded_radius(b, side), b.control("bilateral")
+        squash = radius - distance
+        squash = held * squash + (1 - held) * ca.fmax(squash, 0)
+        reach = held * distance + (1 - held) * ca.fmin(distance, radius)
+        load, contact = rate * squash / cosine, centre - reach * (normal - sine * spin) / cosine
+        b.points[f"tyre.{side}"], b.points[f"pad.{side}"] = load, pad
+        b.points[f"contact.{side}"] = contact + _horizontal_deflection(b, side) + _patch_probes(b, side)
+        _loads(b, side, load * normal)
+        b.close_tail(f"pad {side}", _pad_equation(b, side, pad, static_load, rate))
+    _close_preload(b)
 
 
 def _unloaded_radius(b: Builder, side: str) -> ca.SX:

@@ -1,39 +1,30 @@
-"""Wheel on the knuckle: rigid, or sprung at the wheel centre (hub and bearing compliance)."""
+"""Wheel on its carrier: rigid, or sprung at the wheel centre (hub and bearing compliance)."""
 
 from __future__ import annotations
-
-from typing import ClassVar
 
 import casadi as ca
 
 from doe_kc.axle.model import NM_PER_DEG
-from doe_kc.curves import SIDES
 from doe_kc.solver import rotation
 from doe_kc.solver.builder import Body, Builder, body
-from doe_kc.solver.elements._base import Element, Stage, element, hardpoint, mirror
+from doe_kc.solver.elements._base import hardpoint, mirror
 from doe_kc.solver.elements._cuts import cut
 from doe_kc.solver.freedoms import rotations
 
 SPIN_STIFFNESS = 1e11
-"""N mm/rad about the knuckle's Y: the reference's brake lock, stiff but not ideal."""
+"""N mm/rad about the carrier's Y: the reference's brake lock, stiff but not ideal."""
 
 
-@element
-class Wheel(Element):
-    """Body `wheel.L`/`.R` and outward spin axis `spin.L`/`.R` (chassis frame)."""
+def add_wheel(b: Builder, carrier: Body, side: str, carrier_noun: str) -> None:
+    """Body `wheel.SIDE`, points `wheel centre.SIDE` and `spin.SIDE`, the outward spin axis (chassis frame).
 
-    id: ClassVar[str] = "wheel"
-    stage: ClassVar[Stage] = "body"
-    rank: ClassVar[int] = 50
-
-    def assemble(self, b: Builder) -> None:
-        for side in SIDES:
-            knuckle = b.bodies[f"carrier.{side}"]
-            knuckle = cut(b, "wheel|knuckle", side, knuckle, [("WLC", side)])
-            wheel = _sprung_wheel(b, knuckle, side) if b.topology.hub else knuckle
-            b.bodies[f"wheel.{side}"] = wheel
-            b.points[f"wheel centre.{side}"] = wheel.point(hardpoint(b, "WLC", side))
-            b.points[f"spin.{side}"] = wheel.axes @ _design_spin_axis(b, side)
+    carrier_noun: what probes call the carrier.
+    """
+    carrier = cut(b, f"wheel|{carrier_noun}", side, carrier, [("WLC", side)])
+    wheel = _sprung_wheel(b, carrier, side) if b.topology.hub else carrier
+    b.bodies[f"wheel.{side}"] = wheel
+    b.points[f"wheel centre.{side}"] = wheel.point(hardpoint(b, "WLC", side))
+    b.points[f"spin.{side}"] = wheel.axes @ _design_spin_axis(b, side)
 
 
 def _design_spin_axis(b: Builder, side: str) -> ca.SX:
@@ -48,11 +39,11 @@ def _design_spin_axis(b: Builder, side: str) -> ca.SX:
     )
 
 
-def _sprung_wheel(b: Builder, knuckle: Body, side: str) -> Body:
+def _sprung_wheel(b: Builder, carrier: Body, side: str) -> Body:
     centre = hardpoint(b, "WLC", side)
     name = f"wheel {side}"
-    turn, turns = rotations(name, knuckle.axes)
-    wheel = body(name, centre, knuckle.point(centre), rotation.compose(knuckle.gibbs, turn))
+    turn, turns = rotations(name, carrier.axes)
+    wheel = body(name, centre, carrier.point(centre), rotation.compose(carrier.gibbs, turn))
     camber = b.constant(b.parameter(f"hub.camber@{side}") * NM_PER_DEG)
     toe = b.constant(b.parameter(f"hub.toe@{side}") * NM_PER_DEG)
     kappa, slope = rotation.angle_ratio(ca.dot(turn, turn))
@@ -60,4 +51,4 @@ def _sprung_wheel(b: Builder, knuckle: Body, side: str) -> Body:
     moment = rotation.spring_moment(turn, torque, kappa, slope)
     for i, freedom in enumerate(turns):
         b.resist(freedom.name, moment[i])
-    return b.join(f"hub {side}", wheel, knuckle, turns)
+    return b.join(f"hub {side}", wheel, carrier, turns)

@@ -2,72 +2,83 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import casadi as ca
 
-from doe_kc.axle.structure import CHASSIS, BallConnection, LineConnection, Structure, of_side
-from doe_kc.solver import rotation
-from doe_kc.solver.builder import Body, Builder
+from doe_kc.axle.structure import (
+    CHASSIS,
+    BallConnection,
+    BushingConnection,
+    LineConnection,
+    Structure,
+    of_side,
+)
+from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements import bushing
 from doe_kc.solver.elements._base import hardpoint, reflection
+from doe_kc.solver.elements.ball_joint import turning_ball
 from doe_kc.solver.elements.tie_rod import CENTRING_STIFFNESS, SMOOTHING, add_rod
-from doe_kc.solver.structure.bodies import side_word
-from doe_kc.solver.structure.tree import SideJoint, instance
+from doe_kc.solver.structure.bodies import ball_cut, line_cut
+from doe_kc.solver.structure.line import line_axes
+from doe_kc.solver.structure.tree import SideJoint
+from doe_kc.solver.structure.words import in_words, joint_words
 
-AXES = [f"{row}{column}" for row in "xyz" for column in "123"]
-"""Places of a bushing's axes among the axle's values: chassis component, then local axis."""
+BallForce = Callable[[Builder, BallConnection, str, ca.SX], ca.SX]
+"""Force (3,) in N that draws the points of a ball joint together, of their distance (3,) in mm."""
 
 
-def add_bushings(b: Builder, structure: Structure, split: str) -> None:
+def add_bushings(b: Builder, structure: Structure) -> None:
     """Every bushing on both sides."""
     for bush in structure.bushings:
         for side in structure.sides(single=bush.single):
-            inner = instance(structure, bush.inner, side, split)
+            inner = structure.part_on_side(bush.inner, side)
             bushing.connect(
                 b,
                 bush.name,
                 side,
                 at=hardpoint(b, bush.at, side),
-                axes=_axes(b, bush.name, bush.line, side),
+                axes=_axes(b, bush, side),
                 inner=None if inner == CHASSIS else b.bodies[inner],
-                outer=b.bodies[instance(structure, bush.outer, side, split)],
+                outer=b.bodies[structure.part_on_side(bush.outer, side)],
             )
 
 
-def _axes(b: Builder, name: str, line: tuple[str, str] | None, side: str) -> ca.SX:
-    """(3, 3) local axes as columns: numbers of the axle, or z along a line, the rest by the shortest turn."""
-    mirrored = reflection(side)
-    if line is None:
-        rows = [b.parameter(f"{name}.axes.{place}") for place in AXES]
-        return b.constant(mirrored @ ca.reshape(ca.vertcat(*rows), 3, 3).T)
-    along = mirrored @ (hardpoint(b, line[1], side) - hardpoint(b, line[0], side))
-    return b.constant(mirrored @ rotation.minimal_rotation_from_z(along / ca.norm_2(along)))
+def _axes(b: Builder, bush: BushingConnection, side: str) -> ca.SX:
+    """(3, 3) local axes as columns: those of the type, or z along a line, mirrored on the right."""
+    if bush.line is not None:
+        return b.constant(line_axes(b, *bush.line, side))
+    return reflection(side) @ ca.SX(ca.DM(bush.axes))
 
 
-def add_rods(b: Builder, structure: Structure, split: str) -> None:
+def add_rods(b: Builder, structure: Structure) -> None:
     """Every rod on both sides; free play is in those that the rack steers by."""
     steered = structure.rack.rods if structure.rack is not None else ()
     for rod in structure.rods:
         for side in structure.sides(single=rod.single):
-            first, second = (b.bodies[instance(structure, body, side, split)] for body in (rod.a, rod.b))
+            first, second = (b.bodies[structure.part_on_side(body, side)] for body in (rod.a, rod.b))
             plays = b.topology.free_play_right if side == "R" else b.topology.free_play_left
             ends = (first, rod.at_a), (second, rod.at_b)
             add_rod(b, rod.name, side, *ends, plays=plays and rod.name in steered)
 
 
-def add_yielding_balls(b: Builder, structure: Structure, split: str) -> None:
-    """Ball joints that are springs, or have free play."""
+def add_playing_balls(b: Builder, structure: Structure) -> None:
+    """Ball joints with free play."""
     for ball in structure.balls:
         for side in structure.sides(single=ball.single):
-            name = of_side(ball.name, side)
-            if name not in (*b.topology.elastic_balls, *b.topology.play_balls):
-                continue
-            first, second = (b.bodies[instance(structure, body, side, split)] for body in (ball.a, ball.b))
-            at = hardpoint(b, ball.at, side)
-            apart = second.point(at) - first.point(at)
-            law = _spring if name in b.topology.elastic_balls else _play
-            force = law(b, ball, side, apart)
-            b.push(first, force, second.point(at))
-            b.push(second, -force, second.point(at))
+            if of_side(ball.name, side) in b.topology.play_balls:
+                _between(b, ball, side, _play)
+
+
+def _between(b: Builder, ball: BallConnection, side: str, law: BallForce) -> None:
+    """The force of a law between the points of both bodies that a ball joint joins."""
+    structure, at = b.topology.structure, hardpoint(b, ball.at, side)
+    first = ball_cut(b, ball, side, structure.part_on_side(ball.a, side))
+    second = b.bodies[structure.part_on_side(ball.b, side)]
+    force = law(b, ball, side, second.point(at) - first.point(at))
+    b.push(first, force, second.point(at))
+    b.push(second, -force, second.point(at))
+    turning_ball(b, in_words(ball.name), first, second, side)
 
 
 def _spring(b: Builder, ball: BallConnection, side: str, apart: ca.SX) -> ca.SX:
@@ -97,34 +108,29 @@ TINY = 1e-9
 
 
 def close_loops(b: Builder, loops: tuple[SideJoint, ...]) -> None:
-    """Constraint forces of the joints that no body hangs by."""
+    """Forces of the joints that no body hangs by."""
     for joint in loops:
-        first, second = b.bodies[joint.a], b.bodies[joint.b]
         if isinstance(joint.connection, BallConnection):
-            _close_ball(b, joint, first, second, hardpoint(b, joint.connection.at, joint.side))
+            law = _spring if joint.type == "sprung ball" else _rigid
+            _between(b, joint.connection, joint.side, law)
         elif isinstance(joint.connection, LineConnection):
-            _close_cylinder(b, joint, joint.connection, first, second)
+            _close_cylinder(b, joint, joint.connection)
 
 
-def _close_ball(b: Builder, joint: SideJoint, first: Body, second: Body, at: ca.SX) -> None:
+def _rigid(b: Builder, ball: BallConnection, side: str, apart: ca.SX) -> ca.SX:
     """The points of both bodies coincide: three forces."""
-    apart = second.point(at) - first.point(at)
-    label = side_word(joint.name, joint.side)
-    force = ca.vertcat(
+    label = joint_words(ball.name, side)
+    return ca.vertcat(
         *(b.rigid(f"{label}.{axis}", f"{label} (ball joint)", apart[i]) for i, axis in enumerate("xyz"))
     )
-    b.push(second, -force, second.point(at))
-    b.push(first, force, second.point(at))
 
 
-def _close_cylinder(b: Builder, joint: SideJoint, line: LineConnection, first: Body, second: Body) -> None:
+def _close_cylinder(b: Builder, joint: SideJoint, line: LineConnection) -> None:
     """Both ends of the second body's line lie on the first body's: two transverse forces at either."""
+    first, second = line_cut(b, line, joint.side, joint.a), b.bodies[joint.b]
     start, end = hardpoint(b, line.at_a, joint.side), hardpoint(b, line.at_b, joint.side)
-    mirrored = reflection(joint.side)
-    along = mirrored @ (end - start)
-    turn = rotation.minimal_rotation_from_z(along / ca.norm_2(along))
-    axes = first.axes @ b.constant(mirrored @ turn[:, :2])
-    label = side_word(joint.name, joint.side)
+    axes = first.axes @ b.constant(line_axes(b, line.at_a, line.at_b, joint.side)[:, :2])
+    label = joint_words(joint.name, joint.side)
     for name, at in ((line.at_a, start), (line.at_b, end)):
         apart = second.point(at) - first.point(start)
         for i, axis in enumerate("xy"):

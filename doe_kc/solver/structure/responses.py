@@ -12,16 +12,16 @@ from doe_kc.axle.structure import Structure
 from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements._base import DEG, hardpoint, mirror
-from doe_kc.solver.elements.responses import line_angles
-from doe_kc.solver.structure.tree import instance
+from doe_kc.solver.elements.responses import OUTPUT_UNITS, line_angles
 
 
-def add_responses(b: Builder, structure: Structure, split: str) -> None:
+def add_responses(b: Builder, structure: Structure) -> None:
     """Outputs `name@L`/`@R` per side, and those of the rack."""
     for side in SIDES:
-        values = _angles(b, structure, side, split) | _positions(b, structure, side, split)
-        for name, value in (values | _forces(b, structure, side)).items():
-            b.output(f"{name}@{side}", value)
+        values = _angles(b, structure, side) | _positions(b, structure, side) | _forces(b, structure, side)
+        for name in dict.fromkeys((*OUTPUT_UNITS, *values)):
+            if name in values:
+                b.output(f"{name}@{side}", values[name])
     if structure.rack is not None:
         lateral = b.bodies[structure.rack.carrier].axes[:, 1]
         rods = [name.replace("_", " ") for name in structure.rack.rods]
@@ -31,12 +31,12 @@ def add_responses(b: Builder, structure: Structure, split: str) -> None:
         b.output("column_force", b.points["column force"])
 
 
-def _kingpin(b: Builder, structure: Structure, side: str, split: str) -> tuple[ca.SX, ca.SX] | None:
+def _kingpin(b: Builder, structure: Structure, side: str) -> tuple[ca.SX, ca.SX] | None:
     """(lower point, upper minus lower point) now."""
     if (pin := structure.kingpin) is None:
         return None
-    lower = b.bodies[instance(structure, pin.lower_body, side, split)].point(hardpoint(b, pin.lower, side))
-    upper = b.bodies[instance(structure, pin.upper_body, side, split)].point(hardpoint(b, pin.upper, side))
+    lower = b.bodies[structure.part_on_side(pin.lower_body, side)].point(hardpoint(b, pin.lower, side))
+    upper = b.bodies[structure.part_on_side(pin.upper_body, side)].point(hardpoint(b, pin.upper, side))
     return lower, upper - lower
 
 
@@ -48,10 +48,10 @@ def _carried_line(b: Builder, structure: Structure, side: str) -> ca.SX:
     return b.bodies[f"carrier.{side}"].axes @ design
 
 
-def _angles(b: Builder, structure: Structure, side: str, split: str) -> dict[str, ca.SX]:
+def _angles(b: Builder, structure: Structure, side: str) -> dict[str, ca.SX]:
     spin, normal = b.points[f"spin.{side}"], b.points["pad normal"]
     carried = _carried_line(b, structure, side)
-    pin = _kingpin(b, structure, side, split)
+    pin = _kingpin(b, structure, side)
     caster, kpi = line_angles(carried if pin is None else pin[1], side)
     return {
         "toe": DEG * ca.atan2(-spin[0], -mirror(side) * spin[1]),
@@ -63,12 +63,12 @@ def _angles(b: Builder, structure: Structure, side: str, split: str) -> dict[str
     }
 
 
-def _positions(b: Builder, structure: Structure, side: str, split: str) -> dict[str, ca.SX]:
+def _positions(b: Builder, structure: Structure, side: str) -> dict[str, ca.SX]:
     centre, contact = b.points[f"wheel centre.{side}"], b.points[f"contact.{side}"]
     out = {f"wc_{axis}": centre[i] for i, axis in enumerate("xyz")}
     out |= {f"cp_{axis}": contact[i] for i, axis in enumerate("xyz")}
     out |= {"pad_z": b.points[f"pad.{side}"], "strut_compression": b.points[f"shortening.{side}"]}
-    pin = _kingpin(b, structure, side, split)
+    pin = _kingpin(b, structure, side)
     if pin is None:
         return out
     lower, line = pin

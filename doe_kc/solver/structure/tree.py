@@ -13,11 +13,29 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from doe_kc.axle.structure import CHASSIS, BallConnection, LineConnection, Structure
+from doe_kc.axle.structure import (
+    CHASSIS,
+    BallConnection,
+    LineConnection,
+    SplitBody,
+    SteerArmBeam,
+    StrutClamp,
+    of_side,
+)
+from doe_kc.axle.topology import Topology
 
-JointType = Literal["ball", "cylindrical", "rack"]
-CONSTRAINED: dict[JointType, int] = {"rack": 5, "cylindrical": 4, "ball": 3}
-"""Freedoms that a joint takes."""
+JointType = Literal["weld", "rack", "cylindrical", "ball", "clamp", "beam", "sprung ball"]
+CONSTRAINED: dict[JointType, int] = {
+    "weld": 6,
+    "rack": 5,
+    "cylindrical": 4,
+    "ball": 3,
+    "clamp": 3,
+    "beam": 3,
+    "sprung ball": 0,
+}
+"""Freedoms that a joint takes. A ball on a spring takes none, but moves with the body that carries it, so
+that a stiff one is no small difference of long ways."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +47,7 @@ class SideJoint:
     side: str
     a: str
     b: str
-    connection: BallConnection | LineConnection | None
+    connection: BallConnection | LineConnection | SplitBody | StrutClamp | SteerArmBeam | None
 
     def other(self, body: str) -> str:
         """The body at its other end."""
@@ -53,41 +71,42 @@ class JointTree:
     loops: tuple[SideJoint, ...]
 
 
-def instances(structure: Structure, split: str = "") -> list[str]:
-    """Names of all bodies, one a side. split: a single body that has halves besides."""
-    sided = [f"{name}.{side}" for name in structure.bodies for side in "LR"]
-    halves = [f"{split}.{side}" for side in "LR"] if split else []
-    return [*structure.single_bodies, *halves, *sided]
+def joints(topology: Topology) -> Iterator[SideJoint]:
+    """All joints that can carry a body; ball joints with play are none."""
+    structure = topology.structure
 
+    def ends(a: str, b: str, side: str) -> tuple[str, str]:
+        return structure.part_on_side(a, side), structure.part_on_side(b, side)
 
-def instance(structure: Structure, body: str, side: str, split: str = "") -> str:
-    """Name of the body that a connection of a side is on: of a split body the half of its side."""
-    if side and body == split:
-        return f"{body}.{side}"
-    return structure.on_side(body, side)
-
-
-def joints(structure: Structure, elastic: Sequence[str] = (), split: str = "") -> Iterator[SideJoint]:
-    """All ideal joints. elastic: ball joints that are none, by name of either side."""
     if (rack := structure.rack) is not None:
         yield SideJoint("rack", "rack", "", rack.carrier, rack.body, None)
+    for side in "LR":
+        if (split := structure.subframe) is not None and not topology.flexible_subframe:
+            yield SideJoint("weld", "sub-frame half", side, split.body, f"{split.body}.{side}", split)
+        if (clamp := structure.strut) is not None:
+            kind: JointType = "clamp" if topology.strut_bending else "weld"
+            yield SideJoint(kind, "strut clamp", side, *ends(clamp.carrier, clamp.body, side), clamp)
+        if (beam := structure.steer_arm) is not None:
+            kind = "beam" if topology.steer_arm else "weld"
+            yield SideJoint(kind, "steer arm", side, *ends(beam.carrier, beam.body, side), beam)
     for line in structure.cylindricals:
         for side in structure.sides(single=line.single):
-            a, b = (instance(structure, body, side, split) for body in (line.a, line.b))
-            yield SideJoint("cylindrical", line.name, side, a, b, line)
+            yield SideJoint("cylindrical", line.name, side, *ends(line.a, line.b, side), line)
     for ball in structure.balls:
         for side in structure.sides(single=ball.single):
-            if (f"{ball.name}@{side}" if side else ball.name) not in elastic:
-                a, b = (instance(structure, body, side, split) for body in (ball.a, ball.b))
-                yield SideJoint("ball", ball.name, side, a, b, ball)
+            name = of_side(ball.name, side)
+            if name not in topology.play_balls:
+                kind = "sprung ball" if name in topology.elastic_balls else "ball"
+                yield SideJoint(kind, ball.name, side, *ends(ball.a, ball.b, side), ball)
 
 
-def joint_tree(structure: Structure, elastic: Sequence[str] = (), split: str = "") -> JointTree:
+def joint_tree(topology: Topology) -> JointTree:
     """The tree with the fewest unknowns; ties are broken by the order of the type file."""
-    ranked = sorted(joints(structure, elastic, split), key=lambda j: -CONSTRAINED[j.type])
-    chosen, loops = _spanning(ranked, [CHASSIS, *instances(structure, split)])
+    structure = topology.structure
+    ranked = sorted(joints(topology), key=lambda j: -CONSTRAINED[j.type])
+    chosen, loops = _spanning(ranked, [CHASSIS, *structure.parts])
     rack = structure.rack.body if structure.rack is not None else ""
-    bodies = sorted(instances(structure, split), key=lambda body: body == rack)  # it hangs on its carrier
+    bodies = sorted(structure.parts, key=lambda body: body == rack)  # it hangs on its carrier
     return JointTree(tuple(_branches(chosen, bodies)), tuple(loops))
 
 
@@ -113,19 +132,44 @@ def _spanning(ranked: Sequence[SideJoint], bodies: Sequence[str]) -> tuple[list[
 
 
 def _branches(chosen: Sequence[SideJoint], bodies: Sequence[str]) -> Iterator[Branch]:
-    """Bodies from the chassis outwards, then from the first body of what does not hang on it."""
-    placed = {CHASSIS}
-
-    def outwards(body: str) -> Iterator[Branch]:
-        for joint in chosen:
-            if body in (joint.a, joint.b) and (child := joint.other(body)) not in placed:
-                placed.add(child)
-                yield Branch(child, body, joint)
-                yield from outwards(child)
-
-    yield from outwards(CHASSIS)
+    """Bodies that hang on the chassis or are free in space, then those that hang on them, ring after ring:
+    what is alike on both sides stands beside each other. A rack that carries nothing comes last."""
+    branches, ring = list[Branch](), [CHASSIS]
+    placed = _reached(chosen, CHASSIS)
     for body in bodies:
         if body not in placed:
-            placed.add(body)
-            yield Branch(body, "", None)
-            yield from outwards(body)
+            ring.append(body)
+            placed |= _reached(chosen, body)
+            branches.append(Branch(body, "", None))
+    placed = set(ring)
+    while ring:
+        hanging = [
+            Branch(joint.other(body), body, joint)
+            for body in ring
+            for joint in chosen
+            if body in (joint.a, joint.b) and joint.other(body) not in placed
+        ]
+        branches += hanging
+        ring = [branch.body for branch in hanging]
+        placed |= set(ring)
+    parents = {branch.parent for branch in branches}
+
+    def last(branch: Branch) -> bool:
+        joint = branch.joint
+        return joint is not None and joint.type == "rack" and branch.body not in parents
+
+    yield from sorted(branches, key=last)
+
+
+def _reached(chosen: Sequence[SideJoint], start: str) -> set[str]:
+    """All bodies that joints connect with one."""
+    reached, ring = {start}, [start]
+    while ring:
+        ring = [
+            joint.other(body)
+            for body in ring
+            for joint in chosen
+            if body in (joint.a, joint.b) and joint.other(body) not in reached
+        ]
+        reached |= set(ring)
+    return reached

@@ -11,8 +11,8 @@ import pytest
 from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
-from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen
-from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR, TRACE_SD
+from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen, shape_of
+from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR, SHAPE_STARTS, TRACE_SD
 from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
 from tests.discovery.cases import library, model
 
@@ -70,6 +70,28 @@ def test_a_shape_is_not_seen_by_itself(tuned: Fit) -> None:
     assert np.isnan(found.size_detectability[~np.array(amounts)]).all()
 
 
+@pytest.mark.parametrize("effect", ["steering_friction", "strut_friction"])
+def test_the_shape_that_promises_most_is_begun_with(effect: str) -> None:
+    """One solution a shape chooses it; followed from each of them, none gains much more."""
+    car = model("friction")
+    without, (friction,) = fit(car, car.centre), library(effect)
+    count = sum(s.shape for s in friction.sizes)
+    each = [screen(without, friction, np.full(count, shape)) for shape in SHAPE_STARTS]
+    chosen = screen(without, friction)
+    assert any(np.array_equal(chosen.amplitudes, one.amplitudes) for one in each)
+    assert chosen.gain > 0.9 * max(one.gain for one in each) - 1.0
+
+
+def test_the_next_screening_begins_at_the_last_shape() -> None:
+    (friction,) = library("steering_friction")
+    none = np.zeros(2)
+    last: Any = SimpleNamespace(hypothesis=friction, amplitudes=np.array([1.2, 7.0]))
+    assert [s.shape for s in friction.sizes] == [False, True]
+    np.testing.assert_array_equal(shape_of(last), [max(SHAPE_STARTS)])
+    last.amplitudes = none
+    np.testing.assert_array_equal(shape_of(last), [0.0])
+
+
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
     projection = tuned.projection
@@ -118,7 +140,7 @@ class Saturating:
     def residual(self, z: np.ndarray) -> np.ndarray:
         return self.residual_of + self.made(float(z[0]))
 
-    def amplitude_columns(self, z: np.ndarray, residual: np.ndarray, *, which: slice) -> np.ndarray:
+    def amplitude_columns(self, z: np.ndarray, residual: np.ndarray, places: range) -> np.ndarray:
         return np.array([[200.0 / (1.0 + 5.0 * float(z[0])) ** 2]])
 
 

@@ -8,11 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.search.laws import open_laws, with_free_laws, with_law, with_open_laws
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
 
@@ -23,10 +21,8 @@ class Answers(DiscoveryWorkers):
         super().__init__()
         self.cost, self.laws = cost, [""] * 0
 
-    def fits(
-        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
-    ) -> list[Fit | None]:
-        ((model, z),) = starts
+    def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
+        ((model, z),) = [(s.model, s.z) for s in starts]
         self.laws.append(model.members[0].law)
         found = disagreeing()
         more = z.size - found.z.size

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, fit, refit_to_errors, rewhitened_fit
+from doe_kc.discovery.fit import Fit, fit, known_columns, refit_to_errors, rewhitened_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -24,7 +24,7 @@ def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
     exact, hub = hub_fitted()
     wide = with_discrepancy(exact.model, effect_signals(exact), [0.5])
-    found = fit(wide, exact.z, tuning=rewhitened_fit(exact, wide).jacobian[:, : wide.dimension])
+    found = fit(wide, exact.z, known=known_columns(rewhitened_fit(exact, wide), wide))
     fooled = _loss(found, hub)
     own = _loss(refit_to_errors(found, exact.model.likelihood), hub)
     assert own > 1.5 * fooled

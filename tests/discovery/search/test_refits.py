@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
@@ -22,7 +21,6 @@ from doe_kc.discovery.search.refits import (
 from doe_kc.discovery.search.search import with_conditioning
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Size
-from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
 
@@ -65,10 +63,8 @@ class Asked(DiscoveryWorkers):
         super().__init__()
         self.loops: list[int] = []
 
-    def fits(
-        self, starts: Sequence[tuple[EffectModel, FloatArray]], what: str, tuning: FloatArray
-    ) -> list[Fit | None]:
-        self.loops += [model.axle.conditioning for model, _ in starts]
+    def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
+        self.loops += [s.model.axle.conditioning for s in starts]
         return [None for _ in starts]
 
 
@@ -78,7 +74,8 @@ def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -
     model = replace(found.model, axle=found.model.axle.conditioned(own))
     asked = Asked()
     current = replace(found, model=model)
-    assert with_conditioning(current, model.axle, asked) is current
+    refit, sure = with_conditioning(current, model.axle, asked)
+    assert refit is current and not sure
     assert asked.loops == [other]
 
 
@@ -86,7 +83,8 @@ def test_without_friction_the_loops_are_those_of_the_file() -> None:
     found = discovery("named").search.with_law_discrepancy
     assert not found.model.with_effects(found.z).topology.frictional
     looped = replace(found, model=replace(found.model, axle=found.model.axle.conditioned(1)))
-    again = with_conditioning(looped, found.model.axle, Asked())
+    again, sure = with_conditioning(looped, found.model.axle, Asked())
+    assert not sure
     assert again.model.axle.conditioning == 0
     np.testing.assert_allclose(again.model.residual(again.z), looped.residual, atol=1e-9)
 

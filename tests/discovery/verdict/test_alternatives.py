@@ -79,14 +79,14 @@ def test_a_first_trial_at_its_bound_is_no_rival_of_the_effect_beside_it(
     compared: tuple[Alternatives, ...], found: EffectSearch
 ) -> None:
     """Beside no friction, a hub may win by an absurd size; beside friction it is in the set itself."""
-    hub = next(s for step in found.steps for s in step.screened if s.hypothesis.effect == "hub_compliance")
+    hub = next(s for s in found.screened if s.hypothesis.effect == "hub_compliance")
     friction = next(c for c in compared if c.hypothesis.effect == "steering_friction")
     model = found.tuned.model.extended(hub.hypothesis)
     fit = replace(found.tuned, model=model, z=np.append(found.tuned.z, [1.5, 6.0]))
     covariance = np.hstack([found.tuned.jacobian, 100.0 * np.ones((fit.residual.size, 2)) * [[1.0, 0.3]]])
     absurd = HypothesisFit(hub.hypothesis, replace(fit, jacobian=covariance), 50_000.0)
-    steps = tuple(replace(s, trials=(*s.trials, absurd)) for s in found.steps)
-    again = alternatives(replace(found, steps=steps), 1.0, DiscoveryWorkers())
+    first = replace(found.first, trials=(*found.first.trials, absurd))
+    again = alternatives(replace(found, first=first), 1.0, DiscoveryWorkers())
     same = next(c for c in again if c.hypothesis == friction.hypothesis)
     assert "hub_compliance" not in {t.hypothesis.effect for t in same.trials}
     assert same.loss == pytest.approx(friction.loss)
@@ -96,5 +96,5 @@ def test_one_effect_alone_is_judged_by_the_refits_of_the_search() -> None:
     """No solution more: the set without it is the re-tuned axle."""
     search = discovery("named").search
     (one,) = alternatives(search, 1.0, DiscoveryWorkers())
-    assert one.without is search.steps[0].before
-    assert {id(t) for t in one.trials[1:]} <= {id(t) for t in search.steps[0].trials}
+    assert one.without is search.first.before
+    assert {id(t) for t in one.trials[1:]} <= {id(t) for t in search.first.trials}

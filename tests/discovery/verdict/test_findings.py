@@ -50,7 +50,7 @@ def trial(effect: str, sizes: list[float], gain: float, apart: float = 0.0) -> H
 
 def place(*trials: HypothesisFit, temper: float = 1.0, without: Fit | None = None) -> Alternatives:
     """An effect of the last set and its rivals."""
-    own = next(s for s in search().steps[0].screened if s.hypothesis.effect == trials[0].hypothesis.effect)
+    own = next(s for s in search().first.screened if s.hypothesis.effect == trials[0].hypothesis.effect)
     return Alternatives(without or search().tuned, (own,), trials, temper)
 
 
@@ -111,7 +111,7 @@ def test_beside_a_hundred_times_larger_one_whose_law_is_another_an_effect_is_not
 ) -> None:
     found = discovery("pair").search
     large, small = found.with_law_discrepancy.model.members
-    screened = {s.hypothesis.name: s for s in found.steps[0].screened}
+    screened = {s.hypothesis.name: s for s in found.first.screened}
     shares = {large.name: share, small.name: 0.0}
     compared = []
     for member, gain in ((large, 2000.0), (small, 15.0)):

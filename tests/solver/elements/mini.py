@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from doe_kc.axle.topology import Topology
+from doe_kc.solver.assembly import collected
 from doe_kc.solver.builder import Body, Builder, body
 from tests.reference import nominal
 
@@ -17,7 +20,18 @@ MIRROR = np.diag([1.0, -1.0, 1.0])
 
 
 def builder(**topology: object) -> Builder:
-    return Builder(Topology(**topology))  # type: ignore[arg-type]
+    """Empty, of the nominal axle's topology with some flags changed."""
+    return Builder(changed(**topology))
+
+
+def whole(**topology: object) -> Builder:
+    """With all bodies and forces of the nominal axle, wrenches not yet handed on."""
+    return collected(changed(**topology))
+
+
+def changed(**topology: object) -> Topology:
+    changes: dict[str, Any] = dict(topology)
+    return replace(nominal().topology, **changes)
 
 
 def gibbs(rotation_vector: np.ndarray | list[float]) -> np.ndarray:

@@ -5,15 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.solver.elements.anti_roll_bar import AntiRollBar
+from doe_kc.solver.elements.anti_roll_bar import add_anti_roll_bar
 from tests.solver.elements.mini import builder, hardpoint, stub, wrench
 
 
 def forces(left: float, right: float, given: dict[str, float] | None = None):
     b = builder()
-    b.bodies["tube.L"] = stub("tube L", shift=[1.0, 0.0, left])
-    b.bodies["tube.R"] = stub("tube R", shift=[0.0, 2.0, right])
-    AntiRollBar().assemble(b)
+    tubes = stub("tube L", shift=[1.0, 0.0, left]), stub("tube R", shift=[0.0, 2.0, right])
+    add_anti_roll_bar(b, tubes, "ARB")
     return wrench(b, "tube L", given), wrench(b, "tube R", given)
 
 

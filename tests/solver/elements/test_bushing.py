@@ -10,8 +10,10 @@ from scipy.interpolate import PchipInterpolator
 from doe_kc.axle.force_curve import curve_values
 from doe_kc.solver.builder import Body, Builder
 from doe_kc.solver.elements import bushing
-from doe_kc.solver.elements.lower_arm import ARM_AXES
 from tests.solver.elements.mini import MIRROR, about_origin, builder, number, stub, turned, wrench
+
+ARM_AXES = ca.SX([[0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+"""Chassis axes turned -90 deg about Z, as columns: local x = -Y, local y = +X (thesis, section 3.3)."""
 
 AT = np.array([300.0, -370.0, 218.0])
 NM_PER_DEG = 1000 * 180 / np.pi

@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from doe_kc.solver.elements.steer_arm import SteerArm, beam_stiffness
+from doe_kc.solver.elements.steer_arm import beam_end, beam_stiffness
 from tests.solver.elements.mini import SIDES, builder, hardpoint, number, stub, turned
 
 
@@ -17,22 +17,11 @@ def test_beam_formulas() -> None:
     assert transverse == pytest.approx(3 * e * (np.pi * r**4 / 4) / length**3)
 
 
-def test_a_rigid_arm_is_the_knuckle() -> None:
-    b = builder()
-    for side in SIDES:
-        b.bodies[f"knuckle.{side}"] = stub(f"knuckle {side}")
-    SteerArm().assemble(b)
-    assert b.bodies["steer arm.L"] is b.bodies["knuckle.L"]
-    assert b.joints == []
-
-
 @pytest.mark.parametrize("side", SIDES)
 def test_the_end_of_the_beam_resists_along_and_across(side: str) -> None:
-    b = builder(steer_arm=True)
-    phi = [0.1, -0.2, 0.3]
-    for s in SIDES:
-        b.bodies[f"knuckle.{s}"] = stub(f"knuckle {s}", hardpoint("LWB", s), rotation=phi)
-    SteerArm().assemble(b)
+    b, phi = builder(), [0.1, -0.2, 0.3]
+    knuckle = stub(f"knuckle {side}", hardpoint("LWB", side), rotation=phi)
+    end = beam_end(b, f"steer arm {side}", knuckle, "SAH", "ROB", side)
     arm = hardpoint("ROB", side) - hardpoint("SAH", side)
     length = np.linalg.norm(arm)
     e = arm / length
@@ -44,16 +33,13 @@ def test_the_end_of_the_beam_resists_along_and_across(side: str) -> None:
     found = [number(b, b.resistances[f"steer arm {side}.{a}"], given) for a in "xyz"]
     np.testing.assert_allclose(found, k @ d, rtol=1e-12)
     # the ball is displaced in the knuckle's axes
-    end = b.bodies[f"steer arm.{side}"]
     expected = hardpoint("LWB", side) + turned(phi) @ (hardpoint("ROB", side) + d - hardpoint("LWB", side))
     np.testing.assert_allclose(number(b, end.origin, given), expected)
 
 
 def test_the_stiffness_follows_the_radius() -> None:
-    b = builder(steer_arm=True)
-    for s in SIDES:
-        b.bodies[f"knuckle.{s}"] = stub(f"knuckle {s}", hardpoint("LWB", s))
-    SteerArm().assemble(b)
+    b = builder()
+    beam_end(b, "steer arm L", stub("knuckle L", hardpoint("LWB")), "SAH", "ROB", "L")
     arm = hardpoint("ROB") - hardpoint("SAH")
     across = np.cross(arm, [0, 0, 1.0])
     d = 0.01 * across / np.linalg.norm(across)

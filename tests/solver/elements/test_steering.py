@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from doe_kc.solver.elements.steering import Steering
+from doe_kc.solver.elements.steering import add_rack
 from tests.solver.elements.mini import builder, number, stub, turned
 
 PHI = [0.01, -0.02, 0.1]
@@ -14,8 +14,8 @@ PHI = [0.01, -0.02, 0.1]
 
 def assembled(**topology: object):
     b = builder(**topology)
-    b.bodies["subframe.centre"] = stub("sub-frame", [180.0, 0.0, 247.5], [0.5, 1.0, -0.5], PHI)
-    Steering().assemble(b)
+    frame = stub("sub-frame", [180.0, 0.0, 247.5], [0.5, 1.0, -0.5], PHI)
+    b.bodies["rack"] = add_rack(b, frame, "RIB", "sub-frame")
     return b
 
 

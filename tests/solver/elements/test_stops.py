@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 
-from doe_kc.solver.elements.stops import Stops
-from tests.solver.elements.mini import SIDES, builder, number
+from doe_kc.solver.elements.stops import stop_force
+from tests.solver.elements.mini import builder, number
 
 BUMP = np.array([[0, 0], [10, 300], [20, 800], [30, 1800], [40, 3800], [50, 7800], [60, 14000]])
 REBOUND = np.array([[0, 0], [5, 1500], [10, 5000], [15, 11000], [20, 20000]])
@@ -23,42 +23,29 @@ def law(points: np.ndarray, travel: float) -> float:
     return float(pchip(inside) + pchip.derivative()(inside) * (x - inside))
 
 
-def stops(slide: float, given: dict[str, float] | None = None, side: str = "L") -> tuple[float, float]:
-    """(stop output, resistance of the sliding joint)."""
+def stops(slide: float, given: dict[str, float] | None = None, side: str = "L") -> float:
+    """Bump less rebound stop, N."""
     b = builder()
-    for s in SIDES:
-        b.points[f"slide.{s}"] = ca.SX(slide)
-    Stops().assemble(b)
-    return (
-        float(number(b, b.points[f"stop.{side}"], given)),
-        float(number(b, b.resistances[f"strut slide {side}"], given)),
-    )
+    bump = stop_force(b, "bump_stop", 7, side, ca.SX(-slide))
+    return float(number(b, bump - stop_force(b, "rebound_stop", 5, side, ca.SX(slide)), given))
 
 
 @pytest.mark.parametrize("slide", [-95, -82, -70.3, -60, -33, -22.001, -22, -21, 0, 65, 65.5, 72, 84, 85, 92])
 def test_the_force_is_the_curve_beyond_the_clearance(slide: float) -> None:
     bump, rebound = law(BUMP, -slide - 22.0), law(REBOUND, slide - 65.0)
-    force, resistance = stops(slide)
-    assert force == pytest.approx(bump - rebound, abs=1e-9)
-    assert resistance == pytest.approx(-force, abs=1e-9)
+    assert stops(slide) == pytest.approx(bump - rebound, abs=1e-9)
 
 
 def test_bump_lengthens_and_rebound_shortens_the_strut() -> None:
-    assert stops(-60.0)[0] > 1000.0
-    assert stops(80.0)[0] < -1000.0
+    assert stops(-60.0) > 1000.0
+    assert stops(80.0) < -1000.0
 
 
 def test_clearance_and_factor_of_one_side() -> None:
     given = {"bump_stop.clearance@R": 30.0, "bump_stop.factor@R": 2.0}
-    assert stops(-60.0, given, "R")[0] == pytest.approx(2 * law(BUMP, 30.0))
-    assert stops(-60.0, given, "L")[0] == pytest.approx(law(BUMP, 38.0))
+    assert stops(-60.0, given, "R") == pytest.approx(2 * law(BUMP, 30.0))
+    assert stops(-60.0, given, "L") == pytest.approx(law(BUMP, 38.0))
 
 
 def test_a_negative_clearance_is_a_stop_in_contact_at_design() -> None:
-    assert stops(0.0, {"bump_stop.clearance@L": -5.0})[0] == pytest.approx(law(BUMP, 5.0))
-
-
-def test_gas_force_extends() -> None:
-    force, resistance = stops(0.0, {"damper.gas_force@L": 150.0})
-    assert force == 0.0
-    assert resistance == pytest.approx(-150.0)
+    assert stops(0.0, {"bump_stop.clearance@L": -5.0}) == pytest.approx(law(BUMP, 5.0))

@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from doe_kc.solver.elements.tie_rod import TieRod, free_play_force
+from doe_kc.solver.elements.tie_rod import add_rod, free_play_force
 from tests.solver.elements.mini import MIRROR, SIDES, builder, hardpoint, number, stub, wrench
 
 
 def assembled(shift: object, **topology: object):
     b = builder(**topology)
-    b.bodies["rack"] = stub("rack")
+    rack, plays = (stub("rack"), "RIB"), {"L": b.topology.free_play_left, "R": b.topology.free_play_right}
     for side in SIDES:
         s = np.asarray(shift, dtype=float)
-        b.bodies[f"steer arm.{side}"] = stub(f"arm {side}", shift=s if side == "L" else MIRROR @ s)
-    TieRod().assemble(b)
+        arm = stub(f"arm {side}", shift=s if side == "L" else MIRROR @ s)
+        add_rod(b, "tie_rod", side, rack, (arm, "ROB"), plays=plays[side])
     return b
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.solver.builder import Builder
-from doe_kc.solver.elements.tyre import Tyre
+from doe_kc.solver.elements.tyre import add_tyres
 from tests.solver.elements.mini import MIRROR, SIDES, builder, number, stub, wrench
 
 RATE, STATIC, HEIGHT = 220.0, 4300.0, 310.0
@@ -28,7 +28,7 @@ def assembled(
         b.bodies[f"wheel.{side}"] = stub(f"wheel {side}", centre if side == "L" else MIRROR @ centre)
         b.points[f"wheel centre.{side}"] = ca.SX(flip @ np.asarray(centre, dtype=float))
         b.points[f"spin.{side}"] = ca.SX(flip @ spin)
-    Tyre().assemble(b)
+    add_tyres(b)
     return b
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.solver.elements.wheel import SPIN_STIFFNESS, Wheel
+from doe_kc.solver.elements.wheel import SPIN_STIFFNESS, add_wheel
 from tests.solver.elements.mini import MIRROR, SIDES, builder, gibbs, hardpoint, number, stub, turned
 
 NM_PER_DEG = 1000 * 180 / np.pi
@@ -16,7 +16,7 @@ def assembled(rotation: object = (0.0, 0.0, 0.0), **topology: object):
     b = builder(**topology)
     for side in SIDES:
         b.bodies[f"carrier.{side}"] = stub(f"knuckle {side}", hardpoint("LWB", side), rotation=rotation)
-    Wheel().assemble(b)
+        add_wheel(b, b.bodies[f"carrier.{side}"], side, "knuckle")
     return b
 
 

@@ -24,7 +24,7 @@ from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.correlation.modelled.unit_samples import scrambled_sobol
 from doe_kc.correlation.problem import Candidate, Problem, RatingForecast
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted
+from doe_kc.surrogate_models.interface import Fitted
 
 IMPROVEMENT_LEVELS = 6
 """Binary logarithm of the samples of the predicted errors, which are common to all points: their number

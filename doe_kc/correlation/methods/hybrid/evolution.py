@@ -12,6 +12,8 @@ from doe_kc.correlation.problem import Candidate
 from doe_kc.ground.typing import FloatArray
 
 POPULATION = 30
+"""Best designs known, from which differential evolution begins: enough for differences in every direction
+that the best ones span, few enough that poor ones do not lead."""
 TOP_SHARE = 0.2
 """Share of the population that differential evolution moves towards."""
 PROPOSAL_DRAWS = 5

@@ -19,7 +19,7 @@ from doe_kc.correlation.modelled.proposal import best_predicted, forecast
 from doe_kc.correlation.modelled.trust_region import RadiusRule, TrustBox, TrustRegion
 from doe_kc.correlation.problem import Candidate
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted, LeftOut
+from doe_kc.surrogate_models.interface import Fitted, LeftOut
 
 STEP_RIDGE = 1e-6
 """Share of the mean square of the steps: below what one level changes."""
@@ -91,6 +91,7 @@ HYBRID_RADIUS = RadiusRule(
     first=0.2, smallest=0.01, largest=0.5, shrinkage=0.5, growth=1.6, poor=0.1, good=0.7, floor="restart"
 )
 MODEL_DRAWS = 20
+"""Random designs, of which the one farthest from all known ones is taken: distances cost no evaluation."""
 
 
 def proposed(

@@ -15,7 +15,7 @@ from doe_kc.correlation.modelled.history import SearchHistory
 from doe_kc.correlation.modelled.proposal import best_predicted
 from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogates.interface import Fitted
+from doe_kc.surrogate_models.interface import Fitted
 from doe_kc.targets import Targets
 
 
@@ -56,6 +56,7 @@ class ModelledObjectives:
 
 
 GENERATIONS = 40
+"""Of NSGA-III on the models, begun at the front that is known: it needs to follow, not to find it."""
 STRESS = 4.0
 """Weight of the objective that a starting corner favours, the others 1."""
 CORNER_SPREAD = 0.05

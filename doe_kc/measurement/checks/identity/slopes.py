@@ -14,7 +14,6 @@ from doe_kc.load_cases import CASE_ORDER, LOAD_CASES
 from doe_kc.measurement.branches import RunCurves, static_index
 from doe_kc.measurement.checks._base import RigTest
 from doe_kc.measurement.checks.repeats import odd_runs
-from doe_kc.measurement.noise import pooled_white_sd
 
 MIRRORED = ("vertical", "lateral_opposite", "drive", "brake")
 """Load cases that are their own mirror image; in the others left at +u is right at -u."""
@@ -72,7 +71,8 @@ def measured_slopes(test: RigTest) -> SlopeTable:
         for response in kept[0].record.channels:
             at = row(case), column(response)
             slope[at] = _run_slopes(kept, response)
-            noise[at] = [pooled_white_sd([run.record.channels[response][s] for run in kept]) for s in (0, 1)]
+            levels = np.array([run.record.white[response] for run in kept])
+            noise[at] = np.sqrt(np.mean(levels**2, axis=0))
         if TYRE_LOAD in kept[0].record.channels:
             loads = [run.mean(TYRE_LOAD)[:, static_index(run.input)] for run in kept]
             rest[row(case)] = np.median(loads, axis=0)

@@ -1,0 +1,1 @@
+"""Corruptions of rig records, and whether the checks tell them."""

@@ -1,0 +1,288 @@
+"""The axle drawn from three sides: hardpoints, members and wheel, and how far each point moved."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, FancyArrowPatch
+
+from doe_kc.axle.geometry import point
+from doe_kc.axle.members import drawn_points, members_of
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import with_values
+from doe_kc.correlation.result import Correlation
+from doe_kc.ground.numbers import signed
+from doe_kc.ground.typing import FloatArray
+from doe_kc.reports import style
+from doe_kc.reports.correlation_parameters import parameter_rows
+from doe_kc.reports.panel import PageBox, Panel
+from doe_kc.reports.panel_axis import ticks
+from doe_kc.reports.sheet import Sheet
+from doe_kc.reports.words import POINTS
+
+ACROSS = ("SFF", "SFR", "RIB")
+"""Points of a McPherson axle from which sub-frame and rack reach over to the other side."""
+MEMBER_COLOURS: Mapping[str, str] = {
+    "lower arm": style.PALETTE["blue"],
+    "strut": style.PALETTE["black"],
+    "spring": style.PALETTE["green"],
+    "tie rod": style.PALETTE["vermillion"],
+    "knuckle": style.PALETTE["purple"],
+    "sub-frame": style.PALETTE["grey"],
+    "damper": style.PALETTE["black"],
+    "upper arm": style.PALETTE["sky"],
+    "arm": style.PALETTE["blue"],
+    "axle": style.PALETTE["purple"],
+}
+"""Of parts that most axles have; others follow in the order of `OTHER_COLOURS`."""
+BROWN = "#8C5A2B"
+"""Arrows are orange."""
+OTHER_COLOURS = (
+    *(style.PALETTE[name] for name in ("blue", "vermillion", "sky")),
+    BROWN,
+    style.PALETTE["yellow"],
+)
+TRIM = "#C9CED3"
+BOTH_ENDS = np.array([-1.0, 1.0])
+LONGEST_ARROW = 100.0
+"""mm of the axle that the longest arrow takes at most; its factor is the next smaller round one."""
+ARROW_FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+SHOWN_MOVE = 0.05
+"""mm; a point that moved less has no arrow: points are measured to a tenth."""
+BORDER = 60.0
+"""mm of free space about the axle in each view, and of what reaches over to the other side."""
+LEFT_EDGE, RIGHT_EDGE, BETWEEN_ACROSS = 56.0, 18.0, 50.0
+HEAD_ROOM, BETWEEN_UP, KEY_ROOM = 66.0, 62.0, 96.0
+"""Points about the views: numbers, labels, titles and the key."""
+TABLE_LINE, TABLE_PLACES = 13.0, (0.0, 34.0, 87.0, 140.0)
+"""Points."""
+NAME_PLACES = (
+    (3.0, 3.0), (3.0, -8.0), (-3.0, 3.0), (-3.0, -8.0),
+    (3.0, 10.0), (3.0, -15.0), (-3.0, 10.0), (-3.0, -15.0),
+)  # fmt: skip
+"""Points from a hardpoint to its name, tried in turn."""
+NAME_SIZE = 5.5
+"""Points of a hardpoint's name."""
+AXIS_WORDS_OF = ("X (rearwards +) [mm]", "Y (right +) [mm]", "Z (up +) [mm]")
+
+View = Literal["side", "top", "rear"]
+PLANES: Mapping[View, tuple[int, int]] = {"side": (0, 2), "top": (0, 1), "rear": (1, 2)}
+"""Axes across and up: seen from the left, from above, and from behind."""
+
+
+@dataclass(frozen=True)
+class PointMove:
+    """A hardpoint of the left side, all (3,) mm. place: as it was. sd: of the move, nan where not known."""
+
+    name: str
+    place: FloatArray
+    move: FloatArray
+    sd: FloatArray
+
+    @property
+    def distance(self) -> float:
+        """Length of the move, mm."""
+        return float(np.linalg.norm(self.move))
+
+
+@dataclass(frozen=True)
+class AxleView:
+    """after: None where nothing is compared. sd: parameter path -> standard deviation in mm."""
+
+    title: str
+    before: Axle
+    after: Axle | None = None
+    sd: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def moves(self) -> list[PointMove]:
+        """Of every hardpoint of the left side, in the order of the thesis's Table 1."""
+        last = self.after or self.before
+        return [
+            PointMove(
+                name,
+                point(self.before, name),
+                point(last, name) - point(self.before, name),
+                np.array([self.sd.get(f"{name}.{axis}", np.nan) for axis in "xyz"]),
+            )
+            for name in drawn_points(self.before)
+        ]
+
+    @property
+    def factor(self) -> int:
+        """By which moves are drawn longer than they are."""
+        longest = max((m.distance for m in self.moves), default=0.0)
+        fitting = [f for f in ARROW_FACTORS if f * longest <= LONGEST_ARROW]
+        return fitting[-1] if fitting and longest >= SHOWN_MOVE else 1
+
+
+def correlation_view(correlation: Correlation, study: str) -> AxleView:
+    """The axle that a correlation was given and the one that it hands over."""
+    first = correlation.problem.axle
+    space = correlation.problem.space
+    return AxleView(
+        f"The axle before and after: {study}",
+        with_values(first, space.values(correlation.baseline.point)),
+        correlation.axle,
+        {r.path: r.sd for r in parameter_rows(correlation)},
+    )
+
+
+def axle_figure(view: AxleView) -> Sheet:
+    """Side, top and rear view of the left side in one scale, and a table of the moves.
+
+    The right side is the mirror image, but for what the axle file says of it alone.
+    """
+    low, high = view_extent(view.before)
+    span = high - low
+    width = style.A4[0] * POINTS
+    scale = (width - LEFT_EDGE - BETWEEN_ACROSS - RIGHT_EDGE) / (span[0] + span[1])
+    height = HEAD_ROOM + scale * (span[2] + span[1]) + BETWEEN_UP + KEY_ROOM
+    page = Sheet((style.A4[0], height / POINTS))
+    middle, top = LEFT_EDGE + scale * span[0] + BETWEEN_ACROSS, height - HEAD_ROOM
+    for name, (across, up) in PLANES.items():
+        box = PageBox(
+            LEFT_EDGE if across == 0 else middle,
+            top - scale * span[2] if up == 2 else KEY_ROOM,
+            scale * span[across],
+            scale * span[up],
+        )
+        panel = page.add_panel(box)
+        panel.x.set_limits(low[across], high[across])
+        panel.y.set_limits(low[up], high[up])
+        panel.x.set_locator(ticks(5))
+        panel.y.set_locator(ticks(6))
+        panel.set_labels(AXIS_WORDS_OF[across], AXIS_WORDS_OF[up])
+        panel.set_title({"side": "From the left", "top": "From above", "rear": "From behind"}[name])
+        draw_view(panel, view, name)
+    if view.after is not None:
+        _table(page, view, middle, KEY_ROOM + scale * span[1])
+    page.add_legend(view_handles(view), columns=3, size=7.5)
+    page.set_heading(view.title, 1.0 - 18.0 / height)
+    return page
+
+
+def view_extent(axle: Axle) -> tuple[FloatArray, FloatArray]:
+    """(3,) lowest and highest place of what is drawn, mm."""
+    points = np.array([point(axle, name) for name in drawn_points(axle)])
+    wheel, radius = point(axle, "WLC"), float(point(axle, "WLC")[2])
+    low = np.minimum(points.min(axis=0), [wheel[0] - radius, wheel[1], 0.0]) - BORDER
+    high = np.maximum(points.max(axis=0), [wheel[0] + radius, wheel[1], wheel[2] + radius]) + BORDER
+    low[2] = -BORDER / 2.0
+    return low, high
+
+
+def draw_view(panel: Panel, view: AxleView, name: View) -> None:
+    across, up = PLANES[name]
+    axle = view.before
+    if up == 2:
+        panel.hline(0.0, color=TRIM, lw=1.2, zorder=0)
+    members = members_of(axle)
+    colours = member_colours(members)
+    for member, lines in members.items():
+        ends = np.array([[point(axle, a), point(axle, b)] for a, b in lines])
+        panel.segments(
+            ends[:, 0, across], ends[:, 0, up], ends[:, 1, across], ends[:, 1, up],
+            colors=colours[member], zorder=2, linewidths=1.2,
+        )  # fmt: skip
+    across_from = [a for a in ACROSS if a in drawn_points(axle)]
+    if name != "side" and across_from:
+        start = np.array([point(axle, a) for a in across_from])
+        end = start + np.array([0.0, BORDER, 0.0])
+        panel.segments(
+            start[:, across], start[:, up], end[:, across], end[:, up],
+            colors=TRIM, zorder=1, linewidths=1.2, linestyles=":",
+        )  # fmt: skip
+    _wheel(panel, point(axle, "WLC"), name)
+    _moves(panel, view, across, up)
+    _names(panel, view, across, up)
+
+
+def _wheel(panel: Panel, centre: FloatArray, name: View) -> None:
+    radius = float(centre[2])
+    line: dict[str, Any] = {"color": "#555555", "lw": 1.0, "zorder": 1}
+    if name == "side":
+        panel.add(Circle((centre[0], centre[2]), radius, fill=False, **line))
+    elif name == "top":
+        panel.plot([centre[0] - radius, centre[0] + radius], [centre[1], centre[1]], **line)
+    else:
+        panel.plot([centre[1], centre[1]], [centre[2] - radius, centre[2] + radius], **line)
+
+
+def _moves(panel: Panel, view: AxleView, across: int, up: int) -> None:
+    factor, colour = view.factor, style.PALETTE["orange"]
+    for m in view.moves:
+        x, y = float(m.place[across]), float(m.place[up])
+        panel.plot(x, y, "", marker="o", color="black", mfc="white", ms=2.8, mew=0.7, zorder=6)
+        if m.distance < SHOWN_MOVE:
+            continue
+        end_x, end_y = x + factor * float(m.move[across]), y + factor * float(m.move[up])
+        arrow = FancyArrowPatch(
+            (x, y), (end_x, end_y), arrowstyle="-|>", mutation_scale=5.0, lw=1.2, zorder=5,
+            shrinkA=0.0, shrinkB=0.0, color=colour,
+        )  # fmt: skip
+        panel.add(arrow, clip=False)
+        half = np.nan_to_num(factor * m.sd)
+        panel.plot(
+            [end_x - half[across], end_x + half[across]], [end_y, end_y], color=colour, lw=0.6, zorder=4
+        )
+        panel.plot([end_x, end_x], [end_y - half[up], end_y + half[up]], color=colour, lw=0.6, zorder=4)
+
+
+def _names(panel: Panel, view: AxleView, across: int, up: int) -> None:
+    """Each beside its point, where no other name is yet."""
+    taken: list[tuple[float, float, float, float]] = []
+    for m in view.moves:
+        x, y = float(m.place[across]), float(m.place[up])
+        at = panel.place(x, y)
+        wide, high = 0.68 * NAME_SIZE * len(m.name), 1.1 * NAME_SIZE
+        for dx, dy in NAME_PLACES:
+            shift = (dx if dx > 0 else dx - wide, dy)
+            box = (at[0] + shift[0], at[1] + dy, at[0] + shift[0] + wide, at[1] + dy + high)
+            if not any(_overlap(box, other) for other in taken):
+                break
+        taken.append(box)
+        panel.text(x, y, m.name, shift=shift, size=NAME_SIZE, color="#333333")
+
+
+def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+
+
+def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:
+    """x, y: points of its upper left corner."""
+    rows: list[tuple[str, ...]] = [("Δ ± sd", "ΔX [mm]", "ΔY [mm]", "ΔZ [mm]")]
+    shown = sorted((m for m in view.moves if m.distance >= SHOWN_MOVE), key=lambda m: -m.distance)
+    for m in shown:
+        moves = (signed(float(move), float(sd)) for move, sd in zip(m.move, m.sd, strict=True))
+        rows.append((m.name, *moves))
+    if not shown:
+        rows = [(f"No point moved by {SHOWN_MOVE:g} mm or more.",)]
+    for k, row in enumerate(rows):
+        height = (y - k * TABLE_LINE) / page.height
+        look: dict[str, Any] = {"size": 7.0, "weight": "bold"} if k == 0 and shown else {"size": 6.3}
+        for place, words in zip(TABLE_PLACES, row, strict=False):
+            page.write((x + place) / page.width, height, words, along="top", **look)
+
+
+def member_colours(members: Collection[str]) -> dict[str, str]:
+    """A colour for each part."""
+    others = iter(OTHER_COLOURS * (1 + len(members) // len(OTHER_COLOURS)))
+    return {name: MEMBER_COLOURS.get(name) or next(others) for name in members}
+
+
+def view_handles(view: AxleView) -> list[Line2D]:
+    out = [
+        Line2D([], [], color=c, lw=1.5, label=name)
+        for name, c in member_colours(members_of(view.before)).items()
+    ]
+    out.append(Line2D([], [], color="#555555", lw=1.2, label="wheel (plane and rolling radius)"))
+    if view.after is not None:
+        colour = style.PALETTE["orange"]
+        out.append(Line2D([], [], color=colour, lw=1.5, label=f"move, {view.factor} times as long as it is"))
+        out.append(Line2D([], [], color=colour, lw=0.6, label="± standard deviation, in the same scale"))
+    return out

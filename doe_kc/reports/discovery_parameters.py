@@ -1,0 +1,118 @@
+"""The tunable parameters of a discovery: nominal, re-tuned, and with the effect in the model."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from markupsafe import Markup
+
+from doe_kc.discovery.result import Discovery
+from doe_kc.ground.numbers import at_sd
+from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Table, diverging, row_digits
+
+FULL_COLOUR_DISTANCE = 2.0
+"""Standard deviations of the prior at which the colour of a parameter's distance is full."""
+
+
+@dataclass(frozen=True)
+class TunedParameter:
+    """A tunable parameter, values absolute in `unit`; sd: of the final value; distances from nominal in
+    standard deviations of its prior, nan with effects where there are none; beyond: whether the last value is
+    outside the study's bounds."""
+
+    path: str
+    label: str
+    group: str
+    unit: str
+    nominal: float
+    tuned: float
+    with_effect: float
+    sd: float
+    tuned_distance: float
+    with_effect_distance: float
+    beyond: bool
+
+    @property
+    def moved(self) -> float:
+        """Largest distance from nominal, sd of the prior."""
+        return float(np.nanmax(np.abs([self.tuned_distance, self.with_effect_distance])))
+
+
+def tuned_parameters(discovery: Discovery) -> list[TunedParameter]:
+    """In the order of the variables."""
+    tuned, final = discovery.search.tuned, discovery.fitted
+    model = final.model
+    has_effect = bool(model.members)
+    sd = np.sqrt(np.diag(final.covariance))
+    out = []
+    for i, v in enumerate(model.space.variables):
+        start, one, two = model.centre[i], tuned.z[i], final.z[i]
+        out.append(
+            TunedParameter(
+                path=v.path,
+                label=v.parameter.label,
+                group=v.parameter.group,
+                unit=v.unit,
+                nominal=v.start,
+                tuned=v.value(one),
+                with_effect=v.value(two) if has_effect else math.nan,
+                sd=float(sd[i]) * v.slope(two),
+                tuned_distance=float((one - start) / model.prior_sd[i]),
+                with_effect_distance=float((two - start) / model.prior_sd[i]) if has_effect else math.nan,
+                beyond=v.path in discovery.beyond,
+            )
+        )
+    return out
+
+
+def _label(row: TunedParameter) -> str:
+    return Markup("{} <b>(outside its bounds)</b>").format(row.label) if row.beyond else row.label
+
+
+def _format(row: TunedParameter) -> str:
+    return row_digits(row.sd, row.nominal)
+
+
+TUNED_COLUMNS: tuple[Column[TunedParameter], ...] = (
+    Column("path", None, lambda p: p.path, page=PageCell("Path", style="first")),
+    Column("label", "Parameter", lambda p: p.label, width=58,
+           cell=lambda p: f"{p.path}: {p.label}", page=PageCell(style="wide", text=_label)),
+    Column("group", "Group", lambda p: p.group, width=15),
+    Column("unit", "Unit", lambda p: p.unit, width=8, page=PageCell()),
+    Column("nominal", "Nominal", lambda p: p.nominal, _format, 12,
+           page=PageCell(text=lambda p: at_sd(p.nominal, p.sd))),
+    Column("tuned", "Re-tuned", lambda p: p.tuned, _format, 12,
+           page=PageCell(text=lambda p: at_sd(p.tuned, p.sd))),
+    Column("with_effect", "With effect", lambda p: p.with_effect, _format, 12),
+    Column("sd", "sd", lambda p: p.sd, _format, 12),
+    Column("tuned_distance", "Distance re-tuned, sd", lambda p: p.tuned_distance, "0.00", 14,
+           page=PageCell("Re-tuned, times scatter", layout="+.2f")),
+    Column("with_effect_distance", "Distance with effect, sd", lambda p: p.with_effect_distance, "0.00", 14,
+           page=PageCell("With effect, times scatter", layout="+.2f")),
+    Column("beyond", "Bounds", lambda p: p.beyond, width=10, words=lambda p: "outside" if p.beyond else ""),
+)  # fmt: skip
+
+
+def tuned_table(discovery: Discovery) -> Table[TunedParameter]:
+    """One row a tunable parameter before and after, with its distance from nominal."""
+    remark = "Distances from nominal in standard deviations of the prior; sd: of the last value."
+    if discovery.beyond:
+        remark += " Parameters marked lie outside the study's bounds, as the records ask for."
+    return Table(
+        "Parameters",
+        remark,
+        TUNED_COLUMNS,
+        tuned_parameters(discovery),
+        colors=(diverging("tuned_distance", "with_effect_distance", FULL_COLOUR_DISTANCE),),
+        sheet=SheetLayout(frozen="group"),
+        page=PageLayout(
+            "tuned-table",
+            "Parameters",
+            filtered=True,
+            choices={"moved": "only those further off than production scatters"},
+            tags=lambda p: "moved" if p.moved >= 1.0 else "",
+            first=("path", "label", "unit", "nominal", "tuned", "last", "bar"),
+        ),
+    )

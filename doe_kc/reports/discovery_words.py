@@ -1,0 +1,207 @@
+"""What is said of a discovery in the same words everywhere: effects, shapes, sizes with their uncertainty."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from doe_kc.axle.model import Axle
+from doe_kc.axle.parameters import design_parameters
+from doe_kc.axle.places import places_of
+from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
+from doe_kc.discovery.fit import amplitude_estimates
+from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
+from doe_kc.discovery.screening.contrasts import Contrast
+from doe_kc.discovery.thresholds import ONE_SIDED
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.numbers import number, unit_words, with_sd
+from doe_kc.load_cases import LOAD_CASES
+from doe_kc.reports.names import case_label, response_name
+
+HEADLINES: dict[VerdictKind, str] = {
+    "named": "Effect named",
+    "class": "One of several effects",
+    "none": "No effect missing",
+    "unexplained": "Unexplained",
+}
+STATUS_WORDS: dict[Status, str] = {
+    "found": "found",
+    "trace": "seen, too small to matter",
+    "excluded": "would have shown",
+    "unresolved": "not resolved",
+    "not testable": "not testable",
+    "no solution": "has no equilibrium in this axle",
+}
+MODEL_LABELS = {
+    "nominal": "nominal",
+    "tuned": "re-tuned",
+    "with_effect": "with effect",
+    "best_decoy": "best other effect",
+}
+"""Names of the four models that are compared, by their field in `Gap`."""
+
+
+def own_sentences(discovery: Discovery) -> list[str]:
+    """The verdict in words; without what remains unexplained where that is listed in full beside it."""
+    return [s for s in discovery.sentences if not (discovery.unexplained and s.startswith("Unexplained:"))]
+
+
+def effect_label(ident: str) -> str:
+    """Name of an effect."""
+    return EFFECTS[ident].label
+
+
+def place_of(hypothesis: Hypothesis) -> str:
+    """Where or how the effect is looked for, empty for one place only."""
+    return place_words(hypothesis.name.removeprefix(hypothesis.effect).strip())
+
+
+def place_words(place: str) -> str:
+    """A location as in `Hypothesis.location`: a bushing or joint, a response, a load case."""
+    if place in RESPONSE_UNITS:
+        return response_name(place)
+    if place in LOAD_CASES:
+        return case_label(place).lower()
+    head, _, side = place.rpartition("_")
+    return f"{head} {SIDE_WORDS[side]}" if side in SIDE_WORDS else place.replace("_", " ")
+
+
+def hypothesis_label(hypothesis: Hypothesis) -> str:
+    """Name and place, e.g. `Bushing preload, LLR`."""
+    place = place_of(hypothesis)
+    return f"{effect_label(hypothesis.effect)}, {place}" if place else effect_label(hypothesis.effect)
+
+
+def physics_words(finding: Finding) -> str:
+    """What happens in the car, and what it means at the sizes that were estimated."""
+    options: dict[str, Any] = dict(finding.hypothesis.fixed)
+    options |= {e.key: e.value for e in finding.estimates if e.index is None}
+    effect = EFFECTS[finding.hypothesis.effect]
+    return f"{effect.physics} {effect.consequence(options)}".strip()
+
+
+def hypothesis_words(hypothesis: Hypothesis) -> str:
+    """Name and place within a sentence, e.g. `bushing preload, LLR`."""
+    label = hypothesis_label(hypothesis)
+    return label[0].lower() + label[1:]
+
+
+def mistaken_words(ident: str, axle: Axle) -> str:
+    """What looks alike on such an axle, effects by their names and parameters by their paths."""
+    places, parameters = places_of(axle), {p.path for p in design_parameters(axle)}
+    return ", ".join(
+        effect_label(m) if m in EFFECTS else m
+        for m in EFFECTS[ident].mistaken_for
+        if (EFFECTS[m].possible(places) if m in EFFECTS else m in parameters)
+    )
+
+
+def contrast_words(contrast: Contrast) -> str:
+    """`Lateral force, in phase: toe, loop width (left against right)`."""
+    shape = "" if contrast.shape == "static" else f", {contrast.shape}"
+    return f"{case_label(contrast.load_case)}: {response_name(contrast.response)}{shape} ({wheels(contrast)})"
+
+
+def wheels(contrast: Contrast) -> str:
+    """Which way the wheels disagree."""
+    return "both wheels" if contrast.wheels == "both" else "left against right"
+
+
+def limit_words(standing: HypothesisStatus) -> str:
+    """From which size on the effect would have been seen, e.g. `k_N_mm below 9000 N/mm`.
+
+    Of a list all components: `|LLR| above 370, 910, – N`.
+    """
+    if not math.isfinite(standing.detectable) or not standing.hypothesis.sizes:
+        return "–"
+    known = list(zip(standing.hypothesis.sizes, standing.limits, strict=True))
+    parts = [
+        _limit(s, [a for other, a in known if other.key == s.key]) for s in merged_sizes(standing.hypothesis)
+    ]
+    return "; ".join(p for p in parts if p)
+
+
+def merged_sizes(hypothesis: Hypothesis) -> list[Size]:
+    """One size of each option: the components of a list are alike."""
+    return list({s.key: s for s in reversed(hypothesis.sizes)}.values())[::-1]
+
+
+def _limit(size: Size, amplitudes: Sequence[float]) -> str:
+    """Of one option; amplitudes: of each of its components."""
+    said = [a if exclusion_limit(size, a) is not None else math.nan for a in amplitudes]
+    if size.shape:
+        return ""
+    if all(map(math.isnan, said)):
+        return f"{size.key} not shown"
+    value = f"{', '.join(_number_at(size, a) for a in said)}{unit_words(size.unit)}"
+    if size.growth == "compliance":
+        return f"{size.key} below {value}"
+    if size.growth == "factor":
+        low = ", ".join(_number_at(size, -a, 4) for a in said)
+        return f"{size.key} below {low} or above {', '.join(_number_at(size, a, 4) for a in said)}"
+    return f"{'|' + size.key + '|' if size.signed else size.key} above {value}"
+
+
+def _number_at(size: Size, amplitude: float, digits: int = 3) -> str:
+    return number(size.value(amplitude), digits) if math.isfinite(amplitude) else "–"
+
+
+def typical_words(hypothesis: Hypothesis) -> str:
+    """Typical size, e.g. `force_N 250 N`."""
+    return "; ".join(f"{s.key} {number(s.typical)}{unit_words(s.unit)}" for s in merged_sizes(hypothesis))
+
+
+SIZE_LEVEL = 2.0
+"""Standard deviations above zero from which a size that cannot be negative is told from none."""
+
+
+@dataclass(frozen=True)
+class FoundSize:
+    """One number of a found effect. times: as a multiple of the typical size (shapes: sd off typical)."""
+
+    size: Size
+    estimate: ParameterEstimate
+    times: float
+    limit: float
+    seen: bool
+
+    @property
+    def words(self) -> str:
+        """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
+        unit = unit_words(self.size.unit)
+        if self.seen:
+            return f"{with_sd(self.estimate.value, self.estimate.sd)}{unit}"
+        limit = f"{number(self.limit)}{unit}"
+        if self.size.growth == "compliance":
+            return f"not told from rigid (above {limit}, 95 %)"
+        return f"not told from none (below {limit}, 95 %)"
+
+    @property
+    def sentence(self) -> str:
+        """The option's name with `words`."""
+        return f"{self.size.name} {'= ' if self.seen else ''}{self.words}"
+
+
+def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
+    """The numbers of a finding in the order of its hypothesis."""
+    known = zip(*amplitude_estimates(discovery.fitted, finding.hypothesis), strict=True)
+    for size, estimate, (amplitude, sd) in zip(
+        finding.hypothesis.sizes, finding.estimates, known, strict=True
+    ):
+        one_sided = not (size.signed or size.shape or size.growth == "factor")
+        yield FoundSize(
+            size,
+            estimate,
+            float(amplitude),
+            size.value(float(amplitude + ONE_SIDED * sd)),
+            bool(not one_sided or amplitude >= SIZE_LEVEL * sd),
+        )
+
+
+def size_words(discovery: Discovery, finding: Finding) -> str:
+    """All sizes of a finding in one line."""
+    return "; ".join(s.sentence for s in found_sizes(discovery, finding))

@@ -1,0 +1,1 @@
+"""The report pages, one module each: a self-contained HTML file made of sections."""

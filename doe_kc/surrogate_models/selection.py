@@ -1,0 +1,79 @@
+"""Chooses a model for every output by cross-validation, and joins the chosen ones to one surrogate."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import final
+
+import numpy as np
+
+from doe_kc.ground.typing import FloatArray
+from doe_kc.surrogate_models.interface import Fitted, LeftOut
+
+ERROR_MARGIN = 0.1
+"""Share by which the left-out squared error may exceed the best model's for the sake of simplicity."""
+EXACT = 1e-4
+"""1 - Q2 below which a model counts as exact, and the simplest such model is taken."""
+
+
+def choose(q2: Mapping[str, FloatArray], complexity: Mapping[str, int]) -> tuple[str, ...]:
+    """Model id of each output (m): the simplest whose 1 - Q2 is within the margin of the best.
+
+    q2: model -> (m,). Where no model has a Q2 (an output that does not vary), the simplest.
+    """
+    order = sorted(q2, key=lambda name: complexity[name])
+    missed = np.array([np.nan_to_num(1.0 - q2[name], nan=0.0) for name in order])
+    allowed = np.maximum((1.0 + ERROR_MARGIN) * missed.min(axis=0), EXACT)
+    return tuple(order[int(k)] for k in np.argmax(missed <= allowed, axis=0))
+
+
+@final
+@dataclass(frozen=True)
+class Chosen(Fitted):
+    """parts: fitted models of all m outputs. part: (m,) which of them predicts each output."""
+
+    parts: tuple[Fitted, ...]
+    part: np.ndarray
+
+    @property
+    def variables(self) -> int:
+        """d."""
+        return self.parts[0].variables
+
+    @property
+    def outputs(self) -> int:
+        """m."""
+        return len(self.part)
+
+    def cross_validate(self) -> LeftOut:
+        """Of each output's own model."""
+        held = [p.cross_validate() for p in self.parts]
+        return LeftOut(self._pick([h.residual for h in held]), self._pick([h.variance for h in held]))
+
+    def _pick(self, values: Sequence[FloatArray]) -> FloatArray:
+        """(p, m, ...) each output from its own model."""
+        out = np.empty_like(values[0])
+        for k, value in enumerate(values):
+            out[:, self.part == k] = value[:, self.part == k]
+        return out
+
+    def _mean(self, x: FloatArray) -> FloatArray:
+        return self._pick([p.predict(x) for p in self.parts])
+
+    def _variance(self, x: FloatArray) -> FloatArray:
+        return self._pick([p.variance(x) for p in self.parts])
+
+    def _gradient(self, x: FloatArray) -> FloatArray:
+        return self._pick([p.gradient(x) for p in self.parts])
+
+    def _variance_gradient(self, x: FloatArray) -> FloatArray:
+        return self._pick([p.variance_gradient(x) for p in self.parts])
+
+
+def join(models: Mapping[str, Fitted], names: Sequence[str]) -> Fitted:
+    """One surrogate of the model named for each output; only those in use are kept."""
+    used = list(dict.fromkeys(names))
+    if len(used) == 1:
+        return models[used[0]]
+    return Chosen(tuple(models[name] for name in used), np.array([used.index(name) for name in names]))

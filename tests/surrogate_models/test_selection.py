@@ -1,0 +1,185 @@
+"""Choice, calibration, validation, constants, folds and shares."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.stats import binomtest
+
+from doe_kc.axle.parameters import Parameter
+from doe_kc.ground.errors import InputError
+from doe_kc.surrogate_models.calibration import (
+    Calibrated,
+    calibration_factors,
+    coverage_after,
+    coverage_interval,
+    scaled,
+    student_width,
+)
+from doe_kc.surrogate_models.folds import fold_rows, refit_folds
+from doe_kc.surrogate_models.interface import LeftOut
+from doe_kc.surrogate_models.models import make
+from doe_kc.surrogate_models.selection import Chosen, choose, join
+from doe_kc.surrogate_models.shares import total_shares
+from doe_kc.surrogate_models.study import default_models, fit_study, number_of_tasks
+from doe_kc.surrogate_models.validation import quality, quality_on
+from doe_kc.surrogate_models.varying import fit_varying
+from doe_kc.variables import Space, Variable
+from tests.surrogate_models.problems import outputs, points, problem
+
+P = problem()
+ORDER = {"linear": 0, "rbf": 2, "gp": 3}
+
+
+def test_the_simplest_of_the_nearly_best_is_chosen() -> None:
+    q2 = {
+        "gp": np.array([0.99, 0.990, 0.99999, np.nan]),
+        "linear": np.array([0.80, 0.9895, 0.99995, np.nan]),
+        "rbf": np.array([0.98, 0.991, 0.99999, np.nan]),
+    }
+    assert choose(q2, ORDER) == ("gp", "rbf", "linear", "linear")
+
+
+def test_joined_models_predict_each_its_own() -> None:
+    models = {name: make(name).fit(P.x, P.y) for name in ("linear", "gp")}
+    joined = join(models, ["gp", "linear", "gp"])
+    assert isinstance(joined, Chosen)
+    gp, linear = models["gp"], models["linear"]
+    for ask in ("predict", "variance", "gradient", "variance_gradient"):
+        found, a, b = (getattr(m, ask)(P.test) for m in (joined, gp, linear))
+        np.testing.assert_array_equal(found[:, [0, 2]], a[:, [0, 2]])
+        np.testing.assert_array_equal(found[:, 1], b[:, 1])
+    assert joined.cross_validate().residual[:, 1] == pytest.approx(linear.cross_validate().residual[:, 1])
+    assert join(models, ["gp", "gp", "gp"]) is gp
+
+
+def test_calibration_repairs_variances_that_are_too_small() -> None:
+    rng = np.random.default_rng(0)
+    sd = np.array([1.0, 4.0])
+    held = LeftOut(sd * rng.normal(size=(400, 2)), np.full((400, 2), 1.0))
+    factors = calibration_factors(held)
+    assert factors == pytest.approx([1.0, 16.0], rel=0.25)
+    before, after = quality(np.zeros((400, 2)), held), scaled(held, factors)
+    assert before.coverage[1] < 0.5
+    assert (np.abs(after.residual) <= 1.96 * np.sqrt(after.variance)).mean(axis=0) == pytest.approx(
+        0.95, abs=0.02
+    )
+    assert coverage_after(held) == pytest.approx(0.95, abs=0.03)
+    low, high = coverage_interval(np.array([0.95]), 20)
+    limits = binomtest(19, 20).proportion_ci(method="wilson")
+    assert (low[0], high[0]) == pytest.approx((limits.low, limits.high), abs=1e-6)
+
+
+def test_an_exactly_known_output_keeps_its_variance() -> None:
+    wider = (student_width(9) / 1.959964) ** 2
+    assert calibration_factors(LeftOut(np.zeros((9, 1)), np.zeros((9, 1)))) == pytest.approx([wider])
+
+
+def test_a_calibrated_model_differs_in_variance_alone() -> None:
+    model = make("gp").fit(P.x, P.y)
+    wide = Calibrated(model, np.array([1.0, 4.0, 9.0]))
+    np.testing.assert_array_equal(wide.predict(P.test), model.predict(P.test))
+    np.testing.assert_array_equal(wide.gradient(P.test), model.gradient(P.test))
+    np.testing.assert_allclose(wide.variance(P.test), model.variance(P.test) * [1.0, 4.0, 9.0])
+    slopes = model.variance_gradient(P.test) * np.array([1.0, 4.0, 9.0])[:, None]
+    np.testing.assert_allclose(wide.variance_gradient(P.test), slopes)
+
+
+def test_quality_of_perfect_useless_and_constant() -> None:
+    y = np.column_stack([np.arange(10.0), np.arange(10.0), np.full(10, 2.0)])
+    residual = np.column_stack([np.zeros(10), y[:, 1] - 4.5, np.zeros(10)])
+    q = quality(y, LeftOut(residual, np.ones((10, 3))))
+    assert q.q2[:2] == pytest.approx([1.0, 0.0])
+    assert np.isnan(q.q2[2])
+    assert q.rmse[1] == pytest.approx(y[:, 1].std())
+    assert q.coverage == pytest.approx([1.0, 0.2 * 2.0, 1.0], abs=0.21)
+    assert q.sharpness[0] == pytest.approx(1.96 / y[:, 0].std(), rel=1e-3)
+
+
+def test_constant_outputs_are_kept_as_they_are() -> None:
+    y = np.column_stack([P.y[:, 0], np.full(len(P.x), 3.0), P.y[:, 1]])
+    model = fit_varying(make("gp"), P.x, y)
+    alone = make("gp").fit(P.x, y[:, [0, 2]])
+    np.testing.assert_array_equal(model.predict(P.test)[:, [0, 2]], alone.predict(P.test))
+    assert (model.predict(P.test)[:, 1] == 3.0).all()
+    assert (model.variance(P.test)[:, 1] == 0.0).all()
+    assert (model.gradient(P.test)[:, 1] == 0.0).all()
+    assert (model.cross_validate().residual[:, 1] == 0.0).all()
+    with pytest.raises(InputError, match="no output changes"):
+        fit_varying(make("gp"), P.x, np.ones((len(P.x), 2)))
+
+
+def test_folds_hold_every_row_once() -> None:
+    folds = fold_rows(23, 5, seed=1)
+    assert sorted(np.concatenate(folds)) == list(range(23))
+    assert {len(f) for f in folds} == {4, 5}
+    assert len(fold_rows(3, 10, seed=1)) == 3
+
+
+def test_refitted_folds_are_those_of_a_fit_without_them() -> None:
+    held = refit_folds(make("linear"), P.x, P.y, folds=4, seed=2)
+    left = fold_rows(len(P.x), 4, 2)[1]
+    rest = np.setdiff1d(np.arange(len(P.x)), left)
+    alone = make("linear").fit(P.x[rest], P.y[rest])
+    np.testing.assert_allclose(held.residual[left], P.y[left] - alone.predict(P.x[left]))
+
+
+def test_a_study_chooses_well_and_says_what_it_left_out() -> None:
+    models = ("linear", "gp", "gp_slopes")
+    few = fit_study(points(20, 3, 15), points(20, 4, 2), models=models, folds=3, workers=1)
+    assert list(few.models) == ["linear", "gp"]
+    assert "no exact slopes at the start" in few.skipped["gp_slopes"]
+    steps: list[int] = []
+    full = fit_study(P.x, P.y, models=("linear", "rbf", "gp"), folds=5, workers=1, progress=steps.append)
+    assert sum(steps) == number_of_tasks(("linear", "rbf", "gp"), 40, 5) == 8
+    assert full.chosen[0] == "gp"
+    test = points(300, 60)
+    q = quality_on(full.model, test, outputs(test))
+    assert (q.q2 > 0.95).all()
+    assert q.coverage.mean() > 0.85
+
+
+def test_a_study_is_the_same_with_any_number_of_workers() -> None:
+    one = fit_study(P.x, P.y, models=("linear", "gp"), folds=3, seed=4, workers=1)
+    two = fit_study(P.x, P.y, models=("linear", "gp"), folds=3, seed=4, workers=2)
+    np.testing.assert_array_equal(one.models["gp"].held.residual, two.models["gp"].held.residual)
+    np.testing.assert_array_equal(one.model.predict(P.test), two.model.predict(P.test))
+
+
+def test_too_few_designs_and_unknown_models_are_named() -> None:
+    with pytest.raises(InputError, match="9 designs, needs at least 10"):
+        fit_study(P.x[:9], P.y[:9])
+    with pytest.raises(InputError, match="'forest' is no surrogate"):
+        fit_study(P.x, P.y, models=("forest",))
+    assert default_models(40, 72) == ["gp", "gp_ard", "linear", "rbf"]
+    assert default_models(144, 72, slopes=True) == ["gp", "gp_slopes", "linear", "rbf"]
+
+
+def test_shares_of_a_plane_are_its_squared_slopes() -> None:
+    weight = np.array([3.0, 1.0, 0.0, 0.0, 2.0])
+    model = make("linear").fit(P.x, (P.x @ weight)[:, None])
+    shares = total_shares(model, space(5), points=512)
+    assert shares[:, 0] == pytest.approx(weight**2 / (weight**2).sum(), abs=0.04)
+
+
+def test_shares_count_an_interaction_for_both() -> None:
+    x = points(60, 2, 3)
+    centred = x - 0.5
+    model = make("gp").fit(x, (centred[:, 0] * centred[:, 1])[:, None])
+    shares = total_shares(model, space(3), points=512)
+    assert shares[:2, 0] == pytest.approx([1.0, 1.0], abs=0.15)
+    assert shares[2, 0] < 0.05
+
+
+def space(d: int) -> Space:
+    def variable(i: int) -> Variable:
+        parameter = Parameter(
+            path=f"p{i}", label=f"p{i}", group="OTHER", unit="-", nominal=0.5, lower=0.0, upper=1.0, step=0.1,
+            active=True,
+        )  # fmt: skip
+        return Variable(
+            parameter=parameter, lower=0.0, upper=1.0, start=0.5, levels=None, distribution="uniform",
+            logarithmic=False,
+        )  # fmt: skip
+
+    return Space(tuple(variable(i) for i in range(d)))
