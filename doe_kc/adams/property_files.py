@@ -134,9 +134,9 @@ def _checked_curve(points: FloatArray, where: str, path: Path) -> ForceTable:
     with np.errstate(over="ignore"):
         steep = ~(np.abs(np.diff(points[:, 1]) / np.diff(points[:, 0])) <= STEEPEST_CURVE)
     if steep.any():
+        row = int(np.argmax(steep)) + 2
         raise InputError(
-            f"{where} is steeper than {STEEPEST_CURVE:g} N/mm or Nm/deg before row {int(np.argmax(steep)) + 2}; "
-            "no part is: correct it."
+            f"{where} is steeper than {STEEPEST_CURVE:g} N/mm or Nm/deg before row {row}; correct it."
         )
     return ForceTable(points[:, 0], points[:, 1], path)
 

@@ -197,6 +197,7 @@ BAD = {
     "strut upside down": ("860.0]", "400.0]", ["UPB", "LWD"]),
     "stop not monotone": ("[20.0, 800.0]", "[20.0, 200.0]", ["bump_stop", "monotone", "point 3"]),
     "stop deflection falls": ("[20.0, 800.0]", "[5.0, 800.0]", ["bump_stop", "monotone"]),
+    "stop steeper than any part": ("[20.0, 800.0]", "[10.0000000000001, 800.0]", ["bump_stop", "steeper"]),
     "stop not from zero": (
         "curve = [[0.0, 0.0], [10.0",
         "curve = [[1.0, 0.0], [10.0",
