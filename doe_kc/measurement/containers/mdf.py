@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import io
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ def read_mdf_table(path: Path, part: str | None, load_case: str) -> ArrayTable:
     # what asammdf leaves of a file that it failed to open prints a traceback when it is collected
     with contextlib.redirect_stderr(io.StringIO()):
         signals = _signals(asammdf, path, index)
+        gc.collect()
     if isinstance(signals, str):
         raise InputError(
             f"{path}: cannot be read as MDF ({signals}); expected an undamaged file and a group "

@@ -122,7 +122,7 @@ def test_matlab_7_3(tmp_path: Path) -> None:
     assert {heading.unit for heading in table.channels} == {"mm"}
     whole = (tmp_path / "v.mat").read_bytes()
     (tmp_path / "v.mat").write_bytes(whole[: len(whole) // 3])
-    with pytest.raises(InputError, match="cannot be read as a MATLAB 7.3 file"):
+    with pytest.raises(InputError, match=r"cannot be read as a MATLAB 7\.3 file"):
         read_table(tmp_path / "v.mat", None, "vertical")
 
 
@@ -139,7 +139,7 @@ def test_mdf(tmp_path: Path) -> None:
         file.append(signals)
         file.save(tmp_path / "v.mf4")
     same(read_record(tmp_path / "v.mf4", "vertical"), plain(tmp_path))
-    with pytest.raises(InputError, match="cannot be read as MDF.*group number"):
+    with pytest.raises(InputError, match=r"cannot be read as MDF.*group number"):
         read_table(tmp_path / "v.mf4", "7", "vertical")
     (tmp_path / "v.mf4").write_bytes((tmp_path / "v.mf4").read_bytes()[:900])
     with pytest.raises(InputError, match="cannot be read as MDF"):
