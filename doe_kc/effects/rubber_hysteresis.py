@@ -23,6 +23,8 @@ BENCH_TRAVELS = (0.05, 0.5, 2.0)
 """mm, of benches for dynamic stiffness, and of a K&C rig."""
 REAR = ("LLR",)
 """The compliance bushing of the lower arm: the loops of drive and brake are its own."""
+REST = "REST"
+"""Location of all other bushings."""
 
 
 @effect
@@ -67,7 +69,7 @@ class RubberHysteresis(Effect):
         return (
             everywhere,
             Hypothesis(self.id, *REAR, self.sizes, {"bushings": list(REAR)}),
-            Hypothesis(self.id, "REST", self.sizes, {"bushings": rest}),
+            Hypothesis(self.id, REST, self.sizes, {"bushings": rest}),
         )
 
     def consequence(self, options: Mapping[str, Any]) -> str:
