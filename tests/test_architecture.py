@@ -34,6 +34,7 @@ FLOORS = [
     "examples",
     "reports",
     "workflow",
+    "live",
     "api",
     "cli",
 ]
