@@ -16,16 +16,20 @@ from doe_kc.ground.errors import RunError
 from doe_kc.ground.numbers import number
 from doe_kc.ground.typing import FloatArray
 from doe_kc.live.answer import Compilation, LiveAnswer, LiveSlopes, slopes_of, solve_live
+from doe_kc.targets.comparison import FLOOR
 from doe_kc.variables import Space
 
-MOST_ITERATIONS = 3
+MOST_ITERATIONS = 4
 """Gauss-Newton steps of one advice, 0.2 s each: the model is nearly linear, the second changes little."""
 ENOUGH = 0.01
 """Share of the squared gap that a step must take off for another one to follow."""
 FRACTIONS = (1.0, 0.5, 0.25, 0.1)
 """Of a step, tried in turn until the true model is better."""
-HOLD_SHARE = 1e-3
+HOLD_SHARE = 1e-5
 """Of a characteristic's scale: the standard deviation by which one that is held may move."""
+HELD_WELL = 100.0
+"""Of these standard deviations: a drift of a thousandth of the scale, by which a step that bends counts as
+held; the next step takes it back."""
 HELPERS = 3
 
 
@@ -103,7 +107,8 @@ def best_step(
         if better is None:
             break
         before, answer = answer, better
-        if answer.gap**2 > (1.0 - ENOUGH) * before.gap**2:
+        settled = answer.gap**2 > (1.0 - ENOUGH) * before.gap**2
+        if settled and np.all(np.abs(_drift(answer, first, held)) < HELD_WELL):
             break
         now = slopes_of(answer)
     if answer is first:
@@ -112,11 +117,22 @@ def best_step(
 
 
 def _with_held(slopes: LiveSlopes, first: LiveAnswer, held: Collection[str]) -> tuple[FloatArray, FloatArray]:
-    places = [list(CHARACTERISTICS).index(name) for name in sorted(held)]
-    scale = HOLD_SHARE * np.hypot(first.characteristics[places], math.sqrt(0.005))
-    drift = (slopes.answer.characteristics - first.characteristics)[places] / scale
+    places, scale = _held_places(first, held)
     extra = slopes.expansion.characteristics[places] / scale[:, None]
+    drift = _drift(slopes.answer, first, held)
     return np.vstack([slopes.jacobian, extra]), np.concatenate([slopes.answer.residual, drift])
+
+
+def _held_places(first: LiveAnswer, held: Collection[str]) -> tuple[list[int], FloatArray]:
+    """Rows of the characteristics that are held, and the standard deviations by which they may move."""
+    places = [list(CHARACTERISTICS).index(name) for name in sorted(held)]
+    return places, HOLD_SHARE * np.hypot(first.characteristics[places], math.sqrt(FLOOR))
+
+
+def _drift(answer: LiveAnswer, first: LiveAnswer, held: Collection[str]) -> FloatArray:
+    """(h,) how far each has moved, in those."""
+    places, scale = _held_places(first, held)
+    return np.asarray((answer.characteristics - first.characteristics)[places] / scale)
 
 
 def _better(
@@ -141,9 +157,7 @@ def _better(
 
 def _cost(answer: LiveAnswer, first: LiveAnswer, held: Collection[str]) -> float:
     own = answer.model.space
-    places = [list(CHARACTERISTICS).index(name) for name in sorted(held)]
-    scale = HOLD_SHARE * np.hypot(first.characteristics[places], math.sqrt(0.005))
-    drift = (answer.characteristics - first.characteristics)[places] / scale
+    drift = _drift(answer, first, held) / HELD_WELL
     moved = (answer.point - own.start) / own.prior_sd
     return float(answer.residual @ answer.residual + drift @ drift + moved @ moved)
 
