@@ -58,12 +58,12 @@ class CurveChart {
     return { input: found.input, ...found.responses[this.place.response] };
   }
 
-  // x, then left and right of: present, nominal, three snapshots.
+  // x, then left and right of: nominal, three snapshots, present (on top).
   data() {
     const { layout, present, references } = this.page;
     const { loadCase, response } = this.place;
     const rows = [this.loadCase.input];
-    for (const drawn of [present && present.drawn, ...[0, 1, 2, 3].map((i) => references[i] && references[i].drawn)]) {
+    for (const drawn of [...[0, 1, 2, 3].map((i) => references[i] && references[i].drawn), present && present.drawn]) {
       for (const side of [0, 1]) {
         rows.push(drawn && this.sides.includes(side) ? layout.curve(drawn, loadCase, response, side) : this.empty());
       }
@@ -100,7 +100,7 @@ class CurveChart {
   series() {
     const dash = this.page.approximate ? [7, 4] : undefined;
     const all = [{}];
-    const looks = [[COLOURS.present, dash, LINE + 0.6], [COLOURS.nominal, undefined, LINE], ...COLOURS.snapshots.map((c) => [c, undefined, LINE])];
+    const looks = [[COLOURS.nominal, undefined, LINE], ...COLOURS.snapshots.map((c) => [c, undefined, LINE]), [COLOURS.present, dash, LINE + 0.4]];
     for (const [stroke, pattern, width] of looks) {
       for (const side of [0, 1]) all.push({ stroke, dash: pattern, width: side === 0 || this.page.side === "R" ? width : THIN, points: { show: false }, spanGaps: false });
     }
@@ -225,7 +225,7 @@ class CurveChart {
       this.read.textContent = Number.isFinite(rms) ? `${short(rms, 3)} ${unit}` : unit;
       return;
     }
-    const x = this.rows[0][i], now = this.rows[1 + side][i], m = this.measured;
+    const x = this.rows[0][i], now = this.rows[9 + side][i], m = this.measured;
     const measured = m ? interpolate(x, m.input, m.mean[side]) : NaN;
     const target = Number.isFinite(measured) ? `, measured ${short(measured, 3)}` : "";
     this.read.textContent = `${short(x, 3)} ${this.loadCase.unit}: ${short(now, 3)}${target} ${unit}`;
