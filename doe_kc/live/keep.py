@@ -15,10 +15,11 @@ from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.fields import Finite, Pair, Strict
 from doe_kc.ground.files import read_bytes
-from doe_kc.ground.output import write_json
+from doe_kc.ground.output import write_json, write_whole
 from doe_kc.live.answer import LiveAnswer, solve_live
 from doe_kc.live.session import Session
 from doe_kc.live.state import MOST_SNAPSHOTS, LiveState, Snapshot
+from doe_kc.live.static_page import static_page
 from doe_kc.reports.render.workbook import new_book, table_sheet, write_book
 from doe_kc.reports.table import Column, SheetLayout, Table, row_digits, three_digits
 
@@ -205,9 +206,20 @@ def export_table(session: Session) -> str:
     return f"Snapshot table written: {path}"
 
 
+def export_page(session: Session) -> str:
+    """Write `page.html`, see `static_page`; says where."""
+    if session.failure:
+        raise InputError(f"the present design has no answer: {session.failure}")
+    html = static_page(session)
+    path = live_folder(session) / LIVE_PAGE
+    write_whole(path, lambda beside: beside.write_text(html, encoding="utf-8"))
+    return f"Page written: {path}"
+
+
 KEEPERS: Mapping[str, Callable[[Session], str]] = {
     "save": save_state,
     "export_axle": export_axle,
     "export_table": export_table,
+    "export_page": export_page,
 }
 """By the page's word; each says what it wrote."""

@@ -7,7 +7,6 @@ import logging
 import time
 from collections.abc import Callable
 from functools import partial
-from importlib.resources import files
 from typing import Any
 
 from starlette.applications import Starlette
@@ -20,27 +19,13 @@ from doe_kc.ground.errors import DoeKcError
 from doe_kc.live import keep, views
 from doe_kc.live import messages as says
 from doe_kc.live.advice import Advised
+from doe_kc.live.page_files import SERVED, asset
 from doe_kc.live.session import Changes, Session, SolveRequest
 from doe_kc.live.worker import LiveWorker
 
 log = logging.getLogger("doe_kc")
-ASSETS = {
-    "live.css": "text/css",
-    "live.js": "text/javascript",
-    "frames.js": "text/javascript",
-    "charts.js": "text/javascript",
-    "axle.js": "text/javascript",
-    "uPlot.iife.min.js": "text/javascript",
-    "uPlot.min.css": "text/css",
-}
-"""Files of the page; nothing else is served."""
 MOST_MESSAGES = 600
 """From one tab within a second; a hand on a slider sends 60."""
-
-
-def asset(name: str) -> str:
-    """Text of a file of the page."""
-    return (files("doe_kc.live") / "assets" / name).read_text(encoding="utf-8")
 
 
 class Tab:
@@ -110,9 +95,9 @@ class LiveServer:
 
     async def _asset(self, request: Request) -> Response:
         name = request.path_params["name"]
-        if name not in ASSETS:
+        if name not in SERVED:
             return PlainTextResponse("there is no such file.\n", status_code=404)
-        return Response(asset(name), media_type=ASSETS[name])
+        return Response(asset(name), media_type=SERVED[name])
 
     async def _socket(self, socket: WebSocket) -> None:
         await socket.accept()

@@ -27,6 +27,8 @@ os.dup2(high[0], 3); os.dup2(high[1], 4)
 os.execv(sys.argv[3], sys.argv[3:])
 """
 """Puts the pipe where the browser looks for it: commands at 3, answers at 4."""
+KEY_CODES = {"Tab": 9, "Enter": 13}
+"""Of keys whose work the browser itself does."""
 PATIENCE = 60.0
 """Seconds to wait for an answer on a busy machine."""
 
@@ -93,11 +95,16 @@ class Page:
     def open(self, path: Path) -> None:
         """Load a file and wait until its scripts have run."""
         self.send("Page.navigate", url=path.as_uri())
+        self.wait(f"document.readyState + location.href === 'complete{path.as_uri()}'")
+
+    def wait(self, condition: str) -> Any:
+        """Until an expression in the page is true; its value. TimeoutError naming it when it stays false."""
         end = time.monotonic() + PATIENCE
-        while self.run("document.readyState + location.href") != f"complete{path.as_uri()}":
+        while not (value := self.run(condition)):
             if time.monotonic() > end:
-                raise TimeoutError(f"{path.name} does not load")
+                raise TimeoutError(f"never true: {condition}")
             time.sleep(0.02)
+        return value
 
     def run(self, script: str) -> Any:
         """Value of an expression in the page."""
@@ -111,10 +118,15 @@ class Page:
         self.send("Emulation.setDeviceMetricsOverride", width=width, height=height,
                   deviceScaleFactor=1, mobile=width < 600)  # fmt: skip
 
-    def key(self, key: str) -> None:
+    def key(self, key: str, *, control: bool = False) -> None:
         """Press a key in what has the focus."""
         for kind in ("keyDown", "keyUp"):
-            extra = {"text": key} if len(key) == 1 and kind == "keyDown" else {}
+            extra: dict[str, Any] = {"text": key} if len(key) == 1 and kind == "keyDown" else {}
+            if key in KEY_CODES:
+                extra |= {"windowsVirtualKeyCode": KEY_CODES[key]}
+                extra |= {"text": "\r"} if key == "Enter" and kind == "keyDown" else {}
+            if control:
+                extra = {"modifiers": 2}
             self.send("Input.dispatchKeyEvent", type=kind, key=key, **extra)
 
     def mouse(self, kind: str, x: float, y: float) -> None:
