@@ -104,7 +104,7 @@ def test_the_commands_named_exist_with_their_options() -> None:
             "influence",
             "sample",
         ),
-        *("surrogates", "correlate", "discover", "report", "run"),
+        *("surrogates", "correlate", "discover", "report", "run", "live"),
     }
     named = set()
     for page in PAGES:

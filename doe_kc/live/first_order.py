@@ -8,12 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.curves import RESPONSE_UNITS
+from doe_kc.curves import RESPONSE_UNITS, response_name
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.live.advice import influence
 from doe_kc.live.answer import Compilation, LiveAnswer, LiveSlopes, solve_live
 from doe_kc.live.frames import drawn_curves
+from doe_kc.load_cases import case_label
 from doe_kc.variables import Space
 
 MOST_SLIDERS = 30
@@ -169,6 +170,6 @@ def _curve_places(answer: LiveAnswer) -> tuple[list[slice], list[str]]:
     for ident, case in answer.curves.cases.items():
         for response in RESPONSE_UNITS:
             slices.append(slice(at, at + 2 * case.input.size))
-            names.append(f"{ident.replace('_', ' ')}, {response}")
+            names.append(f"{case_label(ident).lower()}, {response_name(response)}")
             at += 2 * case.input.size
     return slices, names

@@ -20,7 +20,7 @@ from doe_kc.live.page_files import asset
 from doe_kc.live.session import Session
 from doe_kc.variables.variable import Variable
 
-SHAPE_ROWS = 9
+SHAPE_ROWS = 5
 """Inputs of a load case at which the axle is drawn."""
 SHARE_OF_STEP = 0.5
 """Of a parameter's step: half the difference by which the axle's points are differentiated."""
@@ -84,7 +84,7 @@ def _document(session: Session, model: FirstOrder, checked: CheckedRange) -> dic
         "characteristics": _packed(np.nan_to_num(model.characteristics)),
         "characteristic_slopes": _packed(np.nan_to_num(model.characteristic_slopes)),
         "curves": _packed(model.curves),
-        "slopes": _packed(model.slopes),
+        "slopes": _packed(_without_loops(model)),
         "chi": model.chi,
         "pull": _packed(model.pull),
         "hessian": _packed(model.hessian),
@@ -101,6 +101,12 @@ def _document(session: Session, model: FirstOrder, checked: CheckedRange) -> dic
         ],
         "shapes": _shapes(session, model),
     }
+
+
+def _without_loops(model: FirstOrder) -> FloatArray:
+    """Its slopes, those of the half-widths left out where none of them moves: half of the page's size."""
+    half = len(model.curves) // 2
+    return model.slopes if model.slopes[half:].any() else model.slopes[:half]
 
 
 def _own_variables(model: FirstOrder) -> list[Variable]:

@@ -102,6 +102,6 @@ def test_every_command_is_a_public_function() -> None:
     from doe_kc.cli.commands import command_names
 
     functions = {n for n in kc.__all__ if inspect.isfunction(getattr(kc, n))}
-    for command in command_names():
+    for command in set(command_names()) - {"live"}:  # a page for hands
         formats = [n for n in functions if n.startswith(f"{command}_")]
         assert command in functions or formats, command

@@ -56,10 +56,11 @@ class Served:
 
 
 @contextmanager
-def serving(out: Path, *options: str) -> Iterator[Served]:
-    """The McPherson beside a virtual car; ended afterwards, whatever happens."""
-    command = [sys.executable, "-m", "doe_kc", "live", str(EXAMPLES / "front_axle"), "--no-browser"]
-    command += ["--measurement", str(RIG / "car_b"), "--out", str(out), *options]
+def serving(out: Path, *options: str, study: Path | None = None) -> Iterator[Served]:
+    """A study, by default the McPherson beside a virtual car; ended afterwards, whatever happens."""
+    command = [sys.executable, "-m", "doe_kc", "live", str(study or EXAMPLES / "front_axle")]
+    command += [] if study else ["--measurement", str(RIG / "car_b")]
+    command += ["--no-browser", "--out", str(out), *options]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     lines: list[str] = []

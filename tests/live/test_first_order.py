@@ -60,4 +60,4 @@ def test_an_error_is_found_where_it_was_made(live: Session, model: FirstOrder) -
     n = live.present.curves.cases["vertical"].input.size
     wrong[: 2 * n] *= 3.0  # vertical, toe: the first curve
     checked = checked_range(replace(model, slopes=wrong), live.compilation, seed=1)
-    assert checked.where == "vertical, toe" and checked.curve_error > 0.3
+    assert checked.where == "vertical motion, toe" and checked.curve_error > 0.3

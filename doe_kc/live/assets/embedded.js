@@ -19,7 +19,7 @@ function embeddedSource() {
   function linear(base, slopes, shift) {
     const out = new Float32Array(base), moved = [];
     shift.forEach((s, j) => { if (s !== 0) moved.push([j, s]); });
-    for (let i = 0; i < out.length; i += 1) {
+    for (let i = 0; i < out.length && i * k < slopes.length; i += 1) {
       let sum = 0;
       for (const [j, s] of moved) sum += slopes[i * k + j] * s;
       out[i] += sum;

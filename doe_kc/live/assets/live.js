@@ -227,11 +227,20 @@ function paintSliders() {
     const row = live.rows.get(slider.path), value = values[i];
     if (row.shown === value) return;
     row.shown = value;
-    row.node.classList.toggle("moved", Math.abs(value - slider.start) > 1e-12 * Math.max(1, Math.abs(value)));
+    row.moved = Math.abs(value - slider.start) > 1e-12 * Math.max(1, Math.abs(value));
+    row.node.classList.toggle("moved", row.moved);
     if (live.dragging === slider.path) return;
     row.range.value = value;
     if (document.activeElement !== row.number) row.number.value = tidy(value, slider);
   });
+  if (!live.dragging) refreshShown();
+}
+
+// A group that depends on what is set follows it, but never while a hand or the focus is in the list.
+function refreshShown() {
+  if (!["moved", "free"].includes($("group").value) || $("sliders").contains(document.activeElement)) return;
+  const shown = Array.from($("sliders").children, (n) => n.dataset.path).join();
+  if (shown !== shownPaths().join()) showSliders();
 }
 
 function snapBack() {
@@ -285,7 +294,7 @@ function shownPaths() {
     if (live.point && slider.point !== live.point) return false;
     if (!words.every((w) => text.includes(w))) return false;
     if (words.length || live.point || group === "" || group === "top") return true;
-    if (group === "moved") return live.rows.get(path).node.classList.contains("moved");
+    if (group === "moved") return live.rows.get(path).moved;
     if (group === "free") return !live.state.locked.includes(path);
     return slider.group === group;
   };
