@@ -1,4 +1,4 @@
-"""The live page in headless Chromium: from slider event to painted frame, updates in a drag, memory, two tabs.
+"""The live page in headless Chromium: slider event to painted frame, updates in a drag, memory, two tabs.
 
 Eight curves and the axle are painted, all load cases are solved. The time of an update runs from the slider's
 input event to the end of the animation frame in which its answer is painted.
@@ -124,8 +124,8 @@ def main() -> None:
         f"| the same with a second tab in another browser | {np.median(both):.0f} ms "
         f"| {np.quantile(both, 0.95):.0f} ms |",
         "",
-        f"Drag of {milliseconds / 1000:.0f} s: {events:.0f} events, {seen / milliseconds * 1000:.0f} full updates "
-        "a second.",
+        f"Drag of {milliseconds / 1000:.0f} s: {events:.0f} events, "
+        f"{seen / milliseconds * 1000:.0f} full updates a second.",
         "",
         f"Memory over {given.updates} updates: server {before[0]:.1f} to {after[0]:.1f} MB, "
         f"page {before[1]:.1f} to {after[1]:.1f} MB. Errors in the pages: {len(errors)}.",

@@ -114,12 +114,12 @@ def _chosen(slopes: LiveSlopes, space: Space) -> np.ndarray:
 
 def _curve_slopes(slopes: LiveSlopes) -> FloatArray:
     """(N, d) in the order of `drawn_curves`; a load case without friction has no slope of its loop."""
-    curves, found = slopes.answer.curves, slopes.expansion.curves
+    curves, gradients = slopes.answer.curves, slopes.expansion.curves
     d = slopes.answer.model.space.dimension
-    mean = [found.cases[case][r].reshape(-1, d) for case in curves.cases for r in RESPONSE_UNITS]
+    mean = [gradients.cases[case][r].reshape(-1, d) for case in curves.cases for r in RESPONSE_UNITS]
     half = [
-        found.half_width[case][r].reshape(-1, d)
-        if case in found.half_width
+        gradients.half_width[case][r].reshape(-1, d)
+        if case in gradients.half_width
         else np.zeros((2 * of_case.input.size, d))
         for case, of_case in curves.cases.items()
         for r in RESPONSE_UNITS

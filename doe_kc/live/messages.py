@@ -101,14 +101,12 @@ class Ask(Strict):
     """Advice on the present design."""
 
     kind: Literal["best_step", "helpers", "invisible"]
-    seq: Sequence_ = 0
 
 
 class Keep(Strict):
     """Write to, or read from, the study's own folder; no path comes from the page."""
 
     kind: Literal["save", "reopen", "export_axle", "export_table", "export_page"]
-    seq: Sequence_ = 0
 
 
 Message = Annotated[

@@ -222,14 +222,13 @@ class Session:
 
     def _step(self, seq: int, *, back: bool) -> Changes:
         before = self.state
-        if not (self._history.undo() if back else self._history.redo()):
-            return Changes(state=False)
+        moved = self._history.undo() if back else self._history.redo()
         self.seq = max(self.seq, seq)
         sliders = before.effects != self.state.effects
         if sliders:
             self._remodel()
-        solve = sliders or before.values != self.state.values
-        return Changes(solve=solve, sliders=sliders)
+        # solved in any case: the page waits for an answer to its number
+        return Changes(solve=True, sliders=sliders, state=moved)
 
     def adopt(self, values: Mapping[str, float], seq: int = 0) -> Changes:
         """Go to values that were advised, as one step."""

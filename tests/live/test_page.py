@@ -200,6 +200,9 @@ def test_snapshots_advice_locks_and_holds(page: Page) -> None:
         "live.model.sliders.filter((s, i) => Math.abs(live.present.exact[i] - s.start) > 1e-9).length"
     )
     assert 1 <= moved <= 3
+    shown = "live.rows.get(s.path).range.value"
+    page.wait("live.painted >= live.sent")
+    assert page.run(f"live.model.sliders.every((s, i) => Math.abs({shown} - live.present.exact[i]) < 1e-9)")
     page.run("document.querySelector('#snapshot-keys button').click()")
     page.wait(f"Math.abs(live.answers.totals(live.present.exact).gap - {before!r}) < 1e-9")
     page.run(f"{hold}.click()")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from doe_kc.live.messages import LONGEST_MESSAGE, read_message
 from doe_kc.live.session import Changes, Session
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from tests.live.cases import session
+from tests.live.cases import EXAMPLES, session
 
 
 def say(live: Session, **message: Any) -> Changes:
@@ -77,7 +78,8 @@ def test_a_drag_is_one_step_of_undo() -> None:
     assert live.values()["ROB.z"] == start + 0.5 and live.can_redo
     move(live, "ROB.z", start + 0.2)
     assert not live.can_redo
-    assert not say(live, kind="redo").solve
+    before = live.state
+    assert not say(live, kind="redo").state and live.state is before
 
 
 def test_a_design_without_equilibrium_keeps_the_last_good_one() -> None:
@@ -154,3 +156,14 @@ def test_huge_and_broken_messages_are_refused() -> None:
     for text in ("{", "", "\0", '{"kind": "undo"}' + " " * LONGEST_MESSAGE, "[" * 5000):
         with pytest.raises(InputError):
             read_message(text)
+
+
+def test_the_program_of_the_page_runs(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    root = EXAMPLES.parent
+    (block,) = re.findall(r"```python\n(.*?)```", (root / "docs" / "live.md").read_text("utf-8"), re.DOTALL)
+    monkeypatch.chdir(root)
+    exec(compile(block, "live.md", "exec"), {})
+    gaps, sentence = capsys.readouterr().out.strip().splitlines()
+    assert len({*gaps.split()}) == 2 and "these 3" in sentence

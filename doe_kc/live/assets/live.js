@@ -397,7 +397,8 @@ function paintCharacteristics() {
     cells[2].textContent = Number.isFinite(z) ? (z > 0 ? "+" : "") + short(z, 2) : "";
     cells[3].textContent = Number.isFinite(terms[i]) ? short(terms[i], 3) : "";
     const change = before ? v - before[i] : NaN;
-    cells[4].textContent = Number.isFinite(change) && Math.abs(change) > 1e-9 ? (change > 0 ? "+" : "") + short(change, 3) : "";
+    const told = Number.isFinite(change) && Math.abs(change) > 5e-4 * Math.max(Math.abs(v), 0.01);
+    cells[4].textContent = told ? (change > 0 ? "+" : "") + short(change, 2) : "";
     const inside = c.target !== null && v >= c.low && v <= c.high;
     row.classList.toggle("inside", inside);
     row.classList.toggle("outside", c.target !== null && !inside);
@@ -489,12 +490,12 @@ function wire() {
   $("reset-all").addEventListener("click", () => ask({ kind: "reset" }));
   $("snapshot").addEventListener("click", () => send({ kind: "snapshot" }));
   $("save").addEventListener("click", () => send({ kind: "save" }));
-  $("reopen").addEventListener("click", () => ask({ kind: "reopen" }));
+  $("reopen").addEventListener("click", () => send({ kind: "reopen" }));
   $("export").addEventListener("change", () => { if ($("export").value) { say("writing …"); send({ kind: $("export").value }); } $("export").value = ""; });
   $("lock-shown").addEventListener("click", () => send({ kind: "lock", paths: shownPaths(), on: true }));
   $("unlock-shown").addEventListener("click", () => send({ kind: "lock", paths: shownPaths(), on: false }));
   $("lock-others").addEventListener("click", () => { const shown = shownPaths(); send({ kind: "lock", on: true }); send({ kind: "lock", paths: shown, on: false }); });
-  for (const what of ["best_step", "helpers", "invisible"]) $(what).addEventListener("click", () => { say("computing …"); ask({ kind: what }); });
+  for (const what of ["best_step", "helpers", "invisible"]) $(what).addEventListener("click", () => { say("computing …"); send({ kind: what }); });
   $("side").addEventListener("change", () => { live.side = $("side").value; for (const c of live.charts) c.build(); });
   $("axle-case").addEventListener("change", () => setCase());
   $("axle-row").addEventListener("input", look);
