@@ -9,18 +9,14 @@ import tomlkit
 
 from doe_kc.axle.model import BUSHING_AXES, strut_clamp
 from doe_kc.axle.parameter_kinds import COORDINATES
+from doe_kc.axle.places import Places
 from doe_kc.axle_file.schema import AxleFile
-from doe_kc.effects import EFFECTS
+from doe_kc.effects import EFFECTS, effect_id
 
 OF_BUSHINGS = ("stiffness", "cubic", "preload")
 """Tables that a bushing has in the file."""
 Place = tuple[str | int, ...]
 """Keys and indices from the top of the file to one number."""
-
-
-def effect_id(key: str) -> str:
-    """Id of the effect that a table's name stands for."""
-    return next((e.id for e in EFFECTS.values() if e.table == key), key)
 
 
 def own_place(name: str) -> Place:
@@ -49,10 +45,10 @@ def path_of(name: str) -> str:
     return f"right.{name[:-2]}" if name.endswith("@R") else name.removesuffix("@L")
 
 
-def option_places(effects: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[Place, float]]:
-    """Every number among the effects' options, defaults included."""
+def option_places(effects: Mapping[str, Mapping[str, Any]], places: Places) -> Iterator[tuple[Place, float]]:
+    """Every number among the effects' options, defaults included. places: of the axle."""
     for key, given in effects.items():
-        ident = effect_id(key)
+        ident = effect_id(key, places)
         defaults = {k: o.default for k, o in EFFECTS[ident].options.items()}
         yield from _numbers(("effects", key), defaults | dict(given))
 

@@ -18,7 +18,6 @@ from doe_kc.axle.parameters import parameter_value
 from doe_kc.axle.places import Places, places_of
 from doe_kc.axle_file.places import (
     Place,
-    effect_id,
     entry,
     option_places,
     own_place,
@@ -27,7 +26,7 @@ from doe_kc.axle_file.places import (
     restore_entry,
 )
 from doe_kc.axle_file.read import axle_from_document
-from doe_kc.effects import EFFECTS
+from doe_kc.effects import EFFECTS, effect_id
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.files import read_bytes, read_toml
 from doe_kc.ground.output import write_whole
@@ -42,14 +41,14 @@ def set_effects(document: tomlkit.TOMLDocument, axle: Axle) -> None:
 
     Faults of the measurement are left out: an axle file does not hold them.
     """
-    tables = document.get("effects", {})
+    tables, places = document.get("effects", {}), places_of(axle)
     for key in list(tables):
-        if effect_id(key) not in axle.effects:
+        if effect_id(key, places) not in axle.effects:
             del tables[key]
-    present = {effect_id(key): key for key in tables}
+    present = {effect_id(key, places): key for key in tables}
     for ident, options in axle.effects.items():
         if ident in present:
-            _change(tables[present[ident]], ident, options, places_of(axle))
+            _change(tables[present[ident]], ident, options, places)
         elif not EFFECTS[ident].on_rig:
             if "effects" not in document:
                 document["effects"] = tomlkit.table(is_super_table=True)
@@ -198,9 +197,10 @@ def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: s
 
 def _drivers(document: tomlkit.TOMLDocument) -> dict[str, list[Place]]:
     """Internal value -> options of effects that it moves with, found by changing each a little."""
-    base = _read(document).values
+    axle = _read(document)
+    base, effects = axle.values, document.unwrap().get("effects", {})
     out: dict[str, list[Place]] = {}
-    for place, value in list(option_places(document.unwrap().get("effects", {}))):
+    for place, value in list(option_places(effects, places_of(axle))):
         trial = document.unwrap()
         put_entry(trial, place, value * 1.0001 if value else 1e-4)
         for name, moved in axle_from_document(trial, source="axle").values.items():
