@@ -14,6 +14,7 @@ from tomlkit.items import Table
 
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
+from doe_kc.axle.parameter_kinds import COORDINATES
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.axle.places import Places, places_of
 from doe_kc.axle_file.places import (
@@ -160,15 +161,27 @@ def _wrong(document: tomlkit.TOMLDocument, axle: Axle) -> list[str]:
 def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
     """Change the document until it reads as the axle; False when that cannot be."""
     drivers = _drivers(document)
+    own = {name: own_place(name, axle.topology.structure) for name in axle.values}
     for _ in range(WRITE_CORRECTIONS):
-        wrong = [n for n in _wrong(document, axle) if n not in drivers and own_place(n)]
+        wrong = [n for n in _wrong(document, axle) if n not in drivers and own[n]]
         left = [n for n in wrong if not n.endswith("@R")]
         for name in left or wrong:
-            put_entry(document, own_place(name), parameter_value(axle, path_of(name)))
+            _add_point(document, own[name])
+            put_entry(document, own[name], parameter_value(axle, path_of(name)))
     for name in _wrong(document, axle):
-        places = [own_place(name), *drivers.get(name, [])]
+        _add_point(document, own[name])
+        places = [own[name], *drivers.get(name, [])]
         any(_solve(document, axle, name, place) for place in places if place)
     return _agrees(document, axle)
+
+
+def _add_point(document: tomlkit.TOMLDocument, place: Place) -> None:
+    """A hardpoint that the file leaves to be derived, as it is read without it."""
+    if place[:1] == ("hardpoints",) and place[1] not in document["hardpoints"]:
+        now = _read(document)
+        document["hardpoints"][place[1]] = [
+            parameter_value(now, f"{place[1]}.{axis}") for axis in COORDINATES
+        ]
 
 
 def _agrees(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
