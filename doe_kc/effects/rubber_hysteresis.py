@@ -52,7 +52,12 @@ class RubberHysteresis(Effect):
         "Filled rubber rubs inside, so that every bushing holds back a little on either way and is stiffer "
         "over a small travel than over a large one."
     )
-    mistaken_for: ClassVar[tuple[str, ...]] = ("steering_friction", "strut_friction", "llr.Fy")
+    mistaken_for: ClassVar[tuple[str, ...]] = (
+        "steering_friction",
+        "strut_friction",
+        "damper_friction",
+        "llr.Fy",
+    )
     shown_by: ClassVar[str] = (
         "a slow force loop of the bushing on a test bench, at the rig's travel and at a tenth of it"
     )

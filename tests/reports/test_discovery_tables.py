@@ -134,7 +134,7 @@ def test_steps_are_ranked_and_the_last_takes_nothing() -> None:
     for step in steps:
         gains = [c.gain for c in step.candidates if c.refitted]
         assert gains == sorted(gains, reverse=True)
-    assert steps[0].candidates[0].label == "Damper friction"
+    assert steps[0].candidates[0].label == "Strut friction"
 
 
 def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
