@@ -94,6 +94,7 @@ def read_state(session: Session) -> LiveState:
         answer = _solved(session, design.values, design.effects)
         if isinstance(answer, LiveAnswer):
             snapshots.append(Snapshot(design.name, design.values, design.effects, answer))
+    _check_rest(session, path, saved)
     bounds = {name: (pair[0], pair[1]) for name, pair in saved.bounds.items()}
     return LiveState(
         values=present.values,
@@ -110,6 +111,28 @@ def _check_paths(session: Session, path: Path, design: SavedDesign) -> None:
     for name in design.values:
         if name not in known:
             raise InputError(f"{path}: {name} is no slider of this study's axle; save a new exploration.")
+
+
+def _check_rest(session: Session, path: Path, saved: SavedExploration) -> None:
+    """InputError for bounds, locks or held characteristics that the page itself could not have set."""
+    targets = session.base.targets
+    known = set() if targets is None else {t.entry.id for t in targets.characteristics}
+    for name in saved.held:
+        if name not in known:
+            raise InputError(f"{path}: held: {name} has no target in this study; remove it.")
+    variables = {v.path: v for v in session.base.with_effects(saved.present.effects).space.variables}
+    for name, (lower, upper) in saved.bounds.items():
+        if name not in variables:
+            continue
+        start = variables[name].start
+        value = saved.present.values.get(name, start)
+        if not lower < upper or not lower <= min(start, value) <= max(start, value) <= upper:
+            raise InputError(
+                f"{path}: bounds.{name} = [{lower:g}, {upper:g}] must rise and hold its start {start:g} and "
+                f"its value {value:g}."
+            )
+        if variables[name].logarithmic and lower <= 0.0:
+            raise InputError(f"{path}: bounds.{name}: expected a lower bound above zero.")
 
 
 def _solved(

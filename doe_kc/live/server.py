@@ -194,6 +194,10 @@ class LiveServer:
         self._in_loop(partial(tab.tell, "shape", self._shape(tab, seq)))
 
     def _quiet(self) -> None:
+        if (
+            self.session.present.model is not self.session.model
+        ):  # its answer is still to come, or there is none
+            return
         slopes = self.session.slopes()
         frame = views.influence_frame(self.session, slopes, self.session.seq).encode()
 
@@ -204,6 +208,7 @@ class LiveServer:
         self._in_loop(tell)
 
     def _advise(self, tab: Tab, what: str) -> None:
+        self._settle()
         try:
             advised = self.session.advise(what)
         except DoeKcError as error:
@@ -216,7 +221,13 @@ class LiveServer:
         if advised.adopt:
             self._spread(self.session.adopt(advised.adopt))
 
+    def _settle(self) -> None:
+        """Advice and files are of what is set, not of the answer before."""
+        if not self.session.settled:
+            self.session.solve_now()
+
     def _keep(self, tab: Tab, what: str) -> None:
+        self._settle()
         try:
             if what == "reopen":
                 state = keep.read_state(self.session)

@@ -205,6 +205,8 @@ class Session:
     def _snapshot(self, name: str) -> Changes:
         if self.failure:
             raise InputError(f"the present design has no answer to keep: {self.failure}")
+        if not self.settled:
+            raise InputError("the present design is still being solved; take the snapshot again.")
         words = name.strip() or f"Snapshot {len(self.state.snapshots) + 1}"
         kept = Snapshot(words, self.state.values, self.state.effects, self.present)
         return self._set(self.state.with_snapshot(kept))
@@ -238,6 +240,14 @@ class Session:
         """Go to a state that was saved, as one step; InputError when it is none of this axle."""
         effective_axle(self.base.axle, state.effects)
         return self._changed(state, seq)
+
+    @property
+    def settled(self) -> bool:
+        """Whether `present` is the answer to the state as it is."""
+        present = self.present
+        if self.failure or present.model is not self.model:
+            return False
+        return all(present.values.get(path) == value for path, value in self.values().items())
 
     def request(self) -> SolveRequest:
         """What has to be solved for the state as it is."""

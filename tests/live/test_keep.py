@@ -63,6 +63,8 @@ def test_an_exploration_is_reopened_as_it_was(live: Session, written: LiveModel)
         ("present", {"values": {"LLF.z": "high"}, "effects": {}}, "present.values.LLF.z"),
         ("schema", "doe_kc.live/9", "schema"),
         ("bounds", {"LLF.z": [1.0]}, "bounds.LLF.z"),
+        ("bounds", {"LLF.z": [1.0, 2.0]}, "bounds.LLF.z"),
+        ("held", ["roll.nothing"], "roll.nothing"),
     ],
 )
 def test_a_wrong_exploration_is_refused(live: Session, key: str, value: object, words: str) -> None:

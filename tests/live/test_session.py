@@ -167,3 +167,24 @@ def test_the_program_of_the_page_runs(
     exec(compile(block, "live.md", "exec"), {})
     gaps, sentence = capsys.readouterr().out.strip().splitlines()
     assert len({*gaps.split()}) == 2 and "these 3" in sentence
+
+
+def test_a_snapshot_is_of_the_answer_to_what_is_set() -> None:
+    live = session()
+    move(live, "RIB.z", live.values()["RIB.z"] + 1.0)
+    assert not live.settled
+    with pytest.raises(InputError, match="still being solved"):
+        say(live, kind="snapshot")
+    live.solve_now()
+    assert live.settled and say(live, kind="snapshot").state
+
+
+def test_an_effect_that_brings_a_slider_is_asked_for_advice() -> None:
+    """The present answer is of another number of sliders until the new axle is solved."""
+    live = session()
+    before = len(live.space.paths)
+    say(live, kind="effect", name="steer_arm_compliance", sizes={})
+    assert len(live.space.paths) > before and not live.settled
+    live.solve_now()
+    assert live.settled and live.advise("helpers").rows
+    live.compilation.wait()

@@ -256,6 +256,7 @@ function firstPlaces(page, count) {
     if (chosen.length < count) chosen.push(own);
   }
   for (const p of rated) if (chosen.length < count && !chosen.includes(p)) chosen.push(p);
+  for (const c of model.cases) if (chosen.length < count) chosen.push({ loadCase: c.id, response: "camber", gap: 0 });
   const order = model.cases.map((c) => c.id);
   return chosen.sort((a, b) => order.indexOf(a.loadCase) - order.indexOf(b.loadCase));
 }

@@ -317,7 +317,8 @@ function fillSelected() {
   live.model.cases.forEach((c, i) => live.model.responses.forEach((r, j) =>
     curves.append(make("option", { value: 1 + m + i * live.model.responses.length + j, text: `${c.label}: ${r.name}`, "data-unit": r.unit }))));
   $("selected").replaceChildren(...options, characteristics, curves);
-  $("selected").value = before || (live.model.data ? "0" : "1");
+  const steer = live.model.characteristics.findIndex((c) => c.id === "vertical.bump_steer");
+  $("selected").value = before || String(live.model.data ? 0 : 1 + Math.max(0, steer));
 }
 
 // ---------------------------------------------------------------- effects
