@@ -12,14 +12,14 @@ from doe_kc.ground.fields import Finite, Strict
 LONGEST_MESSAGE = 16_384
 """Bytes; the largest honest one, an effect with its sizes, has some hundred."""
 Name = Annotated[str, Field(min_length=1, max_length=80)]
-Sequence_ = Annotated[int, Field(ge=0, le=2**32 - 1)]
+MessageNumber = Annotated[int, Field(ge=0, le=2**32 - 1)]
 
 
 class Move(Strict):
     """A slider to an absolute value. last: the slider was let go."""
 
     kind: Literal["move"]
-    seq: Sequence_
+    seq: MessageNumber
     path: Name
     value: Finite
     last: bool = True
@@ -29,7 +29,7 @@ class Reset(Strict):
     """One slider, or all without a path, to the start."""
 
     kind: Literal["reset"]
-    seq: Sequence_ = 0
+    seq: MessageNumber = 0
     path: Name | None = None
 
 
@@ -62,7 +62,7 @@ class SwitchEffect(Strict):
     """An effect on with sizes in their units, or off (sizes null)."""
 
     kind: Literal["effect"]
-    seq: Sequence_ = 0
+    seq: MessageNumber = 0
     name: Name
     sizes: Annotated[dict[Name, Finite], Field(max_length=20)] | None
 
@@ -78,7 +78,7 @@ class PlacedSnapshot(Strict):
     """Drop a snapshot, or go back to its design."""
 
     kind: Literal["drop", "restore"]
-    seq: Sequence_ = 0
+    seq: MessageNumber = 0
     place: Annotated[int, Field(ge=0, lt=10)]
 
 
@@ -86,7 +86,7 @@ class UndoStep(Strict):
     """Undo or redo."""
 
     kind: Literal["undo", "redo"]
-    seq: Sequence_ = 0
+    seq: MessageNumber = 0
 
 
 class Look(Strict):

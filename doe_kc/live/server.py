@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -31,7 +31,7 @@ MOST_MESSAGES = 600
 class Tab:
     """One open page. Of each kind of news only the newest waits to be sent, so that a slow tab lags by one.
 
-    look: load case and row in which it shows the axle.
+    look: load case and row in which it shows the axle. shown: model and snapshots whose curves it has.
     """
 
     def __init__(self, socket: WebSocket) -> None:
@@ -39,6 +39,7 @@ class Tab:
         self._waiting: dict[str, bytes | dict[str, Any]] = {}
         self._wake = asyncio.Event()
         self.look = ("", 0)
+        self.shown: tuple[object, ...] = ()
         self._second, self._count = 0.0, 0
 
     def tell(self, topic: str, news: bytes | dict[str, Any]) -> None:
@@ -153,7 +154,7 @@ class LiveServer:
         if changes.solve:
             self.worker.ask(self.session.request())
 
-    def _introduce(self, tabs: Any) -> None:
+    def _introduce(self, tabs: Iterable[Tab]) -> None:
         said = views.announcement(self.session)
         frame = views.present_frame(self.session, self.session.seq).encode()
         for tab in tabs:
@@ -162,12 +163,19 @@ class LiveServer:
             tab.tell("present", frame)
         self.worker.put(self._quiet)
 
-    def _tell_state(self, tabs: Any) -> None:
+    def _tell_state(self, tabs: Iterable[Tab]) -> None:
+        """The state, and the curves to compare with where a tab does not have them yet."""
         said = views.state_document(self.session)
-        references = [frame.encode() for frame in views.reference_frames(self.session)]
+        snapshots = self.session.state.snapshots
+        shown = (self.session.model, *(s.answer for s in snapshots))
+        frames: list[bytes] = []
         for tab in tabs:
             tab.tell("state", said)
-            for place, frame in enumerate(references):
+            if [id(part) for part in tab.shown] == [id(part) for part in shown]:
+                continue
+            tab.shown = shown
+            frames = frames or [frame.encode() for frame in views.reference_frames(self.session)]
+            for place, frame in enumerate(frames):
                 tab.tell(f"reference {place}", frame)
 
     def _in_loop(self, do: Callable[[], None]) -> None:

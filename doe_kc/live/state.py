@@ -106,5 +106,5 @@ class StateHistory:
         return bool(self._future)
 
 
-STEPS_KEPT = 500
-"""Steps of undo; a state is some kB."""
+STEPS_KEPT = 200
+"""Steps of undo; a state is some kB, each snapshot that was taken in them about a MB."""

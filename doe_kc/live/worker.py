@@ -15,7 +15,7 @@ from doe_kc.ground.threads import limit_process
 from doe_kc.live.session import Session, SolveRequest
 
 log = logging.getLogger("doe_kc")
-QUIET = 0.15
+QUIET = 0.3
 """Seconds without a request after which the sensitivities of the present answer are computed."""
 Job = Callable[[], None]
 

@@ -4,7 +4,7 @@ const $ = (id) => document.getElementById(id);
 const CHARTS = 8, TOP = 10;
 const live = {
   model: null, layout: null, answers: null, state: null, present: null, references: [], influence: null,
-  side: "L", approximate: false, seq: 0, sent: 0, painted: -1, order: [], rows: new Map(), charts: [], axle: null,
+  side: "L", approximate: false, seq: 0, sent: 0, painted: -1, shown: -1, shownAt: 0, arrivedAt: 0, order: [], rows: new Map(), charts: [], axle: null,
   dragging: null, point: "", source: null, paints: 0,
 };
 
@@ -76,6 +76,7 @@ function onFrame(frame) {
   if (frame.kind === PRESENT) {
     if (frame.seq < live.painted || frame.exact.length !== live.answers.d + 2 * live.answers.m + 3) return;
     live.present = frame;
+    live.arrivedAt = performance.now();
     live.seq = Math.max(live.seq, frame.seq);
   } else if (frame.kind === REFERENCE) {
     live.references[frame.seq] = frame;
@@ -128,6 +129,8 @@ function paint() {
   live.painted = live.present.seq;
   live.paints += 1;
   document.body.dataset.seq = live.painted;
+  const seq = live.painted; // the task after this one begins when the browser has drawn the frame
+  setTimeout(() => { live.shown = seq; live.shownAt = performance.now(); }, 0);
 }
 
 function paintTotals() {
