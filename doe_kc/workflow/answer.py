@@ -26,6 +26,7 @@ from doe_kc.reports.page.answer import files_there, write_answer_page
 from doe_kc.reports.page.links import link_pages
 from doe_kc.reports.page.simulation import write_simulation_page
 from doe_kc.reports.render.json import table_records
+from doe_kc.reports.twin_tables import twin_entry
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discovery_document import effect_entry
@@ -149,6 +150,7 @@ def summary_document(
         "verdict": record.verdict,
         "effects": record.effects,
         "characteristics": table_records(characteristic_table(correlation)),
+        **({"twin": twin_entry(correlation.twin)} if correlation.twin is not None else {}),
         "gap": None if record.gap is None else record.gap.model_dump(),
         "rating": correlation.rating,
         "mean_improvement_percent": correlation.mean_improvement,
