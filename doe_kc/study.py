@@ -68,9 +68,9 @@ class Study:
 
     axle: in the state that it was measured in, `state`. hidden: values of the axle file that this state
     hides, by internal name. windows: load case -> half-width of the fit window in the input's unit.
-    twin: the package's own model of the axle that an outside command solves, with the load cases that the
-    command answers; None without a command or where it is switched off. parameters: of the influence study. space: the variables on the unchanged axle, those of
-    `use = "selection"` not yet narrowed.
+    parameters: of the influence study. space: the variables on the unchanged axle, those of
+    `use = "selection"` not yet narrowed. twin: the package's own model of the axle that an outside command
+    solves, with the load cases that the command answers; None without a command or where it is switched off.
     """
 
     name: str

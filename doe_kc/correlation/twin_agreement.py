@@ -1,4 +1,4 @@
-"""Where an outside model and its twin disagree, in units of the records' noise: an import error shows here."""
+"""Where an outside model and its twin disagree, in units of the records' noise: import errors show here."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from doe_kc.correlation.twin_changes import USEFUL_SHARE, explained_share
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, CaseCurves, CurveSet
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.typing import FloatArray
-from doe_kc.variables import Space
 
 AGREED = 1.0
 """Whitened RMS of a difference up to which the records could not tell the two models apart."""
@@ -21,7 +20,7 @@ SHIFT_SHARE = 0.5
 """Of the squared difference that a single variable has to explain to be named."""
 WORST = 3
 """Places that the sentence names."""
-STATIC = "static"
+STATIC_CASE = "static"
 
 
 @dataclass(frozen=True)
@@ -105,15 +104,16 @@ class TwinAgreement:
         if self.beyond:
             places = ", ".join(f"{r.load_case} {r.response} {r.size:.1f}" for r in self.beyond[:WORST])
             yield (
-                f"The outside model and its twin differ beyond the noise of the records, in its units: {places}; "
-                "an import error, or an effect that only one of them has, shows there."
+                f"The outside model and its twin differ, in units of the records' noise: {places}; an import "
+                "error, or an effect that only one of them has, shows there."
             )
         elif any(np.isfinite(r.best) for r in self.rows):
             yield "The records cannot tell the outside model from its twin."
         else:
             yield "Without measured curves there is no noise to compare the outside model and its twin by."
         if self.share is not None:
-            yield f"Of the outside model's changes from design to design the twin makes {100 * self.share:.4g} %."
+            share = 100.0 * self.share
+            yield f"The twin makes {share:.4g} % of the outside model's changes from design to design."
         if not self.usable:
             yield "That is too little: the search went on without it."
         if self.shift is not None:
@@ -168,10 +168,10 @@ def _rows(problem: Problem, first: Pair, last: Pair) -> list[TwinDifference]:
     ]
     return rows + [
         TwinDifference(
-            STATIC,
+            STATIC_CASE,
             angle,
-            start.get((STATIC, angle), np.nan),
-            best.get((STATIC, angle), np.nan),
+            start.get((STATIC_CASE, angle), np.nan),
+            best.get((STATIC_CASE, angle), np.nan),
             _static(outside, twin, angle),
             np.nan,
             np.nan,
@@ -195,7 +195,7 @@ def _whitened(problem: Problem, pair: Pair) -> dict[tuple[str, str], float]:
         end = place.stop
     for figure, value in zip(data.figures, apart[end:], strict=True):
         if figure.row < 0:
-            squares.setdefault((STATIC, figure.response), []).append(float(value**2))
+            squares.setdefault((STATIC_CASE, figure.response), []).append(float(value**2))
     return {place: float(np.sqrt(np.mean(values))) for place, values in squares.items()}
 
 
@@ -237,12 +237,6 @@ def _shift(problem: Problem, start: Evaluated, answer: Evaluated) -> VariableShi
     place = int(np.argmax(share))
     if share[place] < SHIFT_SHARE:
         return None
-    return _named_shift(
-        problem.space, start.point, place, float(along[place] / square[place]), float(share[place])
-    )
-
-
-def _named_shift(space: Space, point: FloatArray, place: int, step: float, share: float) -> VariableShift:
-    variable = space.variables[place]
-    change = step * float(space.slopes(point)[place])
-    return VariableShift(variable.path, change, variable.parameter.unit, share)
+    variable = problem.space.variables[place]
+    step = float(along[place] / square[place] * problem.space.slopes(start.point)[place])
+    return VariableShift(variable.path, step, variable.parameter.unit, float(share[place]))
