@@ -71,6 +71,7 @@ class Study:
     parameters: of the influence study. space: the variables on the unchanged axle, those of
     `use = "selection"` not yet narrowed. twin: the package's own model of the axle that an outside command
     solves, with the load cases that the command answers; None without a command or where it is switched off.
+    discovery_remark: a sentence on whose model a discovery speaks of; empty of the study's own.
     """
 
     name: str
@@ -95,6 +96,7 @@ class Study:
     state: RigState = field(default_factory=RigState)
     hidden: Mapping[str, float] = field(default_factory=dict)
     twin: Axle | None = None
+    discovery_remark: str = ""
 
     def __repr__(self) -> str:
         return f"Study({self.name!r}, {self.space.dimension} variables, from {self.source})"
