@@ -47,8 +47,8 @@ TWIN_ADVICE = (
     "the records, as advice: the outside model was correlated as it is."
 )
 NO_TWIN = (
-    "What the outside model lacks was not looked for: its twin does not change as it does, or one of them gave "
-    "no curves."
+    "What the outside model lacks was not looked for: its twin does not change as it does, or one of them "
+    "gave no curves."
 )
 ADVICE = (
     "What the model lacks was looked for on the package's own model of the study's axle file, as advice: the "

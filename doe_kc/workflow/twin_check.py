@@ -8,7 +8,7 @@ from doe_kc.study import Study
 
 SAME = 1e-6
 """Relative difference up to which two nominal values are one, written with other digits."""
-LISTED = 4
+TWIN_NAMES = 4
 """Numbers that a sentence names."""
 
 
@@ -16,8 +16,8 @@ def twin_differences(study: Study) -> Iterator[str]:
     """A sentence on numbers of the twin that are missing or others in the study's axle file, which is what is
     known of the outside model.
 
-    A variable is set to the same value in both models; what is none keeps the difference. None for a twin that
-    is the study's own axle.
+    A variable is set to the same value in both models; what is none keeps the difference. No sentence for
+    a twin that is the study's own axle.
     """
     if study.twin is None or study.twin_path == study.axle_path:
         return
@@ -42,5 +42,5 @@ def _named(names: list[str]) -> list[str]:
 
 
 def _listed(words: list[str]) -> str:
-    more = f" and {len(words) - LISTED} more" if len(words) > LISTED else ""
-    return ", ".join(words[:LISTED]) + more
+    more = f" and {len(words) - TWIN_NAMES} more" if len(words) > TWIN_NAMES else ""
+    return ", ".join(words[:TWIN_NAMES]) + more

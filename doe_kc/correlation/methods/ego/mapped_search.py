@@ -7,7 +7,7 @@ benchmarks/twin.py compares this with other corrections.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -36,15 +36,19 @@ INNER_GAIN = 1e-4
 """Relative gain of an inner step below which a proposal has settled."""
 
 
+ModelBuilder = Callable[[Problem, Sequence[Evaluated]], "MappedModel | None"]
+
+
 @dataclass(frozen=True)
 class MappedSearch:
     """region: about the best design. idle: proposals in a row without a worthwhile gain. useful: whether the
-    twin's changes are those of the outside model."""
+    twin's changes are those of the outside model. models: how the twin is corrected."""
 
     problem: Problem
     region: TrustRegion = field(default_factory=lambda: TrustRegion.first(MAPPED_RADIUS))
     idle: int = 0
     useful: bool = True
+    models: ModelBuilder = field(default_factory=lambda: mapped_model)
 
     @property
     def active(self) -> bool:
@@ -69,7 +73,7 @@ class MappedSearch:
         """The next proposal; None where the twin leads to a known design or has no equilibrium."""
         solved = [e for e in evaluated if e.score is not None]
         try:
-            model = _mapped_model(self.problem, solved)
+            model = self.models(self.problem, solved)
             proposal = None if model is None else _proposal(model, self.region)
         except RunError:
             return None
@@ -79,7 +83,7 @@ class MappedSearch:
 
 
 @dataclass(frozen=True)
-class _MappedModel:
+class MappedModel:
     """The twin with its answers mapped onto those of the outside model."""
 
     problem: Problem
@@ -107,7 +111,7 @@ class _MappedModel:
         return LinearModel.expansion(point, outputs, self.mapping.matrix @ slopes)
 
 
-def _mapped_model(problem: Problem, solved: Sequence[Evaluated]) -> _MappedModel | None:
+def mapped_model(problem: Problem, solved: Sequence[Evaluated]) -> MappedModel | None:
     """From the designs that both models answer; None where the best one is not among them."""
     best = max(solved, key=lambda e: e.merit)
     if problem.twin_answer(best.point).score is None:
@@ -124,10 +128,10 @@ def _mapped_model(problem: Problem, solved: Sequence[Evaluated]) -> _MappedModel
         next(place for place, i in enumerate(both) if archive.solved[i] is archive.best),
         scale,
     )
-    return _MappedModel(problem, archive, mapping)
+    return MappedModel(problem, archive, mapping)
 
 
-def _proposal(model: _MappedModel, region: TrustRegion) -> Candidate:
+def _proposal(model: MappedModel, region: TrustRegion) -> Candidate:
     """The design on levels of the best merit expected in the region, and what is expected of it."""
     problem, composite, start = model.problem, model.archive.composite, model.archive.best.point
     box, point = region.box(start), start
