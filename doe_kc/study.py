@@ -213,7 +213,7 @@ def _twin(study: Study) -> Axle | None:
             f"{place}: is of the type {other}, the study's axle of {ours}; name an axle file of that type, "
             "or twin = false."
         )
-    answered = options.load_cases or list(study.axle.load_cases)
+    answered = [c for c in study.axle.load_cases if not options.load_cases or c in options.load_cases]
     for case in answered:
         if case not in twin.load_cases:
             raise InputError(
