@@ -19,6 +19,7 @@ from benchmarks.twin.cars import TWIN_CASES, TwinCase  # isort: skip  # after th
 from benchmarks.twin.corrections import AS_SHIPPED, CORRECTIONS  # isort: skip
 from benchmarks.twin.report import report  # isort: skip
 from benchmarks.twin.running import NO_TWIN, TwinRun, run  # isort: skip
+from benchmarks.twin.useless import USELESS_SDS, run_useless, useless_rows  # isort: skip
 
 DEFAULT = Path(tempfile.gettempdir()) / "doe_kc_outside_twin"
 
@@ -27,8 +28,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--out", type=Path, default=DEFAULT, help="folder of finished runs; they are kept")
     parser.add_argument("--seeds", type=int, default=1, help="of noise and search")
-    parser.add_argument("--budget", type=int, default=16, help="evaluations of one search")
+    parser.add_argument("--budget", type=int, default=12, help="evaluations of one search")
     parser.add_argument("--corrections", nargs="*", default=[*CORRECTIONS, NO_TWIN])
+    parser.add_argument("--useless", type=int, default=5, help="seeds with a twin of little use")
     parser.add_argument("--run-only", action="store_true", help="only run, report nothing")
     given = parser.parse_args()
     searches = [
@@ -40,7 +42,11 @@ def main() -> None:
     ]
     runs = list(_runs(searches, given.out, given.budget))
     if not given.run_only:
-        publish("outside_twin", report(runs, "python benchmarks/outside_twin.py", machine()))
+        useless = [run_useless(sd, seed) for sd in USELESS_SDS for seed in range(1, given.useless + 1)]
+        publish(
+            "outside_twin",
+            report(runs, useless_rows(useless), "python benchmarks/outside_twin.py", machine()),
+        )
 
 
 def _runs(searches: list[tuple[TwinCase, str, int]], out: Path, budget: int) -> Iterator[TwinRun]:

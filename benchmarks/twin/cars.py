@@ -81,13 +81,13 @@ TWIN_CASES = (
 )
 
 
-def wrongly_imported(axle: Axle) -> Axle:
-    """The axle that the wrong import was made of: what it really is, always the same."""
+def wrongly_imported(axle: Axle, sd: float = BUSHING_SD) -> Axle:
+    """The axle as a wrong import has it, always the same. sd: of the logarithm of a bushing's stiffness."""
     rng = np.random.default_rng(7)
     values: dict[str, float] = {}
     for name, value in axle.values.items():
         if name.endswith("@L") and ".stiffness." in name:
-            factor = float(np.exp(rng.normal(0.0, BUSHING_SD)))
+            factor = float(np.exp(rng.normal(0.0, sd)))
             values |= {f"{name[:-1]}{side}": value * factor for side in "LR"}
     for point in ("CLAMP.x", "UPBBI.x", "ARB.x", "ARB.z"):
         values |= {f"{point}@{side}": axle.values[f"{point}@{side}"] + POINT_ERROR for side in "LR"}

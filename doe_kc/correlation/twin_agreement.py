@@ -115,7 +115,7 @@ class TwinAgreement:
             share = 100.0 * self.share
             yield f"The twin makes {share:.4g} % of the outside model's changes from design to design."
         if not self.usable:
-            yield "That is too little: the search went on without it."
+            yield "That is too little to lead a search on, or to give slopes."
         if self.shift is not None:
             yield (
                 f"{self.shift.path} changed by {self.shift.change:+.3g} {self.shift.unit} in the twin would "

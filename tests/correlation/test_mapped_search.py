@@ -50,11 +50,14 @@ def test_a_twin_of_something_else_is_let_go() -> None:
     problem = with_twin(unrelated(synthetic().map))
     run = search(problem)
     origins = [e.candidate.origin for e in run.evaluated]
-    assert origins.count(MAPPED) <= 2 and "opening sample" in origins
-    assert deviation(problem, run, BUDGET) < 0.2
+    last = max(i for i, origin in enumerate(origins) if origin == MAPPED)
+    assert last < 12 and origins[last + 1] == "opening sample"
+    alone = search(problem, gradients=False)
+    for count in (8, 16, BUDGET):  # what the mapping learns is worth more than the sample that it puts off
+        assert deviation(problem, run, count) < max(deviation(problem, alone, count), 1e-6)
     agreement = twin_agreement(problem, run.evaluated, run.evaluated[run.best])
     assert agreement is not None and agreement.status == "not_usable" and not agreement.usable
-    assert "went on without it" in agreement.line
+    assert "too little to lead" in agreement.line
 
 
 def test_a_twin_without_an_answer_does_not_stop_the_search() -> None:

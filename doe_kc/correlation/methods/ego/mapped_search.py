@@ -59,14 +59,15 @@ class MappedSearch:
         """With the answer to its proposal. evaluated: all designs before it."""
         best = max(evaluated, key=lambda e: e.merit)
         gain = answer.merit - best.merit
+        idle = 0 if gain > GAIN * max(abs(best.merit), 1e-3) else self.idle + 1
         share = explained_share(self.problem, [*evaluated, answer])
         return replace(
             self,
             region=self.region.after(
                 float(gain > 0.0), length=float(np.abs(answer.point - best.point).max())
             ),
-            idle=0 if gain > GAIN * max(abs(best.merit), 1e-3) else self.idle + 1,
-            useful=share is None or share >= USEFUL_SHARE,
+            idle=idle,
+            useful=idle < MAPPED_PATIENCE or share is None or share >= USEFUL_SHARE,
         )
 
     def candidate(self, evaluated: Sequence[Evaluated]) -> Candidate | None:
