@@ -47,9 +47,9 @@ def report(runs: Sequence[TwinRun], useless: Iterable[str], command: str, machin
         "",
         "## Twins of little use",
         "",
-        "The problem of [the optimizers](optimizers.md), all 72 variables, continuous; own solver as the outside "
-        "one, the wrong import as its twin. Evaluations to 10, 1 and 0.1 % of the start's deviation, and to the "
-        "first design that meets every constraint; median (worst) of the seeds.",
+        "The problem of [the optimizers](optimizers.md), all 72 variables, continuous; own solver as the "
+        "outside one, the wrong import as its twin. Evaluations to 10, 1 and 0.1 % of the start's deviation, "
+        "and to the first design that meets every constraint; median (worst) of the seeds.",
         "",
         "| search | seeds | 10 % | 1 % | 0.1 % | feasible |",
         "|---|---|---|---|---|---|",

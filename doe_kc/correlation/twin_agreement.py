@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.correlation.problem import Evaluated, Problem
+from doe_kc.correlation.reach import answers_alike
 from doe_kc.correlation.status import STATUS_LABELS, Status
 from doe_kc.correlation.twin_changes import USEFUL_SHARE, explained_share
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, CaseCurves, CurveSet
@@ -29,7 +30,8 @@ class TwinDifference:
 
     start, best: whitened RMS over the records' points, at the first design and at the one handed over; nan
     without records. largest: of the mean curve at the design handed over, signed, in the response's unit,
-    at: its input (nan of a static angle). loop: the same of the half-widths.
+    at: its input (nan of a static angle). loop: the same of the half-widths; loop_noise: their RMS in
+    standard deviations of a point of the mean curve, nan without records.
     """
 
     load_case: str
@@ -39,6 +41,7 @@ class TwinDifference:
     largest: float
     at: float
     loop: float
+    loop_noise: float = np.nan
 
     @property
     def unit(self) -> str:
@@ -47,8 +50,8 @@ class TwinDifference:
 
     @property
     def size(self) -> float:
-        """The larger of both whitened differences; 0 without records."""
-        return float(np.nan_to_num(max(self.start, self.best)))
+        """The largest of the differences in noise; 0 without records."""
+        return max(float(np.nan_to_num(v)) for v in (self.start, self.best, self.loop_noise))
 
 
 @dataclass(frozen=True)
@@ -67,12 +70,16 @@ class VariableShift:
 @dataclass(frozen=True)
 class TwinAgreement:
     """rows: worst first. share: of the outside model's changes from design to design that the twin makes too,
-    see `explained_share`. shift: the variable that explains most of the difference, None when none does."""
+    see `explained_share`. shift: the variable that explains most of the difference, None when none does.
+    reason: why the twin has no answer. alike: whether the characteristics with a target agree at the start,
+    see `answers_alike`: all that there is to say without records.
+    """
 
     rows: tuple[TwinDifference, ...]
     share: float | None
     shift: VariableShift | None
     reason: str = ""
+    alike: bool = True
 
     @property
     def status(self) -> Status:
@@ -80,7 +87,12 @@ class TwinAgreement:
         not_usable: the twin has no answer, or changes otherwise than the outside model."""
         if self.reason or (self.share is not None and self.share < USEFUL_SHARE):
             return "not_usable"
-        return "doubtful" if self.beyond else "sound"
+        return "doubtful" if self.beyond or not (self.by_records or self.alike) else "sound"
+
+    @property
+    def by_records(self) -> bool:
+        """Whether there is noise to compare by."""
+        return any(np.isfinite(r.best) for r in self.rows)
 
     @property
     def usable(self) -> bool:
@@ -107,10 +119,14 @@ class TwinAgreement:
                 f"The outside model and its twin differ, in units of the records' noise: {places}; an import "
                 "error, or an effect that only one of them has, shows there."
             )
-        elif any(np.isfinite(r.best) for r in self.rows):
+        elif self.by_records:
             yield "The records cannot tell the outside model from its twin."
         else:
-            yield "Without measured curves there is no noise to compare the outside model and its twin by."
+            words = "agree to" if self.alike else "differ by more than"
+            yield (
+                "Without measured curves there is no noise to compare by; the characteristics of the outside "
+                f"model and its twin {words} a fifth of their intervals' half-widths."
+            )
         if self.share is not None:
             share = 100.0 * self.share
             yield f"The twin makes {share:.4g} % of the outside model's changes from design to design."
@@ -138,6 +154,7 @@ def twin_agreement(problem: Problem, evaluated: Sequence[Evaluated], best: Evalu
         tuple(sorted(rows, key=lambda r: -r.size)),
         explained_share(problem, evaluated),
         _shift(problem, start, answers[0]) if any(r.size > AGREED for r in rows) else None,
+        alike=answers_alike(problem.targets, answers[0].outcome, start.outcome),
     )
 
 
@@ -162,7 +179,7 @@ def _rows(problem: Problem, first: Pair, last: Pair) -> list[TwinDifference]:
             response,
             start.get((case, response), np.nan),
             best.get((case, response), np.nan),
-            *_largest(outside.cases[case], twin.cases[case], response),
+            *_largest(outside.cases[case], twin.cases[case], response, _level(problem, case, response)),
         )
         for case, response in places
     ]
@@ -199,8 +216,18 @@ def _whitened(problem: Problem, pair: Pair) -> dict[tuple[str, str], float]:
     return {place: float(np.sqrt(np.mean(values))) for place, values in squares.items()}
 
 
-def _largest(outside: CaseCurves, twin: CaseCurves, response: str) -> tuple[float, float, float]:
-    """Largest difference of the mean curves, its input, and that of the half-widths; signed."""
+def _level(problem: Problem, load_case: str, response: str) -> float:
+    """RMS standard deviation of a measured point, both wheels, in its unit; nan without records."""
+    curves = [c for c in problem.likelihood.curves if (c.load_case, c.response) == (load_case, response)]
+    levels = np.concatenate([c.level for c in curves]) if curves else np.array([np.nan])
+    return float(np.sqrt(np.mean(levels**2)))
+
+
+def _largest(
+    outside: CaseCurves, twin: CaseCurves, response: str, level: float
+) -> tuple[float, float, float, float]:
+    """Largest difference of the mean curves, its input, and that of the half-widths, signed; the latter's RMS
+    over `level`."""
     grid = outside.input
     inside = (grid >= twin.input[0]) & (grid <= twin.input[-1])
 
@@ -212,7 +239,8 @@ def _largest(outside: CaseCurves, twin: CaseCurves, response: str) -> tuple[floa
     mean = apart(outside.mean[response], twin.mean[response])
     loop = apart(outside.half_width[response], twin.half_width[response])
     place = np.unravel_index(np.argmax(np.abs(mean)), mean.shape)
-    return float(mean[place]), float(grid[inside][place[1]]), float(loop.flat[np.argmax(np.abs(loop))])
+    widest = float(loop.flat[np.argmax(np.abs(loop))])
+    return float(mean[place]), float(grid[inside][place[1]]), widest, float(np.sqrt(np.mean(loop**2))) / level
 
 
 def _static(outside: CurveSet, twin: CurveSet, angle: str) -> float:

@@ -11,7 +11,8 @@ from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 TWIN_REMARK = (
     "The outside model less its twin. In noise: RMS over the measured points in standard deviations of the "
-    "records, both wheels; up to 1 the records cannot tell the models apart."
+    "records, both wheels; up to 1 the records cannot tell the models apart. Half-widths of loops "
+    "likewise, in standard deviations of a point."
 )
 
 TWIN_COLUMNS: tuple[Column[TwinDifference], ...] = (
@@ -28,6 +29,8 @@ TWIN_COLUMNS: tuple[Column[TwinDifference], ...] = (
            page=PageCell(digits=3)),
     Column("at", "at input", lambda r: r.at, "0.###", 11, json="at", page=PageCell(digits=4)),
     Column("loop", "Largest of half-width", lambda r: r.loop, "0.0000", 20, json="loop",
+           page=PageCell(digits=3)),
+    Column("loop_noise", "Half-width in noise", lambda r: r.loop_noise, "0.0", 18, json="loop_noise",
            page=PageCell(digits=3)),
 )  # fmt: skip
 

@@ -65,6 +65,17 @@ def test_noise_units_are_those_of_the_records() -> None:
     assert row.at in ours.input and row.loop == 0.0
 
 
+def test_a_friction_that_one_model_has_shows_in_the_loops() -> None:
+    known = real()
+    rubbing = apply_effect(known.problem.axle, "steering_friction", {}, source="test")
+    problem = replace(known.problem, exact=False, twin=Twin(rubbing))
+    agreement = twin_agreement(problem, known.run.evaluated, known.best)
+    assert agreement is not None and agreement.status == "doubtful"
+    toe = next(r for r in agreement.rows if (r.load_case, r.response) == ("lateral", "toe"))
+    assert toe.loop < 0.0 or toe.loop > 0.0
+    assert toe.loop_noise > 1.0 and toe in agreement.beyond
+
+
 def test_it_stands_everywhere(tmp_path: Path) -> None:
     known = disagreeing()
     assert known.twin is not None
@@ -91,6 +102,8 @@ def test_without_records_the_differences_have_no_size() -> None:
     row = TwinDifference("lateral", "toe", np.nan, np.nan, 0.1, 500.0, 0.0)
     agreement = TwinAgreement((row,), None, None)
     assert row.size == 0.0 and agreement.status == "sound" and "Without measured curves" in agreement.line
+    apart = replace(agreement, alike=False)
+    assert apart.status == "doubtful" and "differ by more than a fifth" in apart.line
     known = real()
     one = known.problem.judged(0, Candidate(known.best.point, "x"), known.best.outcome)
     assert twin_agreement(known.problem, [one], one) is None
