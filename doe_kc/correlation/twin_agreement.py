@@ -11,9 +11,10 @@ from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.reach import answers_alike
 from doe_kc.correlation.status import STATUS_LABELS, Status
 from doe_kc.correlation.twin_changes import USEFUL_SHARE, explained_share
-from doe_kc.curves import ANGLES, RESPONSE_UNITS, CaseCurves, CurveSet
+from doe_kc.curves import ANGLES, RESPONSE_UNITS, CaseCurves, CurveSet, response_name
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 
 AGREED = 1.0
 """Whitened RMS of a difference up to which the records could not tell the two models apart."""
@@ -114,7 +115,10 @@ class TwinAgreement:
             yield f"The twin gives no answer to compare: {self.reason}."
             return
         if self.beyond:
-            places = ", ".join(f"{r.load_case} {r.response} {r.size:.1f}" for r in self.beyond[:WORST])
+            places = ", ".join(
+                f"{case_label(r.load_case)} ({response_name(r.response)}) {r.size:.1f}"
+                for r in self.beyond[:WORST]
+            )
             yield (
                 f"The outside model and its twin differ, in units of the records' noise: {places}; an import "
                 "error, or an effect that only one of them has, shows there."

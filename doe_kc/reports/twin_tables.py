@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from doe_kc.correlation.twin_agreement import TwinAgreement, TwinDifference
-from doe_kc.reports.names import case_label, response_name
+from doe_kc.curves import response_name
+from doe_kc.load_cases import case_label
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from openpyxl import load_workbook
 
 from doe_kc.correlation.problem import Candidate
 from doe_kc.correlation.result import Correlation
@@ -13,7 +14,7 @@ from doe_kc.correlation.twin import Twin
 from doe_kc.correlation.twin_agreement import TwinAgreement, TwinDifference, twin_agreement
 from doe_kc.effects import apply_effect
 from doe_kc.reports.correlation_summary import summary
-from doe_kc.reports.correlation_workbook import correlation_workbook
+from doe_kc.reports.correlation_workbook import write_correlation_workbook
 from doe_kc.reports.page.correlation import twin_section, write_correlation_page
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.twin_tables import twin_entry, twin_table
@@ -41,7 +42,7 @@ def test_the_places_of_an_effect_that_one_model_has_come_first() -> None:
     worst = agreement.rows[0]
     sizes = [r.size for r in agreement.rows]
     assert sizes == sorted(sizes, reverse=True) and worst.size > 5.0
-    assert "lateral" in agreement.line and "import error" in agreement.line
+    assert "ateral" in agreement.line and "(camber)" in agreement.line and "import error" in agreement.line
 
 
 def test_noise_units_are_those_of_the_records() -> None:
@@ -85,8 +86,8 @@ def test_it_stands_everywhere(tmp_path: Path) -> None:
     assert entry["status"] == "doubtful" and entry["differences"][0]["noise_best"] > 5.0
     columns = table_columns(twin_table(known.twin))
     assert columns["load_case"][0].startswith("lateral") and len(columns["at"]) == len(known.twin.rows)
-    book = correlation_workbook(known, study="s", date="d")
-    assert "Twin" in book.sheetnames
+    book = write_correlation_workbook(tmp_path / "book.xlsx", known, study="s", date="d")
+    assert "Twin" in load_workbook(book).sheetnames
     (section,) = twin_section(known)
     page = write_correlation_page(tmp_path / "page.html", known, None, study="s", date="d")
     assert section.title == "Twin" and "Outside model and twin" in page.read_text(encoding="utf-8")
