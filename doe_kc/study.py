@@ -220,6 +220,13 @@ def _twin(study: Study) -> Axle | None:
                 f"{place}: has no load case {case}, which the outside model answers; add it to the twin, or "
                 "leave it out of solver.load_cases."
             )
+        ends = [float(np.abs(a.load_cases[case].inputs()).max()) for a in (study.axle, twin)]
+        if ends[1] < ends[0] * (1.0 - 1e-9):
+            unit = study.axle.load_cases[case].unit
+            raise InputError(
+                f"{place}: sweeps load case {case} to {ends[1]:g} {unit}, the study's axle to {ends[0]:g}; "
+                f"give [load_cases.{case}] of the twin the same amplitude."
+            )
     for path in (*study.space.paths, *(t.follower for t in study.space.ties), *(study.space.fixed or {})):
         parameter_value(twin, path, source=place)
     return replace(twin, load_cases={k: c for k, c in twin.load_cases.items() if k in answered})

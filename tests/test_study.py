@@ -265,12 +265,15 @@ def test_the_twin_of_an_outside_model(tmp_path: Path) -> None:
         ("twin = 3", "solver.twin: expected the path of an axle file, true or false"),
         ('twin = ""', "solver.twin: is no path"),
         ('twin = "none.toml"', "none.toml: there is no such TOML file"),
+        ('twin = "short.toml"', "sweeps load case roll to 2 deg, the study's axle to 4; give"),
         ('twin = "other.toml"', "is of the type double_wishbone_front.*twin = false"),
     ],
 )
 def test_a_twin_that_cannot_be_one(tmp_path: Path, keys: str, message: str) -> None:
     other = EXAMPLE.parent / "double_wishbone_front" / "axle.toml"
     shutil.copy(other, tmp_path / "other.toml")
+    text = (EXAMPLE / "axle.toml").read_text(encoding="utf-8")
+    (tmp_path / "short.toml").write_text(text.replace("amplitude = 4.0", "amplitude = 2.0"), encoding="utf-8")
     path = written(tmp_path, OUTSIDE + keys + "\n")
     with pytest.raises(InputError, match=message) as caught:
         read_study(path)

@@ -60,15 +60,19 @@ class MappedSearch:
         best = max(evaluated, key=lambda e: e.merit)
         gain = answer.merit - best.merit
         idle = 0 if gain > GAIN * max(abs(best.merit), 1e-3) else self.idle + 1
-        share = explained_share(self.problem, [*evaluated, answer])
-        return replace(
+        moved = replace(
             self,
             region=self.region.after(
                 float(gain > 0.0), length=float(np.abs(answer.point - best.point).max())
             ),
             idle=idle,
-            useful=idle < MAPPED_PATIENCE or share is None or share >= USEFUL_SHARE,
         )
+        return moved if idle < MAPPED_PATIENCE else moved.settled([*evaluated, answer])
+
+    def settled(self, evaluated: Sequence[Evaluated]) -> MappedSearch:
+        """With nothing more to propose: judged by the changes of both models over all designs."""
+        share = explained_share(self.problem, evaluated)
+        return replace(self, idle=MAPPED_PATIENCE, useful=share is None or share >= USEFUL_SHARE)
 
     def candidate(self, evaluated: Sequence[Evaluated]) -> Candidate | None:
         """The next proposal; None where the twin leads to a known design or has no equilibrium."""

@@ -12,7 +12,6 @@ References: D. R. Jones, M. Schonlau, W. J. Welch, J. Global Optim. 13, 1998; R.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import ClassVar, final
 
 import numpy as np
@@ -20,7 +19,7 @@ import numpy as np
 from doe_kc.correlation.least_squares import most_probable_step
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
-from doe_kc.correlation.methods.ego.mapped_search import MAPPED, MAPPED_PATIENCE, MappedSearch
+from doe_kc.correlation.methods.ego.mapped_search import MAPPED, MappedSearch
 from doe_kc.correlation.methods.ego.proposer import Proposer
 from doe_kc.correlation.methods.ego.strategy import PATIENCE_WITH_SLOPES, Strategy, VarianceCalibration
 from doe_kc.correlation.modelled.archive import Archive, Slopes, build_archive
@@ -113,8 +112,10 @@ class Ego(SurrogateMethod):
             candidate = self._mapped.candidate(self._evaluated)
             if candidate is not None:
                 return [candidate]
-            self._mapped = replace(self._mapped, idle=MAPPED_PATIENCE)
-            missing = self._missing()
+            self._mapped = self._mapped.settled(self._evaluated)
+            if not self._mapped.useful:
+                self._without_twin()
+            missing, self._opened = self._missing(), True
             if missing > 0:
                 return list(self._opening_designs(missing, int(rng.integers(2**31))))
         proposer = self._proposer()
