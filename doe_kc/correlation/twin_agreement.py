@@ -20,6 +20,8 @@ AGREED = 1.0
 """Whitened RMS of a difference up to which the records could not tell the two models apart."""
 SHIFT_SHARE = 0.5
 """Of the squared difference that a single variable has to explain to be named."""
+WIDEST_SHIFT = 0.5
+"""Of a variable's range: what needs more is no error of that variable, and first order says nothing of it."""
 WORST = 3
 """Places that the sentence names."""
 STATIC_CASE = "static"
@@ -266,6 +268,7 @@ def _shift(problem: Problem, start: Evaluated, answer: Evaluated) -> VariableShi
     jacobian = data.jacobian(expansion.curves, expansion.characteristics)
     along, square = jacobian.T @ apart, (jacobian**2).sum(axis=0)
     share = along**2 / np.maximum(square * (apart @ apart), 1e-300)
+    share[np.abs(along) > WIDEST_SHIFT * square] = 0.0
     place = int(np.argmax(share))
     if share[place] < SHIFT_SHARE:
         return None
