@@ -33,11 +33,19 @@ ORDER = {"linear": 0, "rbf": 2, "gp": 3}
 
 def test_the_simplest_of_the_nearly_best_is_chosen() -> None:
     q2 = {
-        "gp": np.array([0.99, 0.990, 0.99999, np.nan]),
-        "linear": np.array([0.80, 0.9895, 0.99995, np.nan]),
-        "rbf": np.array([0.98, 0.991, 0.99999, np.nan]),
+        "gp": np.array([0.99, 0.9999999, np.nan]),
+        "linear": np.array([0.9895, 0.9999995, np.nan]),
+        "rbf": np.array([0.985, 0.9999999, np.nan]),
     }
-    assert choose(q2, ORDER) == ("gp", "rbf", "linear", "linear")
+    assert choose(q2, ORDER) == ("linear", "linear", "linear")
+    assert choose({k: v[:1] for k, v in q2.items()}, ORDER) == ("linear",)
+
+
+def test_what_other_outputs_tell_of_a_model_counts() -> None:
+    """1 - Q2 of 0.010 and 0.013 in one output, 0.010 and 0.001 in eight others."""
+    q2 = {"linear": np.full(9, 0.990), "gp": np.r_[0.987, np.full(8, 0.999)]}
+    assert choose({k: v[:1] for k, v in q2.items()}, ORDER) == ("linear",)
+    assert choose(q2, ORDER) == ("gp",) * 9
 
 
 def test_joined_models_predict_each_its_own() -> None:
@@ -152,7 +160,7 @@ def test_too_few_designs_and_unknown_models_are_named() -> None:
     with pytest.raises(InputError, match="'forest' is no surrogate"):
         fit_study(P.x, P.y, models=("forest",))
     assert default_models(40, 72) == ["gp", "gp_ard", "linear", "rbf"]
-    assert default_models(144, 72, slopes=True) == ["gp", "gp_slopes", "linear", "rbf"]
+    assert default_models(401, 72, slopes=True) == ["gp", "gp_slopes", "linear", "rbf"]
 
 
 def test_shares_of_a_plane_are_its_squared_slopes() -> None:
