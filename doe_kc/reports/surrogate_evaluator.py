@@ -144,8 +144,9 @@ def _listed(formula: MeanFormula, block: int | None) -> dict[str, object]:
 def write_book_evaluator(path: Path, saved: SavedSurrogate, formulas: list[MeanFormula]) -> Path:
     """Sheet Evaluator: values to type in, characteristics by live formulas; their numbers in other sheets.
 
-    Terms has a column an output and a row a design, Distances alike for a Matérn kernel, Rows the designs, Numbers a column an output: level, then
-    slope, centre and curvature of every variable. RunError as `write_book`.
+    Terms has a column an output and a row a design, Distances alike for a Matérn kernel, Rows the designs,
+    Numbers a column an output: level, then slope, centre and curvature of every variable. RunError as
+    `write_book`.
     """
     book = new_book(f"Surrogate: {saved.study}")
     blocks, which = _row_blocks(formulas)

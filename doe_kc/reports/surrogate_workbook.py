@@ -21,7 +21,7 @@ SURROGATE_LEGEND = (
     ("Q2", "1 - left-out squared error / squares about the mean: 1 = perfect, 0 = no better than the mean."),
     ("RMSE", "Root mean square left-out error, in the characteristic's unit."),
     ("Coverage", "Share of left-out designs inside the 95 % interval, as predicted and after calibration; "
-     "the latter with its own 95 % limits (Wilson), as it is counted on the designs that there are."),
+     "the latter with 95 % limits of what it is on new designs, as its scale is known from so few."),
     ("Sharpness", "Half width of the 95 % interval over the characteristic's standard deviation."),
     ("Chosen", f"The simplest model whose left-out squared error is within {ERROR_MARGIN:.0%} of the "
      f"best one's, or whose 1 - Q2 is at most {EXACT:g}."),

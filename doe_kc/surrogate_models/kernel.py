@@ -4,8 +4,8 @@ k(x, x') = c + z'Wz + b E(x, x') + nugget [x = x'],  z = x - centre,  W, V diago
 E = exp(r - (q + q') / 2) with r = z'Vz', q = z'Vz: the squared exponential of length-scales 1 / sqrt(V).
 Where value and slope at the centre are known ("pinned"), E is that kernel conditioned on both being zero
 there: exp(-(q + q') / 2) (exp(r) - 1 - r), and W = c = 0.
-Where it is "matern", E = (1 + s + s² / 3) exp(-s) with s = sqrt(5 (q + q' - 2 r)): Matérn's of smoothness 5/2.
-Reference: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17, ch. 9.4.
+Where it is "matern", E = (1 + s + s² / 3) exp(-s) with s = sqrt(5 (q + q' - 2 r)): Matérn's, 5/2.
+Reference: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17, 9.4.
 """
 
 from __future__ import annotations

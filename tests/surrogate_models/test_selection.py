@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.stats import binomtest
+from scipy.special import ndtr
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.ground.errors import InputError
@@ -73,9 +73,18 @@ def test_calibration_repairs_variances_that_are_too_small() -> None:
         0.95, abs=0.02
     )
     assert coverage_after(held) == pytest.approx(0.95, abs=0.03)
-    low, high = coverage_interval(np.array([0.95]), 20)
-    limits = binomtest(19, 20).proportion_ci(method="wilson")
-    assert (low[0], high[0]) == pytest.approx((limits.low, limits.high), abs=1e-6)
+
+
+def test_limits_of_the_coverage_hold_it() -> None:
+    """2000 outputs of 40 independent Gaussian errors each: their true coverage is known."""
+    held = LeftOut(np.random.default_rng(5).standard_normal((40, 2000)), np.ones((40, 2000)))
+    low, high = coverage_interval(held)
+    true = 2.0 * ndtr(1.959964 * np.sqrt(calibration_factors(held))) - 1.0
+    assert ((low <= true) & (true <= high)).mean() > 0.95
+    assert (low < 0.95).all()
+    assert (high > 0.95).all()
+    sure = coverage_interval(LeftOut(np.ones((40, 1)), np.ones((40, 1))))
+    assert np.ravel(sure) == pytest.approx([0.95, 0.95])
 
 
 def test_an_exactly_known_output_keeps_its_variance() -> None:

@@ -25,7 +25,7 @@ NUGGET, NUGGET_ROWS = 1e-4, 100
 """Share of an output's variance that no length-scale of so few rows can tell; above that many rows it falls
 with their square, as the error does (error at 400 designs 0.0120 instead of 0.0136)."""
 FIRST_ROWS = 200
-"""Rows that the first maximisation makes do with: at 400 it takes a third of the time for 3 % of the error."""
+"""Rows that the first maximisation makes do with: at 400 a third of the time for 3 % of the error."""
 
 
 @final
