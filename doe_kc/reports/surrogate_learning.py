@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.characteristics import Characteristic
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.sheet import Sheet, sheet

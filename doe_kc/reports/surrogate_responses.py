@@ -7,7 +7,7 @@ from contourpy import contour_generator
 from matplotlib.collections import LineCollection, PolyCollection
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.sheet import Sheet, sheet

@@ -12,8 +12,8 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.characteristics import Characteristic
+from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.study import percent_of_column
-from doe_kc.reports.names import case_label
 from doe_kc.reports.render.cells import cell_alignment, colour_scale, put
 from doe_kc.reports.render.charts import add_marks, chart_sheet
 from doe_kc.reports.render.workbook import TABLE_FIRST_ROW, new_book, table_sheet, write_book
