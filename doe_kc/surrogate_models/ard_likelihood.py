@@ -3,7 +3,7 @@
 k = b E((z - z')'V(z - z')) + c + nugget [z = z'], V diagonal, E of `kernel.matern`. Where b is large beside
 what the variables move, it is nearly a linear trend whose relevances are those of the bend: a variable that
 bends an output also moves it, and the other way round. That is why it learns from fewer rows than a kernel
-with a free linear part. The squared exponential, too smooth for what the stops bend, errs by a tenth more.
+with a free linear part. Of 72 variables the squared exponential errs by 8 % more (50 and 100 designs).
 Reference: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, 2006, eq. 5.8 and 5.9.
 """
 

@@ -89,7 +89,7 @@ def learning_curve(
             squares[mine] += np.square(part).sum(axis=0)[mine]
     total = np.square(y - y.mean(axis=0)).sum(axis=0)
     varies = np.isfinite(q2)
-    half = np.sqrt(np.where(varies, squares / np.where(varies, total, 1.0), np.nan))
+    half = np.sqrt(np.where(varies, np.maximum(squares / np.where(varies, total, 1.0), 1e-12), np.nan))
     whole = np.sqrt(np.where(varies, np.maximum(1.0 - q2, 1e-12), np.nan))
     sizes = (len(x) / HALVES, len(x) * (1.0 - 1.0 / min(folds, len(x))))
     own = np.clip(np.log(half / whole) / np.log(sizes[1] / sizes[0]), LEAST_RATE, MOST_RATE)

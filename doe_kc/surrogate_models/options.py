@@ -9,7 +9,7 @@ from pydantic import Field
 from doe_kc.ground.fields import Strict
 
 GOAL = 0.99
-"""Q2 that serves for an optimization; the noise of a rig is about as large."""
+"""Q2 of an error of a tenth of the spread."""
 
 
 class SurrogateOptions(Strict):
