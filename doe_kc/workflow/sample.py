@@ -90,6 +90,7 @@ def study_design(study: Study, *, method: str | None, n: int | None, extend: boo
         levels=options.levels,
         table=study.folder / options.table if options.table is not None else None,
         existing=np.array([point for point, _ in stored]) if stored else None,
+        constraints=[constraint.build() for constraint in options.constraint],
     )
     return _joined(study, stored, new) if stored else new
 
