@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
-from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import linearize
 from doe_kc.curves import CurveSet
-from doe_kc.discovery.clutter import Clutter, joined
+from doe_kc.discovery.jacobian import Jacobian
+from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.nuisances import calibrated
 from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
@@ -49,10 +50,9 @@ class EffectModel:
     """Effects in the model."""
     left_out: str | None = None
     """Load case whose records are held back from fits, None for none."""
-    sides: FloatArray | None = None
-    """(M, k) change of the residual by each difference between the sides, per its standard deviation."""
-    clutter: Clutter | None = None
-    """Traces of all effects, of which those of absent ones count; None before they are known."""
+    nuisances: LinearNuisances | None = None
+    """Differences between the sides and traces of all effects, of which those of absent ones count; None
+    before they are known."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
     """Solver of its axles, the same for all models that come of one another."""
 
@@ -87,7 +87,7 @@ class EffectModel:
     @property
     def traces(self) -> slice:
         """Places of the traces of absent effects in z."""
-        count = 0 if self.clutter is None else len(self.clutter.names)
+        count = 0 if self.nuisances is None else len(self.nuisances.traces)
         return slice(self.dimension - count, self.dimension)
 
     @property
@@ -98,13 +98,18 @@ class EffectModel:
     @property
     def dimension(self) -> int:
         """d, parameters and nuisances: all that tuning may move."""
-        linear = 0 if self.linear is None else int(self.linear.shape[1])
+        linear = 0 if self.nuisances is None else self.nuisances.count
         return self.space.dimension + len(self.cases) + linear
 
+    @property
+    def linear(self) -> slice:
+        """Places of the linear nuisances in z."""
+        return slice(self.calibrations.stop, self.dimension)
+
     @cached_property
-    def linear(self) -> FloatArray | None:
-        """(M, k) change of the residual by each nuisance that is linear, None without any."""
-        return joined(self.sides, None if self.clutter is None else self.clutter.beside(self.members))
+    def weights(self) -> FloatArray:
+        """(l,) factor of each linear nuisance: none of the trace of a member."""
+        return np.zeros(0) if self.nuisances is None else self.nuisances.weights(self.members)
 
     @cached_property
     def prior_sd(self) -> FloatArray:
@@ -145,9 +150,9 @@ class EffectModel:
 
     def with_likelihood(self, likelihood: Likelihood) -> EffectModel:
         """The model against the same records with other errors."""
-        sides = None if self.sides is None else rewhitened(self.sides, self.likelihood, likelihood)
-        clutter = None if self.clutter is None else self.clutter.rewhitened(self.likelihood, likelihood)
-        return replace(self, likelihood=likelihood, sides=sides, clutter=clutter)
+        known = self.nuisances
+        after = None if known is None else known.rewhitened(self.likelihood, likelihood)
+        return replace(self, likelihood=likelihood, nuisances=after)
 
     def places(self) -> Iterator[tuple[Hypothesis, slice]]:
         """Each member with the places of its amplitudes in z."""
@@ -190,23 +195,22 @@ class EffectModel:
     def residual_of(self, axle: Axle, z: FloatArray) -> FloatArray:
         """(M,) of any axle, the nuisances as at z."""
         residual = self.likelihood.residual(self._read(axle, z), NO_CHARACTERISTICS)
-        if self.linear is None:
+        if self.nuisances is None:
             return residual
-        return np.asarray(residual + self.linear @ z[self.calibrations.stop : self.dimension])
+        return np.asarray(residual + self.nuisances.moved(self.weights * z[self.linear]))
+
+    def jacobian(self, own: FloatArray) -> Jacobian:
+        """Of derivatives (M, p + m) to parameters, calibrations and amplitudes, and the linear nuisances."""
+        if self.nuisances is None:
+            return Jacobian(own)
+        return Jacobian(own, self.calibrations.stop, self.nuisances, self.weights)
 
     def tuning_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
-        """(M, d) derivative of the residual to parameters (exact) and nuisances. residual: at z."""
+        """(M, p) derivative of the residual to parameters (exact) and calibrations. residual: at z."""
         axle = self._driven(self.with_effects(z), z)
         expansion = linearize(axle, self.space, z[: self.parameters], solve=self.solutions)
         parameters = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
-        columns = [parameters, self._calibration_columns(z, residual)]
-        return np.hstack(columns if self.linear is None else [*columns, self.linear])
-
-    def with_own_nuisances(self, columns: FloatArray) -> FloatArray:
-        """(M, d) derivatives of a model nearby, (M, d' <= d) or more, with this one's linear nuisances."""
-        if self.linear is None:
-            return columns[:, : self.dimension]
-        return np.hstack([columns[:, : self.calibrations.stop], self.linear])
+        return np.hstack([parameters, self._calibration_columns(z, residual)])
 
     def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""

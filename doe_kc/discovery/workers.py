@@ -167,11 +167,10 @@ def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: 
 
 def _packed_fit(fit: Fit) -> Arrays:
     """Without what its model says of it, the derivatives to linear nuisances among that."""
-    linear = range(fit.model.calibrations.stop, fit.model.dimension)
     return {
         "z": fit.z,
         "residual": fit.residual,
-        "jacobian": np.delete(fit.jacobian, linear, axis=1),
+        "jacobian": fit.jacobian.own,
         "evaluations": np.array(float(fit.evaluations)),
         "converged": np.array(float(fit.converged)),
     }
@@ -182,10 +181,8 @@ def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
     if not known["z"].size:
         return None
     z, residual = known["z"], known["residual"]
-    own, at = known["jacobian"], model.calibrations.stop
-    parts = [own] if model.linear is None else [own[:, :at], model.linear, own[:, at:]]
     counts = int(known["evaluations"]), bool(known["converged"])
-    return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
+    return Fit(model, z, residual, model.jacobian(known["jacobian"]), cost_of(model, z, residual), *counts)
 
 
 def _packed(screening: Screened) -> Arrays:

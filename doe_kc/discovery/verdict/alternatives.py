@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
 from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.discovery.screening.screen import Screened, score_test
+from doe_kc.discovery.screening.screen import Screened, score_tests
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
@@ -154,9 +154,10 @@ def _place(
     """The place of the last member of `base`, and what is worth a refit in it."""
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     own = _own(base, without, search.prior)
-    first = score_test(without, known.pop(own.hypothesis.name))
+    itself = known.pop(own.hypothesis.name)
+    others = [s for s in known.values() if _may_replace(base, s.hypothesis)]
+    first, *there = score_tests(without, [itself, *others])
     first = replace(first, gain=max(first.gain, own.gain))
-    there = [score_test(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
     near = _near([first, *there], threshold(len(known) + 1), without, workers, decoy=decoy)
     return _Place(base, without, (first, *there), tuple(near))
@@ -174,7 +175,7 @@ def _near(
     screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
 ) -> list[Screened]:
     """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
-    near = leaders(screened, without.without_traces, least / 2.0, decoy=decoy)
+    near = leaders(screened, without, least / 2.0, decoy=decoy)
     chosen = [s.hypothesis for s in near[1:]]
     return [s for s in workers.screenings(without, chosen) if not s.failed]
 

@@ -108,4 +108,4 @@ def _valued(curve: CurveData, whitened: FloatArray) -> CurveData:
 def _alone(model: EffectModel, case: LoadCase, likelihood: Likelihood) -> EffectModel:
     """The model with nothing but one load case."""
     axle = replace(model.axle, load_cases={case.id: case})
-    return replace(model, axle=axle, likelihood=likelihood, sides=None, clutter=None, left_out=None)
+    return replace(model, axle=axle, likelihood=likelihood, nuisances=None, left_out=None)
