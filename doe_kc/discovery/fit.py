@@ -233,8 +233,7 @@ def fit(
                 jacobian = current.jacobian.secant(missed, step)
                 current = replace(current, z=trial, residual=residual, jacobian=jacobian, cost=cost)
                 continue
-            kept = current.jacobian.own[:, : model.calibrations.stop] if aged else None
-            current = _expanded(model, trial, residual, current.evaluations, kept)
+            current, aged = _expanded(model, trial, residual, current.evaluations), 0.0
         elif aged > FRESH_DECREASE:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
         if radius < LEAST_STEP:
@@ -326,19 +325,13 @@ def _expanded(
     evaluations: int,
     known: FloatArray | None = None,
 ) -> Fit:
-    """With derivatives at z, those that are `known` or lead the row of what is known taken from there."""
-    end, count = model.calibrations.stop, z.size - model.dimension
-    own = np.full((residual.size, count), np.nan)
-    if known is None:
-        tuning = model.tuning_columns(z, residual)
-    else:
-        tuning = known[:, :end]
-        own[:, : known.shape[1] - end] = known[:, end:]
+    """With derivatives at z, those that are `known` taken from there."""
+    own = model.own_columns(z, residual) if known is None else known.copy()
     missing = np.flatnonzero(np.isnan(own[0]))
-    own[:, missing] = model.amplitude_columns(z, residual, model.dimension + missing)
-    jacobian = model.jacobian(np.hstack([tuning, own]))
+    places = missing - model.calibrations.stop + model.dimension
+    own[:, missing] = model.amplitude_columns(z, residual, places)
     cost = cost_of(model, z, residual)
-    return Fit(model, z, residual, jacobian, cost, evaluations + missing.size, False)
+    return Fit(model, z, residual, model.jacobian(own), cost, evaluations + missing.size, False)
 
 
 def chord_fit(fit: Fit, model: EffectModel) -> Fit:

@@ -12,15 +12,21 @@ from numpy.typing import NDArray
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.correlation.linearization import linearize
+from doe_kc.correlation.linearization import linearized_curves
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.nuisances import calibrated
 from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
-from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, AMPLITUDE_STEP, CALIBRATION_STEP, NUISANCE_LIMIT
-from doe_kc.effects import apply_effect
+from doe_kc.discovery.thresholds import (
+    AMPLITUDE_LIMIT,
+    AMPLITUDE_STEP,
+    CALIBRATION_STEP,
+    DIRECTION_STEP,
+    NUISANCE_LIMIT,
+)
+from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
@@ -205,12 +211,51 @@ class EffectModel:
             return Jacobian(own)
         return Jacobian(own, self.calibrations.stop, self.nuisances, self.weights)
 
-    def tuning_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
-        """(M, p) derivative of the residual to parameters (exact) and calibrations. residual: at z."""
-        axle = self._driven(self.with_effects(z), z)
-        expansion = linearize(axle, self.space, z[: self.parameters], solve=self.solutions)
-        parameters = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
-        return np.hstack([parameters, self._calibration_columns(z, residual)])
+    def own_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
+        """(M, p + m) derivative of the residual to parameters, calibrations and amplitudes. residual: at z.
+
+        Exact to the parameters, and to amplitudes that move nothing but numbers of the axle.
+        """
+        axle = self._driven(self.axle_at(z), z)
+        moves = self._directions(z)
+        gradients = linearized_curves(
+            axle,
+            self.solutions(axle),
+            self.space,
+            z[: self.parameters],
+            {str(i): m for i, m in moves.items()},
+        )
+        exact = self.likelihood.jacobian(gradients, np.zeros((0, len(gradients.paths))))
+        amplitudes = np.empty((residual.size, z.size - self.dimension))
+        known = np.array(list(moves), dtype=int) - self.dimension
+        amplitudes[:, known] = exact[:, self.parameters :]
+        others = np.delete(np.arange(amplitudes.shape[1]), known)
+        amplitudes[:, others] = self.amplitude_columns(z, residual, self.dimension + others)
+        calibrations = self._calibration_columns(z, residual)
+        return np.hstack([exact[:, : self.parameters], calibrations, amplitudes])
+
+    def _directions(self, z: FloatArray) -> dict[int, dict[str, float]]:
+        """Place in z of an amplitude -> what it changes the axle's internal values by.
+
+        Without those that change anything else, its equations or what the rig reads, and those so small that
+        they stand for none: their derivatives are differences.
+        """
+        if any(EFFECTS[h.effect].on_rig for h in self.members):
+            return {}
+        here, out = self.axle_at(z), {}
+        for i in range(self.dimension, z.size):
+            moved = z.copy()
+            moved[i] += DIRECTION_STEP
+            there = self.axle_at(moved)
+            change = {
+                name: (value - here.values[name]) / DIRECTION_STEP
+                for name, value in there.values.items()
+                if value != here.values.get(name)
+            }
+            same = there.topology == here.topology and there.load_cases == here.load_cases
+            if same and change and there.values.keys() == here.values.keys():
+                out[i] = change
+        return out
 
     def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""

@@ -38,21 +38,28 @@ class Sensitivities:
     branches: Mapping[str, tuple[FloatArray, ...]]
 
 
-def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
+def sensitivities(
+    axle: Axle,
+    solution: Solution,
+    paths: Sequence[str],
+    directions: Mapping[str, Mapping[str, float]] | None = None,
+) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
-    To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. ValueError
-    when the solution has no static state; cases that it lacks are left out.
+    To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. directions:
+    further ones by name, behind the paths: what each changes the axle's internal values by, per unit.
+    ValueError when the solution has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
-    exact = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+    moves = {path: internal_gradient(axle, path) for path in paths} | dict(directions or {})
+    exact = _Differentiator(axle, solution.static, moves).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
-        columns = _Differentiator(bent, lifted.static, tuple(paths[i] for i in soft)).run(lifted)
+        columns = _Differentiator(bent, lifted.static, {paths[i]: moves[paths[i]] for i in soft}).run(lifted)
         exact.static[:, soft] = columns.static
         for ident, branches in columns.branches.items():
             for own, other in zip(exact.branches[ident], branches, strict=True):
@@ -90,8 +97,8 @@ def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:
 
 
 class _Differentiator:
-    def __init__(self, axle: Axle, static: StaticState, paths: tuple[str, ...]) -> None:
-        self._axle, self._static, self._paths = axle, static, paths
+    def __init__(self, axle: Axle, static: StaticState, moves: Mapping[str, Mapping[str, float]]) -> None:
+        self._static, self._moves, self._paths = static, moves, tuple(moves)
         self._kernel = kernel(axle.topology)
         self._c = self._kernel.constant_values(dict(axle.values))
         functions = blocks(axle.topology)
@@ -103,11 +110,11 @@ class _Differentiator:
         self._outputs = self._kernel.layout.output_names
 
     def _parameter_directions(self) -> FloatArray:
-        """(internal parameters, paths): how internal values move with each path."""
+        """(internal parameters, paths): how internal values move with each path or direction."""
         names = {n: i for i, n in enumerate(self._kernel.layout.parameter_names)}
         out = np.zeros((len(names), len(self._paths)))
-        for column, path in enumerate(self._paths):
-            for internal, weight in internal_gradient(self._axle, path).items():
+        for column, move in enumerate(self._moves.values()):
+            for internal, weight in move.items():
                 if internal in names:
                     out[names[internal], column] = weight
         return out
@@ -187,7 +194,7 @@ class _Differentiator:
 
     def _change_of(self, internal: str) -> FloatArray:
         """(np,) d(internal value) / d(path)."""
-        return np.array([internal_gradient(self._axle, p).get(internal, 0.0) for p in self._paths])
+        return np.array([move.get(internal, 0.0) for move in self._moves.values()])
 
     def _case(
         self,
