@@ -81,6 +81,12 @@ class CurveGroup:
         """The first curve, whose load case, inputs and branches are those of all."""
         return self.curves[0]
 
+    @property
+    def places(self) -> list[slice]:
+        """(k,) of each curve's data in the residual."""
+        n, start = self.first.size, self.place.start
+        return [slice(start + i * n, start + (i + 1) * n) for i in range(len(self.curves))]
+
     @cached_property
     def inverses(self) -> FloatArray:
         """(k, n, n) L^-1 of each curve, kept: curves are whitened hundreds of times."""

@@ -63,11 +63,20 @@ class Screened:
     failed: str = ""
     """Why the axle with it has no equilibrium; empty where it has."""
 
-    def rewhitened(self, before: Likelihood, after: Likelihood) -> Screened:
-        """Its changes in units of other errors of the same records; what was concluded stays."""
-        change = rewhitened(self.change, before, after)
-        columns, bend = (rewhitened(rows, before, after) for rows in (self.columns, self.bend))
-        return replace(self, change=change, columns=columns, bend=bend)
+
+def rewhitened_screenings(
+    screened: Sequence[Screened], before: Likelihood, after: Likelihood
+) -> list[Screened]:
+    """Their changes in units of other errors of the same records; what was concluded stays."""
+    if before is after or not screened:
+        return list(screened)
+    blocks = [np.column_stack([s.change, s.bend, s.columns]) for s in screened]
+    ends = np.cumsum([block.shape[1] for block in blocks])
+    every = np.hsplit(rewhitened(np.hstack(blocks), before, after), ends[:-1])
+    return [
+        replace(s, change=own[:, 0].copy(), bend=own[:, 1].copy(), columns=own[:, 2:].copy())
+        for s, own in zip(screened, every, strict=True)
+    ]
 
 
 def screen(fit: Fit, hypothesis: Hypothesis, shape: FloatArray | None = None) -> Screened:

@@ -13,7 +13,7 @@ from doe_kc.discovery.fit import Fit, FitStart, chord_fit, cost_of, fit, known_c
 from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
-from doe_kc.discovery.screening.screen import Screened, score_tests, shape_of
+from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
 from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
@@ -311,7 +311,7 @@ def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list
     """Every hypothesis as it was screened last, in the errors of `current`; known: in those of the step."""
     newer = {s.hypothesis.name: s for s in decision.screened}
     errors = decision.before.model.likelihood, current.model.likelihood
-    return [newer.get(s.hypothesis.name, s).rewhitened(*errors) for s in known]
+    return rewhitened_screenings([newer.get(s.hypothesis.name, s) for s in known], *errors)
 
 
 def _proposed(current: Fit, screened: Sequence[Screened], prior: SetPrior) -> list[SetProposal]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
 from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.discovery.screening.screen import Screened, score_tests
+from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
@@ -203,4 +203,4 @@ def _frictional(fit: Fit) -> bool:
 def _screened(search: EffectSearch, without: Fit) -> list[Screened]:
     """Every hypothesis as it was screened last, in the errors of `without`."""
     errors = search.with_law_discrepancy.model.likelihood, without.model.likelihood
-    return [s.rewhitened(*errors) for s in search.screened]
+    return rewhitened_screenings(search.screened, *errors)
