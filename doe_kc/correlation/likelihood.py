@@ -15,6 +15,7 @@ from scipy.linalg import cholesky, solve_triangular
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import TYRE_LOAD, CurveSet
+from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.reduction import static_sd
@@ -135,7 +136,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Likelihood:
+class Likelihood(FieldsOnly):
     """All data of a correlation. Residuals are (model - measured) in units of the errors, (M,)."""
 
     curves: tuple[CurveData, ...]

@@ -47,10 +47,10 @@ def discover(
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
     temper = max(1.0, residual_map.mean_square)
+    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper)
     compared = alternatives(search, temper, workers)
     members = findings(search, compared)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
-    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper)
     predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
     explained = adequacy(residual_map, predictions)

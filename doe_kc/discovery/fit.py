@@ -38,12 +38,13 @@ from doe_kc.discovery.thresholds import (
     REUSE_DECREASE,
 )
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
 
 @dataclass(frozen=True)
-class Fit:
+class Fit(FieldsOnly):
     """A model at its most probable point."""
 
     model: EffectModel

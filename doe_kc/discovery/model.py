@@ -29,6 +29,7 @@ from doe_kc.discovery.thresholds import (
 from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.variables import Space
@@ -37,7 +38,7 @@ NO_CHARACTERISTICS = np.zeros(0)
 
 
 @dataclass(frozen=True)
-class EffectModel:
+class EffectModel(FieldsOnly):
     """An axle with effects of unknown size against the records of one car.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,

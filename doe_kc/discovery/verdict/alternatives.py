@@ -73,9 +73,10 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     withouts = [w or search.tuned for w in removals]  # no equilibrium without it: nothing in the model at all
     losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
     places = [
-        _place(search, base, without, workers, decoy=loss == max(losses))
+        _place(search, base, without, decoy=loss == max(losses))
         for base, without, loss in zip(bases, withouts, losses, strict=True)
     ]
+    places = _on_true_solutions(places, workers)
     starts = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
     refits = iter(workers.fits([start for own in starts for start in own], "refitting rivals"))
     return tuple(
@@ -148,9 +149,7 @@ def _from_first_step(
     return Alternatives(first.before, (itself, *others), (own, *rivals), temper)
 
 
-def _place(
-    search: EffectSearch, base: Fit, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
-) -> _Place:
+def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
     """The place of the last member of `base`, and what is worth a refit in it."""
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     own = _own(base, without, search.prior)
@@ -159,8 +158,17 @@ def _place(
     first, *there = score_tests(without, [itself, *others])
     first = replace(first, gain=max(first.gain, own.gain))
     there.sort(key=lambda s: -s.gain)
-    near = _near([first, *there], threshold(len(known) + 1), without, workers, decoy=decoy)
-    return _Place(base, without, (first, *there), tuple(near))
+    near = leaders([first, *there], without, threshold(len(known) + 1) / 2.0, decoy=decoy)
+    return _Place(base, without, (first, *there), tuple(near[1:]))
+
+
+def _on_true_solutions(places: Sequence[_Place], workers: DiscoveryWorkers) -> list[_Place]:
+    """The places, the sizes of the rivals in them followed on true solutions."""
+    screened = workers.screenings_beside([(p.without, [s.hypothesis for s in p.near]) for p in places])
+    return [
+        replace(place, near=tuple(s for s in near if not s.failed))
+        for place, near in zip(places, screened, strict=True)
+    ]
 
 
 def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float) -> Alternatives:
@@ -169,15 +177,6 @@ def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, t
     rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
     own = _own(place.base, place.without, search.prior)
     return Alternatives(place.without, place.screened, (own, *rivals), temper)
-
-
-def _near(
-    screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
-) -> list[Screened]:
-    """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
-    near = leaders(screened, without, least / 2.0, decoy=decoy)
-    chosen = [s.hypothesis for s in near[1:]]
-    return [s for s in workers.screenings(without, chosen) if not s.failed]
 
 
 def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
