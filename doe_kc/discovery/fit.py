@@ -100,7 +100,7 @@ class Fit(FieldsOnly):
     @cached_property
     def remainder(self) -> Changes:
         """The residual, for the projections of this fit."""
-        return changes(self.jacobian, self.residual, whole=True)
+        return changes(self.jacobian, self.residual, is_residual=True)
 
     @cached_property
     def misfit_left(self) -> float:

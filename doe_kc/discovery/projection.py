@@ -26,7 +26,7 @@ class Changes:
     """(M, k)."""
     pulled: FloatArray
     """(n, k) J' rows: all that a projection takes of the derivatives, whatever it holds."""
-    whole: bool = False
+    is_residual: bool = False
     """Whether they are the residual itself, to which the prior's rows belong."""
 
     def scaled(self, factors: FloatArray) -> Changes:
@@ -35,13 +35,13 @@ class Changes:
 
     def columns(self, places: NDArray[np.int_] | slice) -> Changes:
         """Some of the changes."""
-        return Changes(self.rows[:, places], self.pulled[:, places], self.whole)
+        return Changes(self.rows[:, places], self.pulled[:, places], self.is_residual)
 
 
-def changes(jacobian: Jacobian, rows: FloatArray, *, whole: bool = False) -> Changes:
-    """rows: (M,) or (M, k). whole: whether they are the residual itself."""
+def changes(jacobian: Jacobian, rows: FloatArray, *, is_residual: bool = False) -> Changes:
+    """rows: (M,) or (M, k). is_residual: whether they are the residual itself."""
     own = rows.reshape(rows.shape[0], -1)
-    return Changes(own, jacobian.pulled(own), whole)
+    return Changes(own, jacobian.pulled(own), is_residual)
 
 
 @dataclass(frozen=True)
@@ -76,21 +76,21 @@ class Projection:
     def inner(self, one: Changes, other: Changes) -> FloatArray:
         """(k, l) inner products of projected changes, or with the projected residual."""
         product = one.rows.T @ other.rows - self._coordinates(one).T @ self._coordinates(other)
-        both = one.whole and other.whole
+        both = one.is_residual and other.is_residual
         return np.asarray(product + float(self.offset @ self.offset) if both else product)
 
     def gram_of(self, rows: Changes) -> FloatArray:
         """(k, k) inner products of projected changes with each other."""
         own = self._coordinates(rows)
         product = rows.rows.T @ rows.rows - own.T @ own
-        return np.asarray(product + float(self.offset @ self.offset) if rows.whole else product)
+        return np.asarray(product + float(self.offset @ self.offset) if rows.is_residual else product)
 
     def squares(self, rows: Changes) -> FloatArray:
         """(k,) squared lengths of projected changes; of the projected residual the cost after re-tuning.
 
         0 where what is left is rounding.
         """
-        before = np.sum(rows.rows**2, axis=0) + float(self.offset @ self.offset) * rows.whole
+        before = np.sum(rows.rows**2, axis=0) + float(self.offset @ self.offset) * rows.is_residual
         left = before - np.sum(self._coordinates(rows) ** 2, axis=0)
         return np.asarray(np.where(left > NULL_SHARE * before, left, 0.0))
 
@@ -115,7 +115,9 @@ class Projection:
     def _coordinates(self, rows: Changes) -> FloatArray:
         """(d, k) in the orthonormal basis."""
         pulled = rows.pulled[self.free]
-        return self._triangular(pulled + (self.offset / self.prior_sd)[:, None] if rows.whole else pulled)
+        return self._triangular(
+            pulled + (self.offset / self.prior_sd)[:, None] if rows.is_residual else pulled
+        )
 
     def _triangular(self, pulled: FloatArray) -> FloatArray:
         return np.asarray(solve_triangular(self._root, pulled, lower=True, check_finite=False))

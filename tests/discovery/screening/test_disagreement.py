@@ -50,7 +50,7 @@ def test_a_shape_that_tuning_cannot_make_is_found_where_it_is(tuned: Fit, shapes
         if (c.load_case, c.response, c.shape, c.wheels) == ("steer", "camber", "loop width", "both")
     )
     shifted = tuned.residual + 12.0 * shapes.rows.toarray()[:, at]
-    found = residual_map(shapes, changes(tuned.jacobian, shifted, whole=True), tuned.projection)
+    found = residual_map(shapes, changes(tuned.jacobian, shifted, is_residual=True), tuned.projection)
     assert not found.agrees
     worst, z = found.worst(1)[0]
     assert worst == shapes.names[at]
@@ -62,7 +62,7 @@ def test_a_change_that_a_parameter_makes_is_not_counted(tuned: Fit, shapes: Cont
     column = columns[:, int(np.argmax(np.linalg.norm(columns, axis=0)))]
     shifted = tuned.residual + 20.0 * column / np.linalg.norm(column)
     assert raw_map(shapes, shifted).largest > 8.0
-    assert residual_map(shapes, changes(tuned.jacobian, shifted, whole=True), tuned.projection).agrees
+    assert residual_map(shapes, changes(tuned.jacobian, shifted, is_residual=True), tuned.projection).agrees
 
 
 def test_contrasts_of_no_data_are_none() -> None:

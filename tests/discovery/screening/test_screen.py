@@ -154,7 +154,7 @@ def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() 
     found: Any = SimpleNamespace(
         z=model.z,
         residual=model.residual_of,
-        remainder=changes(jacobian, model.residual_of, whole=True),
+        remainder=changes(jacobian, model.residual_of, is_residual=True),
         misfit_left=float(model.residual_of @ model.residual_of),
         changes=lambda rows: changes(jacobian, rows),
         projection=Projection(jacobian, nothing, nothing, nothing.astype(int), np.zeros((0, 0))),
