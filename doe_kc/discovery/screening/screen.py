@@ -63,6 +63,11 @@ class Screened:
     failed: str = ""
     """Why the axle with it has no equilibrium; empty where it has."""
 
+    @property
+    def change_only(self) -> Screened:
+        """Without derivatives, which are several times as large as the change."""
+        return replace(self, columns=self.columns[:0].copy(), bend=self.bend[:0].copy())
+
 
 def rewhitened_screenings(
     screened: Sequence[Screened], before: Likelihood, after: Likelihood

@@ -36,7 +36,7 @@ class Alternatives:
     """The set without it, refitted; the errors hold the discrepancy of all others' laws, not that of its own
     nor of its rivals'."""
     screened: tuple[Screened, ...]
-    """Itself, then the library without the other members, added to `without`."""
+    """Itself, then the library without the other members, added to `without`; some without derivatives."""
     trials: tuple[HypothesisFit, ...]
     """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`."""
     temper: float
@@ -94,7 +94,7 @@ class _Place:
     without: Fit
     """The set without it."""
     screened: tuple[Screened, ...]
-    """Itself, then what may take its place."""
+    """Itself, then what may take its place, without derivatives."""
     near: tuple[Screened, ...]
     """Its rivals that are worth a refit."""
 
@@ -159,7 +159,7 @@ def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Pl
     first = replace(first, gain=max(first.gain, own.gain))
     there.sort(key=lambda s: -s.gain)
     near = leaders([first, *there], without, threshold(len(known) + 1) / 2.0, decoy=decoy)
-    return _Place(base, without, (first, *there), tuple(near[1:]))
+    return _Place(base, without, tuple(s.change_only for s in (first, *there)), tuple(near[1:]))
 
 
 def _on_true_solutions(places: Sequence[_Place], workers: DiscoveryWorkers) -> list[_Place]:
