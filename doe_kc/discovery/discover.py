@@ -31,6 +31,7 @@ from doe_kc.discovery.verdict.verdict import Verdict, ambiguous, classes, verdic
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.memory import return_large_arrays
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 
@@ -41,6 +42,7 @@ def discover(
 ) -> Discovery:
     """model: the axle without any effect, its tunable parameters and its records."""
     started = time.perf_counter()
+    return_large_arrays()
     workers = workers or DiscoveryWorkers()
     search, widened = search_within_bounds(model, library, workers)
     nominal = model.residual(model.centre)
