@@ -52,18 +52,20 @@ def sensitivities(
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
-    moves = {path: internal_gradient(axle, path) for path in paths} | dict(directions or {})
-    exact = _Differentiator(axle, solution.static, moves).run(solution)
+    further = directions or {}
+    names, moves = (*paths, *further), [*(internal_gradient(axle, p) for p in paths), *further.values()]
+    exact = _Differentiator(axle, solution.static, names, moves).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
-        columns = _Differentiator(bent, lifted.static, {paths[i]: moves[paths[i]] for i in soft}).run(lifted)
+        own = tuple(paths[i] for i in soft)
+        columns = _Differentiator(bent, lifted.static, own, [moves[i] for i in soft]).run(lifted)
         exact.static[:, soft] = columns.static
         for ident, branches in columns.branches.items():
-            for own, other in zip(exact.branches[ident], branches, strict=True):
-                own[:, :, soft] = other
+            for rows, other in zip(exact.branches[ident], branches, strict=True):
+                rows[:, :, soft] = other
     return exact
 
 
@@ -97,8 +99,14 @@ def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:
 
 
 class _Differentiator:
-    def __init__(self, axle: Axle, static: StaticState, moves: Mapping[str, Mapping[str, float]]) -> None:
-        self._static, self._moves, self._paths = static, moves, tuple(moves)
+    def __init__(
+        self,
+        axle: Axle,
+        static: StaticState,
+        paths: tuple[str, ...],
+        moves: Sequence[Mapping[str, float]],
+    ) -> None:
+        self._static, self._paths, self._moves = static, paths, moves
         self._kernel = kernel(axle.topology)
         self._c = self._kernel.constant_values(dict(axle.values))
         functions = blocks(axle.topology)
@@ -113,7 +121,7 @@ class _Differentiator:
         """(internal parameters, paths): how internal values move with each path or direction."""
         names = {n: i for i, n in enumerate(self._kernel.layout.parameter_names)}
         out = np.zeros((len(names), len(self._paths)))
-        for column, move in enumerate(self._moves.values()):
+        for column, move in enumerate(self._moves):
             for internal, weight in move.items():
                 if internal in names:
                     out[names[internal], column] = weight
@@ -194,7 +202,7 @@ class _Differentiator:
 
     def _change_of(self, internal: str) -> FloatArray:
         """(np,) d(internal value) / d(path)."""
-        return np.array([move.get(internal, 0.0) for move in self._moves.values()])
+        return np.array([move.get(internal, 0.0) for move in self._moves])
 
     def _case(
         self,
