@@ -156,8 +156,6 @@ PROMISING = 1.0
 """ln evidence to first order, from which a hypothesis is screened anew at a later step. As `HOPELESS`."""
 CHUNKS = 4
 """-, parts of a screening for each worker. Enough for an even load and a bar that moves."""
-HELD_OUT_CHUNKS = 2
-"""-, parts of the load cases held out for each worker. Each is sent three fits, of some 30 MB together."""
 
 # Refits
 

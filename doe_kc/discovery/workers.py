@@ -14,7 +14,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
 from doe_kc.discovery.screening.scan import Scan, scan
 from doe_kc.discovery.screening.screen import Screened, effort, screen
-from doe_kc.discovery.thresholds import CHUNKS, HELD_OUT_CHUNKS
+from doe_kc.discovery.thresholds import CHUNKS
 from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
@@ -127,7 +127,7 @@ class DiscoveryWorkers:
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
         predictions: dict[str, HeldOut] = {}
         self._begun += len(cases)
-        parts = min(len(cases), HELD_OUT_CHUNKS * self._workers)
+        parts = min(len(cases), self._workers)  # each is sent three fits, of some 50 MB together
         groups = [cases[k::parts] for k in range(parts)]
         tasks = [(tuned, with_effects, with_discrepancy, group) for group in groups]
         for _, results in self._run(_held_out_many, tasks):
