@@ -28,7 +28,7 @@ def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
     left_out = [case for case in manifest.records if case in LOAD_CASES and case not in axle.load_cases]
     if left_out:
         told.append(
-            f"{manifest.name}: has records of {', '.join(left_out)}, a load case that the axle does not have; "
-            "they are left out. Is the axle file that of this car?"
+            f"{manifest.name}: has records of {', '.join(left_out)}, no load case of the axle: left out. "
+            "Is the axle file that of this car?"
         )
     return told
