@@ -38,25 +38,34 @@ class Sensitivities:
     branches: Mapping[str, tuple[FloatArray, ...]]
 
 
-def sensitivities(axle: Axle, solution: Solution, paths: Sequence[str]) -> Sensitivities:
+def sensitivities(
+    axle: Axle,
+    solution: Solution,
+    paths: Sequence[str],
+    directions: Mapping[str, Mapping[str, float]] | None = None,
+) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
-    To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. ValueError
-    when the solution has no static state; cases that it lacks are left out.
+    To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. directions:
+    further ones by name, behind the paths: what each changes the axle's internal values by, per unit.
+    ValueError when the solution has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
-    exact = _Differentiator(axle, solution.static, tuple(paths)).run(solution)
+    further = directions or {}
+    names, moves = (*paths, *further), [*(internal_gradient(axle, p) for p in paths), *further.values()]
+    exact = _Differentiator(axle, solution.static, names, moves).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
-        columns = _Differentiator(bent, lifted.static, tuple(paths[i] for i in soft)).run(lifted)
+        own = tuple(paths[i] for i in soft)
+        columns = _Differentiator(bent, lifted.static, own, [moves[i] for i in soft]).run(lifted)
         exact.static[:, soft] = columns.static
         for ident, branches in columns.branches.items():
-            for own, other in zip(exact.branches[ident], branches, strict=True):
-                own[:, :, soft] = other
+            for rows, other in zip(exact.branches[ident], branches, strict=True):
+                rows[:, :, soft] = other
     return exact
 
 
@@ -90,8 +99,14 @@ def in_topology(solution: Solution, old: Topology, new: Topology) -> Solution:
 
 
 class _Differentiator:
-    def __init__(self, axle: Axle, static: StaticState, paths: tuple[str, ...]) -> None:
-        self._axle, self._static, self._paths = axle, static, paths
+    def __init__(
+        self,
+        axle: Axle,
+        static: StaticState,
+        paths: tuple[str, ...],
+        moves: Sequence[Mapping[str, float]],
+    ) -> None:
+        self._static, self._paths, self._moves = static, paths, moves
         self._kernel = kernel(axle.topology)
         self._c = self._kernel.constant_values(dict(axle.values))
         functions = blocks(axle.topology)
@@ -103,11 +118,11 @@ class _Differentiator:
         self._outputs = self._kernel.layout.output_names
 
     def _parameter_directions(self) -> FloatArray:
-        """(internal parameters, paths): how internal values move with each path."""
+        """(internal parameters, paths): how internal values move with each path or direction."""
         names = {n: i for i, n in enumerate(self._kernel.layout.parameter_names)}
         out = np.zeros((len(names), len(self._paths)))
-        for column, path in enumerate(self._paths):
-            for internal, weight in internal_gradient(self._axle, path).items():
+        for column, move in enumerate(self._moves):
+            for internal, weight in move.items():
                 if internal in names:
                     out[names[internal], column] = weight
         return out
@@ -187,7 +202,7 @@ class _Differentiator:
 
     def _change_of(self, internal: str) -> FloatArray:
         """(np,) d(internal value) / d(path)."""
-        return np.array([internal_gradient(self._axle, p).get(internal, 0.0) for p in self._paths])
+        return np.array([move.get(internal, 0.0) for move in self._moves])
 
     def _case(
         self,
