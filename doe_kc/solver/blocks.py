@@ -13,14 +13,13 @@ from scipy import sparse
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
+from doe_kc.solver.c_source import c_source
 from doe_kc.solver.compiled import compiled_kernel
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, generate, library_of
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""
-BLOCK_FLAGS = "-O0"
-"""Long functions: at -O1 they take three times as long to compile and no less to run."""
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
@@ -35,10 +34,10 @@ def blocks(topology: Topology) -> Mapping[str, ca.Function]:
 
     def sources() -> dict[str, str]:
         functions = interpreted_blocks(topology)
-        return {_function(name): generate(functions[name]) for name in names}
+        return {_function(name): c_source(functions[name]) for name in names}
 
     try:
-        own = str(library_of(topology, "blocks", sources, {_function(name): BLOCK_FLAGS for name in names}))
+        own = str(library_of(topology, "blocks", sources, {}))
         jacobian = str(compiled_kernel(topology).path)
     except CompileError:
         return interpreted_blocks(topology)

@@ -26,7 +26,7 @@ DEFAULT_FLAGS = "-O1"
 COMPILE_TIMEOUT = 600.0
 """s; of a machine that does much else."""
 PACKAGE = Path(__file__).parents[1]
-ORIGINS = ("solver/**/*.py", "solver/*.c", "axle/*.py", "curves.py")
+ORIGINS = ("solver/**/*.py", "solver/*.[ch]", "axle/*.py", "curves.py")
 """Sources of the package that generated code follows from."""
 
 
@@ -171,13 +171,6 @@ def cached(folder: Path, name: str) -> Path | None:
 def fingerprint(path: Path) -> str:
     """Start of the SHA-256 of a file's content."""
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-
-
-def generate(function: ca.Function) -> str:
-    """C source of a CasADi function."""
-    generator = ca.CodeGenerator(f"{function.name()}_part.c", {"with_header": False})
-    generator.add(function)
-    return str(generator.dump())
 
 
 def _compile(compiler: str, scratch: Path, sources: dict[str, str], flags: Mapping[str, str]) -> Path:
