@@ -98,7 +98,7 @@ class Campaign:
                 continue
             status = self.store.status(key)
             again = status == "failed" and self.retry_failed and key not in self._ran
-            if status is None or again or (curves and self.store.has_curves_left_out(key)):
+            if status is None or again or self.store.lacks_curves(key, self.solver.windows, curves=curves):
                 out[key] = values
         return out
 

@@ -63,13 +63,14 @@ class Store:
             row = self._connection.execute("SELECT status FROM evaluations WHERE key = ?", (key,)).fetchone()
         return None if row is None else str(row[0])
 
-    def has_curves_left_out(self, key: str) -> bool:
-        """Whether a design was evaluated with curves that were not to be kept."""
+    def lacks_curves(self, key: str, windows: Mapping[str, float], *, curves: bool) -> bool:
+        """Whether a design was stored without the curves that it had, and they are asked for: by `curves`, or
+        by windows other than those that it was reduced with."""
         with in_words(self._where):
             row = self._connection.execute(
-                "SELECT 1 FROM evaluations WHERE key = ? AND length(curves) = 0", (key,)
+                "SELECT windows FROM evaluations WHERE key = ? AND length(curves) = 0", (key,)
             ).fetchone()
-        return row is not None
+        return row is not None and (curves or json.loads(row[0]) != dict(windows))
 
     def outcome(self, key: str, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
         """What was stored, its characteristics reduced with `windows`; KeyError for a design not there.

@@ -16,7 +16,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import c_source
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, kernel
-from doe_kc.solver.library import library_of
+from doe_kc.solver.library import handwritten, library_of
 from doe_kc.solver.newton import NewtonSettings
 
 SUBSTEPS = 4
@@ -120,7 +120,7 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
     def sources() -> dict[str, str]:
         functions = kernel(topology).functions
         generated = {name: c_source(functions[name]) for name in (*MARCHED, "constants")}
-        return generated | {"driver": DRIVER.read_text()}
+        return generated | {"driver": handwritten(DRIVER)}
 
     path = library_of(topology, KERNEL_LIBRARY, sources, COMPILER_FLAGS)
     library = ctypes.CDLL(str(path))

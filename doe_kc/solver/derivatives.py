@@ -22,7 +22,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.blocks import SINGULAR, Block, Points, block_names, equilibrium_change, interpreted_blocks
 from doe_kc.solver.c_source import c_source
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of
 
 SENSITIVITY = Path(__file__).with_name("sensitivity.c")
 FLAGS = {"sensitivity": "-O3"}
@@ -167,7 +167,7 @@ def derivative_library(topology: Topology) -> DerivativeLibrary:
         return {
             "derivatives": c_source(joint),
             "constants": c_source(blocks["constants"]),
-            "sensitivity": SENSITIVITY.read_text(),
+            "sensitivity": handwritten(SENSITIVITY),
         }
 
     path = library_of(topology, "derivatives", sources, FLAGS)

@@ -53,6 +53,50 @@ static double norm(const problem *p, const double *r) {
     return worst;
 }
 
+/* LU of a (m, m), column by column, rows swapped; 0, or 1 where it is singular. */
+FOR_THIS_PROCESSOR
+static int eliminate(int m, double *a, int *pivot) {
+    for (int k = 0; k < m; k++) {
+        int best = k;
+        double *restrict ck = a + m * k;
+        for (int i = k + 1; i < m; i++)
+            if (fabs(ck[i]) > fabs(ck[best])) best = i;
+        pivot[k] = best;
+        if (!(fabs(ck[best]) > 0.0)) return 1;
+        if (best != k)
+            for (int j = 0; j < m; j++) {
+                double t = a[k + m * j];
+                a[k + m * j] = a[best + m * j];
+                a[best + m * j] = t;
+            }
+        double inverse = 1.0 / ck[k];
+        for (int i = k + 1; i < m; i++) ck[i] *= inverse;
+        for (int j = k + 1; j < m; j++) {
+            double *restrict cj = a + m * j, f = cj[k];
+            if (f != 0.0)
+                for (int i = k + 1; i < m; i++) cj[i] -= f * ck[i];
+        }
+    }
+    return 0;
+}
+
+FOR_THIS_PROCESSOR
+static void substitute(int m, const double *restrict a, const int *pivot, double *restrict d) {
+    for (int k = 0; k < m; k++) {
+        double t = d[pivot[k]];
+        d[pivot[k]] = d[k];
+        d[k] = t;
+    }
+    for (int k = 0; k < m; k++) {
+        double f = d[k];
+        for (int i = k + 1; i < m; i++) d[i] -= a[i + m * k] * f;
+    }
+    for (int k = m - 1; k >= 0; k--) {
+        double f = d[k] /= a[k + m * k];
+        for (int i = 0; i < k; i++) d[i] -= a[i + m * k] * f;
+    }
+}
+
 static int factor(problem *p, const double *x, const double *u, const double *z) {
     const double *arg[4] = {x, p->c, u, z};
     double *result[1] = {p->nz_jac};
@@ -64,46 +108,13 @@ static int factor(problem *p, const double *x, const double *u, const double *z)
     memset(a, 0, sizeof(double) * m * m);
     for (int k = 0; k < p->nnz; k++)
         if (p->row[k] < m && p->col[k] < m) a[p->row[k] + m * p->col[k]] = p->nz_jac[k] / p->scale[p->row[k]];
-    for (int k = 0; k < m; k++) {
-        int best = k;
-        double *ck = a + m * k;
-        for (int i = k + 1; i < m; i++)
-            if (fabs(ck[i]) > fabs(ck[best])) best = i;
-        p->pivot[k] = best;
-        if (!(fabs(ck[best]) > 0.0)) return 1;
-        if (best != k)
-            for (int j = 0; j < m; j++) {
-                double t = a[k + m * j];
-                a[k + m * j] = a[best + m * j];
-                a[best + m * j] = t;
-            }
-        double inverse = 1.0 / ck[k];
-        for (int i = k + 1; i < m; i++) ck[i] *= inverse;
-        for (int j = k + 1; j < m; j++) {
-            double *cj = a + m * j, f = cj[k];
-            if (f != 0.0)
-                for (int i = k + 1; i < m; i++) cj[i] -= f * ck[i];
-        }
-    }
-    p->have_lu = 1;
-    return 0;
+    p->have_lu = !eliminate(m, a, p->pivot);
+    return !p->have_lu;
 }
 
 static void solve(const problem *p, const double *r, double *d) {
-    int m = p->active;
-    const double *a = p->lu;
-    for (int i = 0; i < m; i++) d[i] = r[i] / p->scale[i];
-    for (int k = 0; k < m; k++) {
-        double t = d[p->pivot[k]];
-        d[p->pivot[k]] = d[k];
-        d[k] = t;
-    }
-    for (int k = 0; k < m; k++)
-        for (int i = k + 1; i < m; i++) d[i] -= a[i + m * k] * d[k];
-    for (int k = m - 1; k >= 0; k--) {
-        d[k] /= a[k + m * k];
-        for (int i = 0; i < k; i++) d[i] -= a[i + m * k] * d[k];
-    }
+    for (int i = 0; i < p->active; i++) d[i] = r[i] / p->scale[i];
+    substitute(p->active, p->lu, p->pivot, d);
 }
 
 /* Whether a fresh Newton step neither moves the axle nor improves a residual that is small already. */

@@ -26,6 +26,7 @@ DEFAULT_FLAGS = "-O1"
 COMPILE_TIMEOUT = 600.0
 """s; of a machine that does much else."""
 PACKAGE = Path(__file__).parents[1]
+PROCESSOR_HEADER = Path(__file__).with_name("processor.h")
 ORIGINS = ("solver/**/*.py", "solver/*.[ch]", "axle/*.py", "curves.py")
 """Sources of the package that generated code follows from."""
 
@@ -171,6 +172,11 @@ def cached(folder: Path, name: str) -> Path | None:
 def fingerprint(path: Path) -> str:
     """Start of the SHA-256 of a file's content."""
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def handwritten(file: Path) -> str:
+    """C source of a file of the package, with what chooses a processor's vector instructions before it."""
+    return PROCESSOR_HEADER.read_text() + file.read_text()
 
 
 def _compile(compiler: str, scratch: Path, sources: dict[str, str], flags: Mapping[str, str]) -> Path:

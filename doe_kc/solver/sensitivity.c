@@ -9,11 +9,6 @@ typedef long long integer;
 int derivatives(const double **, double **, integer *, double *, int);
 const integer *derivatives_sparsity_out(integer);
 
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GLIBC__)
-#define FOR_THIS_PROCESSOR __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define FOR_THIS_PROCESSOR
-#endif
 #define INLINE static inline __attribute__((always_inline))
 #define TILE 32         /* columns that are handled at once, in registers */
 
