@@ -13,7 +13,7 @@ from scipy import sparse
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
-from doe_kc.solver.c_source import c_source
+from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.compiled import compiled_kernel
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
@@ -33,7 +33,7 @@ def blocks(topology: Topology) -> Mapping[str, ca.Function]:
 
     def sources() -> dict[str, str]:
         functions = interpreted_blocks(topology)
-        return {_function(name): c_source(functions[name]) for name in names}
+        return {part: text for name in names for part, text in c_sources(functions[name]).items()}
 
     if os.environ.get(COMPILE_VARIABLE) == "0":
         return interpreted_blocks(topology)

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
-from pathlib import Path
 
 import casadi as ca
 
 PIECE = 300
 """Statements a piece: from 200 to 500 neither compiling nor running changes by more than a tenth."""
-LANES_HEADER = Path(__file__).with_name("lanes.h")
+PIECES_A_FILE = 40
+"""Files are compiled side by side."""
+HIDDEN = '__attribute__((noinline, visibility("hidden")))'
 EXPRESSIONS = {
     ca.OP_ASSIGN: "{0}",
     ca.OP_ADD: "{0} + {1}",
@@ -25,40 +26,40 @@ EXPRESSIONS = {
     ca.OP_SQ: "{0} * {0}",
     ca.OP_TWICE: "{0} + {0}",
     ca.OP_INV: "1.0 / {0}",
-    ca.OP_LT: "less({0}, {1})",
-    ca.OP_LE: "at_most({0}, {1})",
-    ca.OP_EQ: "equal({0}, {1})",
-    ca.OP_NE: "unequal({0}, {1})",
-    ca.OP_AND: "both({0}, {1})",
-    ca.OP_OR: "either({0}, {1})",
-    ca.OP_NOT: "negation({0})",
-    ca.OP_IF_ELSE_ZERO: "where({0}, {1})",
-    ca.OP_SQRT: "square_root({0})",
-    ca.OP_EXP: "exponential({0})",
-    ca.OP_LOG: "logarithm({0})",
-    ca.OP_SIN: "sine({0})",
-    ca.OP_COS: "cosine({0})",
-    ca.OP_TAN: "tangent({0})",
-    ca.OP_ASIN: "arcsine({0})",
-    ca.OP_ACOS: "arccosine({0})",
-    ca.OP_ATAN: "arctangent({0})",
-    ca.OP_SINH: "hyperbolic_sine({0})",
-    ca.OP_COSH: "hyperbolic_cosine({0})",
-    ca.OP_TANH: "hyperbolic_tangent({0})",
-    ca.OP_FABS: "magnitude({0})",
-    ca.OP_SIGN: "sign({0})",
-    ca.OP_FLOOR: "round_down({0})",
-    ca.OP_CEIL: "round_up({0})",
-    ca.OP_ERF: "error_function({0})",
-    ca.OP_POW: "power({0}, {1})",
-    ca.OP_CONSTPOW: "power({0}, {1})",
-    ca.OP_ATAN2: "arctangent_2({0}, {1})",
-    ca.OP_FMIN: "smaller({0}, {1})",
-    ca.OP_FMAX: "larger({0}, {1})",
-    ca.OP_COPYSIGN: "with_sign({0}, {1})",
-    ca.OP_FMOD: "remainder_of({0}, {1})",
+    ca.OP_LT: "{0} < {1}",
+    ca.OP_LE: "{0} <= {1}",
+    ca.OP_EQ: "{0} == {1}",
+    ca.OP_NE: "{0} != {1}",
+    ca.OP_AND: "{0} && {1}",
+    ca.OP_OR: "{0} || {1}",
+    ca.OP_NOT: "!{0}",
+    ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0.0",
+    ca.OP_SQRT: "sqrt({0})",
+    ca.OP_EXP: "exp({0})",
+    ca.OP_LOG: "log({0})",
+    ca.OP_SIN: "sin({0})",
+    ca.OP_COS: "cos({0})",
+    ca.OP_TAN: "tan({0})",
+    ca.OP_ASIN: "asin({0})",
+    ca.OP_ACOS: "acos({0})",
+    ca.OP_ATAN: "atan({0})",
+    ca.OP_SINH: "sinh({0})",
+    ca.OP_COSH: "cosh({0})",
+    ca.OP_TANH: "tanh({0})",
+    ca.OP_FABS: "fabs({0})",
+    ca.OP_SIGN: "{0} < 0.0 ? -1.0 : {0} > 0.0 ? 1.0 : {0}",
+    ca.OP_FLOOR: "floor({0})",
+    ca.OP_CEIL: "ceil({0})",
+    ca.OP_ERF: "erf({0})",
+    ca.OP_POW: "pow({0}, {1})",
+    ca.OP_CONSTPOW: "pow({0}, {1})",
+    ca.OP_ATAN2: "atan2({0}, {1})",
+    ca.OP_FMIN: "fmin({0}, {1})",
+    ca.OP_FMAX: "fmax({0}, {1})",
+    ca.OP_COPYSIGN: "copysign({0}, {1})",
+    ca.OP_FMOD: "fmod({0}, {1})",
 }
-"""C of each operation of CasADi's, by its operands; functions are those of lanes.h."""
+"""C of each operation of CasADi's, by its operands."""
 
 
 @dataclass(frozen=True)
@@ -70,32 +71,35 @@ class _Statement:
     target: str = ""
 
 
-def c_source(function: ca.Function, lanes: int = 1) -> str:
-    """C source of a function of dense or sparse arguments, nonzeros column by column.
+def c_sources(function: ca.Function) -> dict[str, str]:
+    """C sources by file name of a function of dense or sparse arguments, nonzeros column by column.
 
-    lanes 1: of the interface that `casadi.external` loads. Otherwise `int NAME(const real **, real **)`, of
-    arguments and results; real is a vector of `lanes` doubles: each entry holds that of `lanes` designs.
-    ValueError for an operation that `EXPRESSIONS` lacks.
+    Of the interface that `casadi.external` loads. ValueError for an operation that `EXPRESSIONS` lacks.
     """
-    pieces = _pieces(_statements(function))
+    texts, room = _piece_texts(_pieces(_statements(function)))
     name, inputs, outputs = function.name(), range(function.n_in()), range(function.n_out())
     parameters = [
-        *(f"const real *x{i}" for i in inputs),
-        *(f"real *restrict y{i}" for i in outputs),
-        "real *restrict w",
+        *(f"const double *x{i}" for i in inputs),
+        *(f"double *restrict y{i}" for i in outputs),
+        "double *restrict w",
     ]
     arguments = [*(f"arg[{i}]" for i in inputs), *(f"res[{i}]" for i in outputs), "w"]
-    texts, room = _piece_texts(pieces)
-    lines = [f"#define LANES {lanes}", LANES_HEADER.read_text()]
-    for i, text in enumerate(texts):
-        lines += [f"static __attribute__((noinline)) void piece_{i}({', '.join(parameters)}) {{", *text, "}"]
-    calls = [f"piece_{i}({', '.join(arguments)});" for i in range(len(texts))]
-    header = "const real **arg, real **res"
-    if lanes == 1:
-        lines.append(_casadi_interface(function))
-        header += ", long long *iw, double *memory, int instance"
-    lines += [f"int {name}({header}) {{", f"real w[{max(1, room)}];", *calls, "return 0;", "}"]
-    return "\n".join(lines) + "\n"
+    heads = [f"{HIDDEN} void {name}_{i}({', '.join(parameters)})" for i in range(len(texts))]
+    entry = [
+        *(f"{head};" for head in heads),
+        _casadi_interface(function),
+        f"int {name}(const double **arg, double **res, long long *iw, double *memory, int instance) {{",
+        f"double w[{max(1, room)}];",
+        *(f"{name}_{i}({', '.join(arguments)});" for i in range(len(texts))),
+        "return 0;",
+        "}",
+    ]
+    files = {name: entry}
+    for first in range(0, len(texts), PIECES_A_FILE):
+        file = files.setdefault(f"{name}_{first}", ["#include <math.h>"])
+        for head, text in list(zip(heads, texts, strict=True))[first : first + PIECES_A_FILE]:
+            file += [f"{head} {{", *text, "}"]
+    return {part: "\n".join(lines) + "\n" for part, lines in files.items()}
 
 
 def _statements(function: ca.Function) -> dict[int, _Statement]:
@@ -106,7 +110,7 @@ def _statements(function: ca.Function) -> dict[int, _Statement]:
         code = function.instruction_id(k)
         places = function.instruction_output(k)
         if code == ca.OP_CONST:
-            values[places[0]] = f"CONSTANT({_literal(function.instruction_constant(k))})"
+            values[places[0]] = _literal(function.instruction_constant(k))
             continue
         operands = function.instruction_input(k)
         if code == ca.OP_INPUT:
@@ -122,10 +126,10 @@ def _statements(function: ca.Function) -> dict[int, _Statement]:
 
 
 def _literal(value: float) -> str:
-    """A double in C."""
+    """A double in C, in parentheses."""
     if value != value:
         return "NAN"
-    return repr(value) if abs(value) < float("inf") else "INFINITY" if value > 0.0 else "-INFINITY"
+    return f"({value!r})" if abs(value) < float("inf") else "INFINITY" if value > 0.0 else "(-INFINITY)"
 
 
 def _pieces(statements: dict[int, _Statement]) -> list[list[tuple[int, _Statement]]]:
@@ -155,7 +159,7 @@ def _piece_texts(pieces: list[list[tuple[int, _Statement]]]) -> tuple[list[list[
             if statement.target:
                 lines.append(f"{statement.target} = {value};")
                 continue
-            lines.append(f"const real v{k} = {value};")
+            lines.append(f"const double v{k} = {value};")
             if last[k] > i:
                 place[k] = free.pop() if free else room
                 room = max(room, place[k] + 1)

@@ -13,7 +13,7 @@ import numpy as np
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.c_source import c_source
+from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, kernel
 from doe_kc.solver.library import handwritten, library_of
@@ -119,8 +119,10 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
 
     def sources() -> dict[str, str]:
         functions = kernel(topology).functions
-        generated = {name: c_source(functions[name]) for name in (*MARCHED, "constants")}
-        return generated | {"driver": handwritten(DRIVER)}
+        out = {"driver": handwritten(DRIVER)}
+        for name in (*MARCHED, "constants"):
+            out |= c_sources(functions[name])
+        return out
 
     path = library_of(topology, KERNEL_LIBRARY, sources, COMPILER_FLAGS)
     library = ctypes.CDLL(str(path))

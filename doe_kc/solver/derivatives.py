@@ -20,7 +20,7 @@ from scipy import sparse
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.blocks import SINGULAR, Block, Points, block_names, equilibrium_change, interpreted_blocks
-from doe_kc.solver.c_source import c_source
+from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of
 
@@ -164,11 +164,8 @@ def derivative_library(topology: Topology) -> DerivativeLibrary:
         symbols = blocks["R_x"].sx_in()
         names = [n for n in block_names(kernel(topology).nz > 0) if n != "constants"]
         joint = ca.Function("derivatives", symbols, [blocks[n](*symbols) for n in names], {"cse": True})
-        return {
-            "derivatives": c_source(joint),
-            "constants": c_source(blocks["constants"]),
-            "sensitivity": handwritten(SENSITIVITY),
-        }
+        generated = c_sources(joint) | c_sources(blocks["constants"])
+        return generated | {"sensitivity": handwritten(SENSITIVITY)}
 
     path = library_of(topology, "derivatives", sources, FLAGS)
     library = ctypes.CDLL(str(path))

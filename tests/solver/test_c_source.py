@@ -1,8 +1,7 @@
-"""Generated C: what CasADi evaluates itself, for every operation, alone and in lanes."""
+"""Generated C: what CasADi evaluates itself, for every operation."""
 
 from __future__ import annotations
 
-import ctypes
 from pathlib import Path
 
 import casadi as ca
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.solver import c_source as module
-from doe_kc.solver.c_source import EXPRESSIONS, c_source
+from doe_kc.solver.c_source import EXPRESSIONS, c_sources
 from doe_kc.solver.library import CACHE_VARIABLE, build, find_compiler
 
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
@@ -58,8 +57,9 @@ def test_the_function_of_the_tests_has_every_operation() -> None:
 @pytest.mark.parametrize("piece", [5, 300])
 def test_it_is_what_casadi_evaluates(piece: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "PIECE", piece)
+    monkeypatch.setattr(module, "PIECES_A_FILE", 3)
     function = every_operation()
-    loaded = ca.external("every", str(build({"every": c_source(function)})))
+    loaded = ca.external("every", str(build(c_sources(function))))
     for i in range(function.n_out()):
         assert loaded.sparsity_out(i) == function.sparsity_out(i)
     at = arguments(function, 5)
@@ -69,30 +69,7 @@ def test_it_is_what_casadi_evaluates(piece: int, monkeypatch: pytest.MonkeyPatch
             np.testing.assert_allclose(np.array(mine.nonzeros()), other, rtol=1e-14)
 
 
-@pytest.mark.parametrize("lanes", [4, 8])
-def test_every_lane_is_a_design_of_its_own(lanes: int) -> None:
-    function = every_operation()
-    library = ctypes.CDLL(str(build({"every": c_source(function, lanes)})))
-    at = arguments(function, lanes)
-    room = [np.zeros((function.nnz_out(i), lanes)) for i in range(function.n_out())]
-    own, out = ([_aligned(a) for a in arrays] for arrays in (at, room))
-    pointers = [(ctypes.c_void_p * len(group))(*(a.ctypes.data for a in group)) for group in (own, out)]
-    assert library.every(*pointers) == 0
-    for lane in range(lanes):
-        for mine, other in zip(out, expected(function, at, lane), strict=True):
-            np.testing.assert_allclose(mine[:, lane], other, rtol=1e-14)
-
-
-def _aligned(array: np.ndarray) -> np.ndarray:
-    """A copy at an address that vectors of 64 bytes may be loaded from."""
-    memory = np.zeros(array.size + 8)
-    first = (-memory.ctypes.data // 8) % 8
-    copy = memory[first : first + array.size].reshape(array.shape)
-    copy[:] = array
-    return copy
-
-
 def test_an_operation_without_c_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(EXPRESSIONS, ca.OP_SIN)
     with pytest.raises(ValueError, match="every has no C expression"):
-        c_source(every_operation())
+        c_sources(every_operation())
