@@ -32,6 +32,14 @@ RESPONSE_UNITS: Mapping[str, str] = {
     "wc_z": "mm",
     "tyre_load": "N",
 }
+RESPONSE_NAMES: Mapping[str, str] = {
+    "spin": "caster (knuckle)",
+    "wc_x": "wheel centre x",
+    "wc_y": "wheel centre y",
+    "wc_z": "wheel centre z",
+    "tyre_load": "tyre load",
+}
+"""Within a sentence, where that is not the identifier."""
 RESPONSE_LABELS: Mapping[str, str] = {
     "toe": "Toe angle (toe-in +)",
     "camber": "Camber angle (top outwards +)",
@@ -74,3 +82,8 @@ class CurveSet:
     cases: Mapping[str, CaseCurves]
     static: Mapping[str, FloatArray] | None
     half_track: float
+
+
+def response_name(response: str) -> str:
+    """Short name of a response within a sentence or an axis."""
+    return RESPONSE_NAMES.get(response, response)

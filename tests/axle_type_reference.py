@@ -67,7 +67,6 @@ def files(axle_type: str) -> list[str]:
 
 EFFECT_IDS = {
     "bushing_cubic": "bushing_progression",
-    "damper_friction": "strut_friction",
     "link_compliance": "tie_rod_compliance",
 }
 """Their tables whose effects have other names here."""

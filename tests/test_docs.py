@@ -57,7 +57,7 @@ def test_the_keys_on_the_page_are_taken() -> None:
     for ident, row in table_rows("effects.md").items():
         options = tomllib.loads("\n".join(re.findall(r"`([\w]+ = [^`]+)`", row)))
         assert options or "=" not in row.split("|")[3], ident
-        axle = nominal_of("five_link_rear") if EFFECTS[ident].part == "balls" else nominal()
+        axle = nominal_of("five_link_rear") if EFFECTS[ident].part in ("balls", "damper") else nominal()
         EFFECTS[ident].apply(axle, options, "page")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -97,6 +98,11 @@ def steering_friction(rng: np.random.Generator, size: float, axle: Axle) -> Hidd
 @draw("strut_friction")
 def strut_friction(rng: np.random.Generator, size: float, axle: Axle) -> Hidden:
     return _friction("strut_friction", size, 120.0, log_uniform(rng, 0.15, 0.6))
+
+
+@draw("damper_friction")
+def damper_friction(rng: np.random.Generator, size: float, axle: Axle) -> Hidden:
+    return replace(strut_friction(rng, size, axle), id="damper_friction")
 
 
 @draw("bushing_preload")

@@ -27,6 +27,7 @@ PRESENT = (
     "ride_height_offset",
     "steering_friction",
     "strut_friction",
+    "damper_friction",
 )
 """Free play is none or felt, and the sides are unequal anyway. Friction shows in the loops even so: 4 % of
 its typical size is fifty standard deviations, a trace that is worth a line but no name."""

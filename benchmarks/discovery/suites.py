@@ -38,6 +38,7 @@ ALIKE = (
 WITHOUT_PLACE = (
     "hub_compliance",
     "strut_friction",
+    "damper_friction",
     "subframe_flexibility",
     "tyre_horizontal_compliance",
     "ride_height_offset",

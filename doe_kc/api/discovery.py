@@ -102,7 +102,7 @@ class DiscoveryResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """The gap of every curve, as handed in, re-tuned, and with the effects; 1 is noise."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.names import response_name
+        from doe_kc.curves import response_name
         from doe_kc.reports.style import PALETTE
 
         rows = self.discovery.gaps

@@ -29,6 +29,12 @@ def members_of(axle: Axle) -> Mapping[str, tuple[Member, ...]]:
     return {name: lines for name, lines in out.items() if lines}
 
 
+def shared_parts(axle: Axle) -> frozenset[str]:
+    """Names, among those of `members_of`, of the parts that are one for both sides."""
+    structure = axle.topology.structure
+    return frozenset(_part_words(name, structure) for name in structure.single_bodies)
+
+
 def _part_words(body: str, structure: Structure) -> str:
     subframe = structure.subframe
     return "sub-frame" if subframe is not None and body == subframe.body else body.replace("_", " ")

@@ -46,7 +46,6 @@ BUSHINGS = {
 BUSHING_AXES = ("Fx", "Fy", "Fz", "Tx", "Ty", "Tz")
 STRUT_BENDING, STRUT_TORSION = 8000.0, 30000.0
 """Nm/deg at the strut clamp for `strut.flexibility` 1; the stiffness is this over the flexibility."""
-DEFAULT_FOLLOW = {"UPS": "UPB", "UPBBI": "UPB", "SAH": "ROB"}
 
 
 @dataclass(frozen=True)
@@ -96,16 +95,17 @@ class Axle:
 
 
 CLAMP_HEIGHT = 0.25
-"""Share of the way from the wheel centre's height up to LWD's."""
+"""Share of the way from the wheel centre's height up to that of the strut's lower end."""
 
 
-def strut_clamp(points: Mapping[str, Sequence[float]]) -> list[float]:
-    """(3,) CLAMP in mm of an axle file that does not give it, from its hardpoints LWD, UPB and WLC.
+def strut_clamp(points: Mapping[str, Sequence[float]], line: tuple[str, str]) -> list[float]:
+    """(3,) clamp of a strut in mm, of an axle file that does not give it, from its hardpoints.
 
-    On the strut axis UPB-LWD, produced downwards, a quarter of the way from the wheel centre's height up to
-    LWD's: the two bolts of the knuckle sit just above the wheel centre. LWD when the strut does not rise.
+    line: lower and upper end of the strut. On that line, produced downwards, a quarter of the way from the
+    height of the wheel centre WLC up to the lower end: the two bolts of the knuckle sit just above the wheel
+    centre. The lower end when the strut does not rise.
     """
-    lower, upper = points["LWD"], points["UPB"]
+    lower, upper = (points[name] for name in line)
     rise = upper[2] - lower[2]
     if rise <= 0.0:
         return [float(v) for v in lower]

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, MutableMapping
-from typing import Any
+from typing import Any, get_args
 
 import tomlkit
 
-from doe_kc.axle.model import BUSHING_AXES, strut_clamp
+from doe_kc.axle.model import BUSHING_AXES
 from doe_kc.axle.parameter_kinds import COORDINATES
+from doe_kc.axle.places import Places
+from doe_kc.axle.structure import Structure
 from doe_kc.axle_file.schema import AxleFile
-from doe_kc.effects import EFFECTS
+from doe_kc.effects import EFFECTS, effect_id
 
 OF_BUSHINGS = ("stiffness", "cubic", "preload")
 """Tables that a bushing has in the file."""
@@ -18,13 +20,8 @@ Place = tuple[str | int, ...]
 """Keys and indices from the top of the file to one number."""
 
 
-def effect_id(key: str) -> str:
-    """Id of the effect that a table's name stands for."""
-    return next((e.id for e in EFFECTS.values() if e.table == key), key)
-
-
-def own_place(name: str) -> Place:
-    """Where the file holds an internal value; empty when only an effect can give it."""
+def own_place(name: str, structure: Structure) -> Place:
+    """Where the file of such an axle holds an internal value; empty when only an effect can give it."""
     path = name.split("@")[0]
     head, _, rest = path.partition(".")
     if name.endswith("@R"):
@@ -35,13 +32,18 @@ def own_place(name: str) -> Place:
         return ("bushings", head, "factor", rest)
     if rest.split(".")[0] in OF_BUSHINGS:
         return ("bushings", head, *rest.split("."))
-    return (head, rest) if rest in _keys(head) else (head,) if path in AxleFile.model_fields else ()
+    if rest in _keys(head) or (rest == "rate" and head in [spring.name for spring in structure.springs]):
+        return (head, rest)
+    return (head,) if path in AxleFile.model_fields else ()
 
 
 def _keys(table: str) -> set[str]:
     """Keys that the file may have in a table."""
     field = AxleFile.model_fields.get(table)
-    return set(getattr(field.annotation, "model_fields", {})) if field is not None else set()
+    if field is None:
+        return set()
+    kinds = get_args(field.annotation) or (field.annotation,)  # a table that not every type has: T | None
+    return {key for kind in kinds for key in getattr(kind, "model_fields", {})}
 
 
 def path_of(name: str) -> str:
@@ -49,10 +51,10 @@ def path_of(name: str) -> str:
     return f"right.{name[:-2]}" if name.endswith("@R") else name.removesuffix("@L")
 
 
-def option_places(effects: Mapping[str, Mapping[str, Any]]) -> Iterator[tuple[Place, float]]:
-    """Every number among the effects' options, defaults included."""
+def option_places(effects: Mapping[str, Mapping[str, Any]], places: Places) -> Iterator[tuple[Place, float]]:
+    """Every number among the effects' options, defaults included. places: of the axle."""
     for key, given in effects.items():
-        ident = effect_id(key)
+        ident = effect_id(key, places)
         defaults = {k: o.default for k, o in EFFECTS[ident].options.items()}
         yield from _numbers(("effects", key), defaults | dict(given))
 
@@ -83,17 +85,15 @@ def put_entry(document: MutableMapping[str, Any], place: Place, value: Any) -> N
     table: Any = document
     for depth, key in enumerate(way):
         if not isinstance(key, int) and key not in table:
-            table[key] = _new(document, place, depth)
+            table[key] = _new(place, depth)
         table = table[key]
     table[last] = value
 
 
-def _new(document: Mapping[str, Any], place: Place, depth: int) -> Any:
+def _new(place: Place, depth: int) -> Any:
     """An empty table as its place is written by hand: inline for what a bushing has per axis."""
     if place[0] == "bushings" and depth == 2:
         return tomlkit.inline_table()
-    if place[0] == "hardpoints":
-        return strut_clamp(document["hardpoints"])  # the only one that a file may lack
     return tomlkit.table(is_super_table=place[0] == "effects" and depth == 0)
 
 

@@ -8,7 +8,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from doe_kc.axle.force_curve import STEEPEST_CURVE
-from doe_kc.axle.model import BUSHING_AXES, DEFAULT_FOLLOW
+from doe_kc.axle.model import BUSHING_AXES
+from doe_kc.axle_types import DEFAULT_TYPE
 from doe_kc.ground.fields import Finite, NotNegative, Pair, Point, Positive, Strict
 
 
@@ -18,25 +19,6 @@ class Units(Strict):
     angle: Literal["deg"]
     stiffness: Literal["N/mm"]
     rotational_stiffness: Literal["Nm/deg"]
-
-
-class Hardpoints(Strict):
-    LLF: Point
-    LLR: Point
-    LWB: Point
-    LWD: Point
-    LWS: Point
-    UPB: Point
-    UPS: Point
-    UPBBI: Point
-    RIB: Point
-    ROB: Point
-    SAH: Point
-    SFF: Point
-    SFR: Point
-    WLC: Point
-    ARB: Point
-    CLAMP: Point | None = None
 
 
 class Bushing(Strict):
@@ -92,12 +74,11 @@ def check_table(points: list[list[float]], name: str, *, through_zero: bool = Fa
         raise ValueError(f"{name} must span zero deflection, from compression to extension")
 
 
-class Bushings(Strict):
-    llf: Bushing
-    llr: Bushing
-    sff: Bushing
-    sfr: Bushing
-    upb: Bushing
+class OrientedBushing(Bushing):
+    """x, y: local axes in the design position, left side, chassis components; by default the type's."""
+
+    x: Point | None = None
+    y: Point | None = None
 
 
 class Stop(Strict):
@@ -165,37 +146,28 @@ class Sweep(Strict):
 
 
 class AxleFile(Strict):
-    """The whole file. `schema` names the format and its version."""
+    """The whole file. `schema` names the format and its version. Springs are tables of their own, named as in
+    the type: `[spring]`. follow: None = the type's."""
 
     schema_: Literal["doe_kc.axle/1"] = Field(alias="schema")
+    type: str = DEFAULT_TYPE
     name: str
     units: Units
-    hardpoints: Hardpoints
-    follow: dict[str, str] = DEFAULT_FOLLOW
+    hardpoints: dict[str, Point]
+    follow: dict[str, str] | None = None
     static: Static
     tyre: TyreTable
-    spring: Spring
+    springs: dict[str, Spring]
     damper: Damper = Damper()
-    bump_stop: Stop
-    rebound_stop: Stop
-    arb: AntiRollBarTable
-    steering: SteeringTable
+    bump_stop: Stop | None = None
+    rebound_stop: Stop | None = None
+    arb: AntiRollBarTable | None = None
+    steering: SteeringTable | None = None
     scb: ColumnBushing = ColumnBushing()
-    bushings: Bushings
-    steer_arm: SteerArmTable = SteerArmTable()
-    strut: StrutTable = StrutTable()
+    bushings: dict[str, OrientedBushing]
+    strut: StrutTable | None = None
+    steer_arm: SteerArmTable | None = None
     ride_height: Finite = 0.0
     right: dict[str, Finite] = Field(default_factory=dict)
     effects: dict[str, dict[str, Any]] = Field(default_factory=dict)
     load_cases: dict[str, Sweep] = Field(default_factory=dict)
-
-    @model_validator(mode="after")
-    def _follow(self) -> AxleFile:
-        known = set(Hardpoints.model_fields)
-        for follower, leader in self.follow.items():
-            for point in (follower, leader):
-                if point not in known:
-                    raise ValueError(f"follow names {point!r}, which is not a hardpoint")
-            if leader in self.follow:
-                raise ValueError(f"follow: {follower} follows {leader}, which itself follows another point")
-        return self

@@ -14,11 +14,11 @@ from tomlkit.items import Table
 
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
+from doe_kc.axle.parameter_kinds import COORDINATES
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.axle.places import Places, places_of
 from doe_kc.axle_file.places import (
     Place,
-    effect_id,
     entry,
     option_places,
     own_place,
@@ -27,7 +27,7 @@ from doe_kc.axle_file.places import (
     restore_entry,
 )
 from doe_kc.axle_file.read import axle_from_document
-from doe_kc.effects import EFFECTS
+from doe_kc.effects import EFFECTS, effect_id
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.files import read_bytes, read_toml
 from doe_kc.ground.output import write_whole
@@ -42,14 +42,14 @@ def set_effects(document: tomlkit.TOMLDocument, axle: Axle) -> None:
 
     Faults of the measurement are left out: an axle file does not hold them.
     """
-    tables = document.get("effects", {})
+    tables, places = document.get("effects", {}), places_of(axle)
     for key in list(tables):
-        if effect_id(key) not in axle.effects:
+        if effect_id(key, places) not in axle.effects:
             del tables[key]
-    present = {effect_id(key): key for key in tables}
+    present = {effect_id(key, places): key for key in tables}
     for ident, options in axle.effects.items():
         if ident in present:
-            _change(tables[present[ident]], ident, options, places_of(axle))
+            _change(tables[present[ident]], ident, options, places)
         elif not EFFECTS[ident].on_rig:
             if "effects" not in document:
                 document["effects"] = tomlkit.table(is_super_table=True)
@@ -161,15 +161,27 @@ def _wrong(document: tomlkit.TOMLDocument, axle: Axle) -> list[str]:
 def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
     """Change the document until it reads as the axle; False when that cannot be."""
     drivers = _drivers(document)
+    own = {name: own_place(name, axle.topology.structure) for name in axle.values}
     for _ in range(WRITE_CORRECTIONS):
-        wrong = [n for n in _wrong(document, axle) if n not in drivers and own_place(n)]
+        wrong = [n for n in _wrong(document, axle) if n not in drivers and own[n]]
         left = [n for n in wrong if not n.endswith("@R")]
         for name in left or wrong:
-            put_entry(document, own_place(name), parameter_value(axle, path_of(name)))
+            _add_point(document, own[name])
+            put_entry(document, own[name], parameter_value(axle, path_of(name)))
     for name in _wrong(document, axle):
-        places = [own_place(name), *drivers.get(name, [])]
+        _add_point(document, own[name])
+        places = [own[name], *drivers.get(name, [])]
         any(_solve(document, axle, name, place) for place in places if place)
     return _agrees(document, axle)
+
+
+def _add_point(document: tomlkit.TOMLDocument, place: Place) -> None:
+    """A hardpoint that the file leaves to be derived, as it is read without it."""
+    if place[:1] == ("hardpoints",) and place[1] not in document["hardpoints"]:
+        now = _read(document)
+        document["hardpoints"][place[1]] = [
+            parameter_value(now, f"{place[1]}.{axis}") for axis in COORDINATES
+        ]
 
 
 def _agrees(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
@@ -198,9 +210,10 @@ def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: s
 
 def _drivers(document: tomlkit.TOMLDocument) -> dict[str, list[Place]]:
     """Internal value -> options of effects that it moves with, found by changing each a little."""
-    base = _read(document).values
+    axle = _read(document)
+    base, effects = axle.values, document.unwrap().get("effects", {})
     out: dict[str, list[Place]] = {}
-    for place, value in list(option_places(document.unwrap().get("effects", {}))):
+    for place, value in list(option_places(effects, places_of(axle))):
         trial = document.unwrap()
         put_entry(trial, place, value * 1.0001 if value else 1e-4)
         for name, moved in axle_from_document(trial, source="axle").values.items():

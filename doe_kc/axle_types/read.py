@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -49,12 +49,14 @@ RESERVED = {
 @dataclass(frozen=True)
 class AxleType:
     """structure: bodies and connections. label: of the type. labels: of points and elements by name.
-    lines: pairs of hardpoints by the part that they draw; empty: drawn from the connections."""
+    lines: pairs of hardpoints by the part that they draw; empty: drawn from the connections. follow: point ->
+    the one whose moves it makes too, where an axle file does not say."""
 
     structure: Structure
     label: str
     labels: Mapping[str, str]
     lines: Mapping[str, tuple[tuple[str, str], ...]]
+    follow: Mapping[str, str]
 
 
 def read_axle_type(name: str, folder: Path, *, source: str) -> AxleType:
@@ -83,7 +85,7 @@ def built_in(name: str) -> AxleType:
 def _read(path: Path) -> AxleType:
     file = validate(AxleTypeFile, read_toml(path), str(path))
     _check(file, str(path))
-    return AxleType(_structure(file, str(path)), file.label, _labels(file), _lines(file))
+    return AxleType(_structure(file, str(path)), file.label, _labels(file), _lines(file), file.follow)
 
 
 def bushing_axes(x: list[float] | None, y: list[float] | None, where: str) -> tuple[tuple[float, ...], ...]:
@@ -208,6 +210,7 @@ def _uses(file: AxleTypeFile) -> Iterator[_Use]:
 def _check(file: AxleTypeFile, source: str) -> None:
     """InputError for a name that is unknown, unused, used twice, or of the wrong side."""
     _check_names(file, source)
+    check_follow(file.follow, file.points, source)
     for use in _uses(file):
         _check_bodies(file, use, source)
         _check_points(file, use, source)
@@ -227,6 +230,21 @@ def _check(file: AxleTypeFile, source: str) -> None:
             raise InputError(f"{source}: [bodies] {file.rack.body} is the rack; expected it to be 'single'.")
     if not file.springs:
         raise InputError(f"{source}: [springs] is empty; expected at least one spring to carry the car.")
+
+
+def check_follow(follow: Mapping[str, str], points: Collection[str], source: str) -> None:
+    """InputError unless every point follows another of either side that follows none."""
+    for follower, leader in follow.items():
+        for point in (follower, leader):
+            if point not in points:
+                raise InputError(
+                    f"{source}: follow names {point!r}, which is not a hardpoint.{nearest(point, points)}"
+                )
+        if leader in follow:
+            raise InputError(
+                f"{source}: follow: {follower} follows {leader}, which itself follows another point; "
+                "let both follow the same."
+            )
 
 
 def _check_names(file: AxleTypeFile, source: str) -> None:

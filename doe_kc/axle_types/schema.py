@@ -116,6 +116,7 @@ class AxleTypeFile(Strict):
     strut: ClampTable | None = None
     steer_arm: BeamTable | None = None
     fixed_points: list[str] = Field(default_factory=list)
+    follow: dict[str, str] = Field(default_factory=dict)
     lines: dict[str, list[Annotated[list[str], Field(min_length=2, max_length=2)]]] = Field(
         default_factory=dict
     )

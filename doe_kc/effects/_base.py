@@ -29,7 +29,8 @@ class Option:
 Part = Literal[
     "axle", "rack", "rods", "damper", "subframe", "bar", "balls", "ball_joint", "strut", "steer_arm"
 ]
-"""axle: what every type has. rods: that the rack steers by. balls: ball joints but `ball_joint`."""
+"""axle: what every type has. rods: that the rack steers by. damper: one that is no strut. balls: ball joints
+but `ball_joint`."""
 
 
 class Effect(ABC):
@@ -40,6 +41,8 @@ class Effect(ABC):
     options: ClassVar[Mapping[str, Option]] = {}
     table: ClassVar[str] = ""
     """Other name under which files give the effect."""
+    counterpart: ClassVar[str] = ""
+    """Id of the same effect on axles that have another part; files may give either name on either axle."""
     physics: ClassVar[str]
     """One sentence: what happens in the car."""
     mistaken_for: ClassVar[tuple[str, ...]] = ()
@@ -68,7 +71,7 @@ class Effect(ABC):
             "axle": True,
             "rack": structure.rack is not None,
             "rods": structure.rack is not None and bool(structure.rack.rods),
-            "damper": structure.damper is not None,
+            "damper": structure.damper is not None and structure.strut is None,
             "subframe": structure.subframe is not None,
             "bar": structure.bar is not None,
             "balls": bool(places.balls),
@@ -170,9 +173,19 @@ def observed(axle: Axle, curves: CurveSet) -> CurveSet:
     return curves
 
 
+def effect_id(name: str, places: Places) -> str:
+    """Id of the effect that the name of a table stands for on an axle with these places; the name itself
+    where no effect has it."""
+    ident = next((e.id for e in EFFECTS.values() if name and name in (e.id, e.table)), name)
+    effect = EFFECTS.get(ident)
+    if effect is None or not effect.counterpart or effect.possible(places):
+        return ident
+    return effect.counterpart
+
+
 def apply_effect(axle: Axle, ident: str, options: Mapping[str, Any], *, source: str) -> Axle:
     """The axle with the effect `ident`; InputError when there is none of that name."""
-    ident = next((e.id for e in EFFECTS.values() if ident and e.table == ident), ident)
+    ident = effect_id(ident, places_of(axle))
     if ident not in EFFECTS:
         raise InputError(
             f"{source}: unknown effect {ident!r}; known are {', '.join(EFFECTS)}.{nearest(ident, EFFECTS)}"

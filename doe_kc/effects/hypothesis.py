@@ -78,8 +78,9 @@ class Hypothesis:
 
     @property
     def name(self) -> str:
-        """Unique in the library, e.g. `bushing_preload LLR`; without a location by what is fixed."""
-        where = [str(v) for v in self.fixed.values()] if self.location is None else [self.location]
+        """Unique in the library, e.g. `bushing_preload LLR`; without a location by the words fixed."""
+        words = [v for v in self.fixed.values() if isinstance(v, str)]
+        where = words if self.location is None else [self.location]
         return " ".join([self.effect, *where])
 
     def options(self, amplitudes: Mapping[str, float]) -> dict[str, Any]:

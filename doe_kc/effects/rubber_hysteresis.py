@@ -23,6 +23,8 @@ BENCH_TRAVELS = (0.05, 0.5, 2.0)
 """mm, of benches for dynamic stiffness, and of a K&C rig."""
 REAR = ("LLR",)
 """The compliance bushing of the lower arm: the loops of drive and brake are its own."""
+REST = "REST"
+"""Location of all other bushings."""
 
 
 @effect
@@ -50,7 +52,12 @@ class RubberHysteresis(Effect):
         "Filled rubber rubs inside, so that every bushing holds back a little on either way and is stiffer "
         "over a small travel than over a large one."
     )
-    mistaken_for: ClassVar[tuple[str, ...]] = ("steering_friction", "strut_friction", "llr.Fy")
+    mistaken_for: ClassVar[tuple[str, ...]] = (
+        "steering_friction",
+        "strut_friction",
+        "damper_friction",
+        "llr.Fy",
+    )
     shown_by: ClassVar[str] = (
         "a slow force loop of the bushing on a test bench, at the rig's travel and at a tenth of it"
     )
@@ -67,7 +74,7 @@ class RubberHysteresis(Effect):
         return (
             everywhere,
             Hypothesis(self.id, *REAR, self.sizes, {"bushings": list(REAR)}),
-            Hypothesis(self.id, "REST", self.sizes, {"bushings": rest}),
+            Hypothesis(self.id, REST, self.sizes, {"bushings": rest}),
         )
 
     def consequence(self, options: Mapping[str, Any]) -> str:

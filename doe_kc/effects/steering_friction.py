@@ -25,7 +25,7 @@ class SteeringFriction(DryFriction):
     physics: ClassVar[str] = (
         "The rack sticks in its housing, so that toe lags behind its load and both ways of a loop differ."
     )
-    mistaken_for: ClassVar[tuple[str, ...]] = ("strut_friction", "tie_rod_free_play")
+    mistaken_for: ClassVar[tuple[str, ...]] = ("strut_friction", "damper_friction", "tie_rod_free_play")
     shown_by: ClassVar[str] = "hand-wheel torque over a slow steering sweep with unloaded wheels"
     sizes: ClassVar[tuple[Size, ...]] = (
         Size("force_N", 250.0, "N"),

@@ -1,4 +1,4 @@
-"""Dry friction along the damper, with state: Dahl, Prandtl-Iwan, or a backbone of its own."""
+"""Dry friction along the strut, with state: Dahl, Prandtl-Iwan, or a backbone of its own."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from doe_kc.effects.hypothesis import Size
 
 @effect
 class StrutFriction(DryFriction):
-    """Friction of the damper's rod, on a McPherson axle of the strut's."""
+    """Friction of the damper's rod in a strut that guides the wheel."""
 
     id: ClassVar[str] = "strut_friction"
-    label: ClassVar[str] = "Damper friction"
-    table: ClassVar[str] = "damper_friction"
-    part: ClassVar[Part] = "damper"
+    label: ClassVar[str] = "Strut friction"
+    counterpart: ClassVar[str] = "damper_friction"
+    part: ClassVar[Part] = "strut"
     options: ClassVar[Mapping[str, Option]] = friction_options(120.0, 0.3)
 
     physics: ClassVar[str] = (

@@ -20,4 +20,10 @@ CASE_ORDER = (
     "steer",
 )
 
-__all__ = ["CASE_ORDER", "LOAD_CASES", "Controls", "Datum", "LoadCase", "load_case"]
+
+def case_label(load_case: str) -> str:
+    """Name of a load case; Static for what needs none."""
+    return LOAD_CASES[load_case].label if load_case in LOAD_CASES else load_case.capitalize()
+
+
+__all__ = ["CASE_ORDER", "LOAD_CASES", "Controls", "Datum", "LoadCase", "case_label", "load_case"]

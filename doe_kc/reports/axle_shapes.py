@@ -17,9 +17,9 @@ from doe_kc.axle.model import Axle
 from doe_kc.curves import SIDES
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.reports import style
 from doe_kc.reports.axle_views import ARROW_FACTORS, LONGEST_ARROW
-from doe_kc.reports.names import case_label
 from doe_kc.reports.panel import Dash, PageBox, Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.series import draw_series

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 from typing import Any, Protocol, TypeVar
 
 from doe_kc.characteristics import Characteristic
-from doe_kc.load_cases import CASE_ORDER
-from doe_kc.reports.names import case_label, response_name
+from doe_kc.curves import response_name
+from doe_kc.load_cases import CASE_ORDER, case_label
 from doe_kc.reports.table import Column, PageCell
 
 Value = TypeVar("Value")

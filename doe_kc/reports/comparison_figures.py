@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, SIDES
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_NAMES, RESPONSE_UNITS, RIG_RESPONSES, SIDES, response_name
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.reports import style
-from doe_kc.reports.names import RESPONSE_NAMES, input_label, response_axis, response_name
+from doe_kc.reports.names import input_label, response_axis
 from doe_kc.reports.panel import Dash, PageBox, Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.series import draw_series

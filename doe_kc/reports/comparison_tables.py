@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from doe_kc.curves import RESPONSE_UNITS
+from doe_kc.curves import RESPONSE_UNITS, response_name
 from doe_kc.ground.numbers import at_sd, with_sd
-from doe_kc.reports.names import case_label, response_name
+from doe_kc.load_cases import case_label
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table, TerminalCell
 from doe_kc.targets.comparison import CharacteristicComparison, Comparison, CurveComparison
 

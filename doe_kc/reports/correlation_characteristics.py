@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from doe_kc.correlation.assessment import inside
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.numbers import at_sd, with_sd
+from doe_kc.load_cases import case_label
 from doe_kc.reports.characteristic_columns import by_load_case
-from doe_kc.reports.names import case_label
 from doe_kc.reports.table import (
     NEGATIVE_FILL,
     Bar,

@@ -13,10 +13,10 @@ from matplotlib.patches import Patch
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RIG_RESPONSES, CaseCurves
 from doe_kc.ground.typing import FloatArray
-from doe_kc.load_cases import CASE_ORDER
+from doe_kc.load_cases import CASE_ORDER, case_label
 from doe_kc.measurement import Measurement
 from doe_kc.reports import style
-from doe_kc.reports.names import case_label, input_label, response_axis, without_remark
+from doe_kc.reports.names import input_label, response_axis, without_remark
 from doe_kc.reports.panel import Dash, Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.sheet import Sheet, sheet

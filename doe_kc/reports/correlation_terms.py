@@ -11,7 +11,7 @@ import numpy as np
 from doe_kc.characteristics import Characteristic
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.table import POSITIVE_FILL, Bar, Column, SheetLayout, Table, three_digits
 from doe_kc.targets import Constraint, Objective, Rating, Score
 from doe_kc.targets.options import Goal

@@ -50,7 +50,8 @@ CORRELATION_LEGEND = {
 }
 
 
-def correlation_workbook(
+def write_correlation_workbook(
+    path: Path,
     correlation: Correlation,
     *,
     study: str,
@@ -59,13 +60,13 @@ def correlation_workbook(
     assessment: Assessment | None = None,
     loops: Sequence[LoopWidth] = (),
     axle_picture: bytes | None = None,
-) -> Workbook:
-    """Sheets Summary, DNA, Axle, Characteristics, Parameters, Curves, Hysteresis, Evaluations, Rating terms
-    and Legend; Axle and Hysteresis where there is a picture and where there are loops.
+) -> Path:
+    """Write sheets Summary, DNA, Axle, Characteristics, Parameters, Curves, Hysteresis, Evaluations, Rating
+    terms and Legend; Axle and Hysteresis where there is a picture and where there are loops.
 
     study: name in titles and page headers. date: as it shall stand in the summary. notes: further lines of
     the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
-    axle_picture: PNG.
+    axle_picture: PNG. RunError naming path and remedy when the place is locked or full.
     """
     book = new_book(f"Correlation: {study}")
     _summary_sheet(book, correlation, study, date, notes or {}, assessment or assess(correlation))
@@ -85,30 +86,6 @@ def correlation_workbook(
     rating_sheet(book, correlation, study)
     lines_sheet(
         book, "Legend", "Legend", "How to read this workbook.", list(CORRELATION_LEGEND.items()), study
-    )
-    return book
-
-
-def write_correlation_workbook(
-    path: Path,
-    correlation: Correlation,
-    *,
-    study: str,
-    date: str,
-    notes: Mapping[str, str] | None = None,
-    assessment: Assessment | None = None,
-    loops: Sequence[LoopWidth] = (),
-    axle_picture: bytes | None = None,
-) -> Path:
-    """Write `correlation_workbook`; RunError naming path and remedy when the place is locked or full."""
-    book = correlation_workbook(
-        correlation,
-        study=study,
-        date=date,
-        notes=notes,
-        assessment=assessment,
-        loops=loops,
-        axle_picture=axle_picture,
     )
     return write_book(path, book)
 

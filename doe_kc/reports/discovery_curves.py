@@ -12,13 +12,13 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from doe_kc.correlation.likelihood import Branches, CurveData
-from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
+from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD, response_name
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.reports import style
 from doe_kc.reports.correlation_curves import BAND_SDS
 from doe_kc.reports.discovery_gaps import MODEL_COLOURS
-from doe_kc.reports.names import case_label, response_name
 from doe_kc.reports.panel import Dash, PageBox, Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.sheet import Sheet, sheet

@@ -9,15 +9,9 @@ from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.sentences import against_words
 from doe_kc.effects import EFFECTS
+from doe_kc.effects.words import effect_label, place_of
 from doe_kc.ground.numbers import sd_format
-from doe_kc.reports.discovery_words import (
-    FoundSize,
-    effect_label,
-    found_sizes,
-    mistaken_words,
-    physics_words,
-    place_of,
-)
+from doe_kc.reports.discovery_words import FoundSize, found_sizes, mistaken_words, physics_words
 from doe_kc.reports.table import Column, SheetLayout, Table
 
 ODDS = '[>=6]"> 6";0.0'

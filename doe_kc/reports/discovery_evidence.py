@@ -13,8 +13,8 @@ from matplotlib.patches import Patch
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.search.search import Step
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
+from doe_kc.effects.words import hypothesis_label, hypothesis_words
 from doe_kc.reports import style
-from doe_kc.reports.discovery_words import hypothesis_label, hypothesis_words
 from doe_kc.reports.panel import PageBox, Panel
 from doe_kc.reports.panel_axis import PanelAxis
 from doe_kc.reports.sheet import Sheet
@@ -95,7 +95,9 @@ def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
         _panel(page.add_panel(box, axis), step, title, largest)
     for panel in page.panels[:-1]:
         panel.numbers["x"] = False
-    page.panels[-1].set_labels("ln evidence gained over the model without it", None)
+    page.panels[-1].set_labels(
+        "how much more probable the records are with it (natural logarithm; 10 = 22 000 times)", None
+    )
     handles: list[Line2D | Patch] = [
         Patch(color=CHOSEN, label="taken into the model"),
         Patch(color=REFITTED, label="refitted jointly, not taken"),

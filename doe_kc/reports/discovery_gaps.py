@@ -9,11 +9,12 @@ from itertools import groupby
 import numpy as np
 from matplotlib.lines import Line2D
 
+from doe_kc.curves import response_name
 from doe_kc.discovery.result import Gap
+from doe_kc.load_cases import case_label
 from doe_kc.reports import style
 from doe_kc.reports.discovery_tables import GapRow
 from doe_kc.reports.discovery_words import MODEL_LABELS
-from doe_kc.reports.names import case_label, response_name
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.sheet import Sheet, sheet
 

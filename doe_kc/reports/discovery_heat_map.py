@@ -10,13 +10,12 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.typing import ColorType
 
-from doe_kc.curves import RIG_RESPONSES
+from doe_kc.curves import RIG_RESPONSES, response_name
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.load_cases import CASE_ORDER
+from doe_kc.load_cases import CASE_ORDER, case_label
 from doe_kc.reports.color_scale import STRIPS, draw_color_scale, outline
-from doe_kc.reports.names import case_label, response_name
 from doe_kc.reports.panel import PageBox, Panel
 from doe_kc.reports.sheet import Sheet, sheet
 from doe_kc.reports.words import POINTS

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from matplotlib.lines import Line2D
 
 from doe_kc.discovery.verdict.held_out import HeldOut
+from doe_kc.load_cases import case_label
 from doe_kc.reports.discovery_gaps import MODEL_COLOURS
 from doe_kc.reports.discovery_tables import gain_words
-from doe_kc.reports.names import case_label
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.sheet import Sheet, sheet
 

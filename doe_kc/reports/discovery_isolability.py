@@ -15,8 +15,9 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.thresholds import ALIKE_CORRELATION
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
 from doe_kc.effects import EFFECTS
+from doe_kc.effects.words import hypothesis_label
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.discovery_words import STATUS_WORDS, hypothesis_label
+from doe_kc.reports.discovery_words import STATUS_WORDS
 from doe_kc.reports.table import Column, SheetLayout, Table
 
 VISIBLE_LEVEL = 1.0

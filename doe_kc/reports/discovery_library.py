@@ -9,15 +9,8 @@ from dataclasses import dataclass
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.effects import EFFECTS
-from doe_kc.reports.discovery_words import (
-    STATUS_WORDS,
-    effect_label,
-    hypothesis_label,
-    limit_words,
-    mistaken_words,
-    place_of,
-    typical_words,
-)
+from doe_kc.effects.words import effect_label, hypothesis_label, place_of
+from doe_kc.reports.discovery_words import STATUS_WORDS, limit_words, mistaken_words, typical_words
 from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Table
 
 STATUS_ORDER = tuple(STATUS_WORDS)

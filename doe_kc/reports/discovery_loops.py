@@ -9,15 +9,16 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS, SIDES
+from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS, SIDES, response_name
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.numbers import at_sd, with_sd
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.reports.correlation_curves import BAND_SDS
 from doe_kc.reports.discovery_curves import ModelView, model_views
 from doe_kc.reports.discovery_gaps import MODEL_COLOURS
 from doe_kc.reports.hysteresis import inner_weights
-from doe_kc.reports.names import case_label, response_name, without_remark
+from doe_kc.reports.names import without_remark
 from doe_kc.reports.panel import Dash, Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.sheet import Sheet, sheet

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.curves import RESPONSE_LABELS
+from doe_kc.curves import RESPONSE_LABELS, response_name
 from doe_kc.discovery.result import Discovery, Gap
 from doe_kc.discovery.verdict.held_out import HeldOut
-from doe_kc.reports.names import case_label, response_name
+from doe_kc.load_cases import case_label
 from doe_kc.reports.table import (
     NEUTRAL_FILL,
     POSITIVE_FILL,

@@ -10,7 +10,7 @@ from typing import Any
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import design_parameters
 from doe_kc.axle.places import places_of
-from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS
+from doe_kc.curves import response_name
 from doe_kc.discovery.fit import amplitude_estimates
 from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
 from doe_kc.discovery.screening.contrasts import Contrast
@@ -18,9 +18,9 @@ from doe_kc.discovery.thresholds import ONE_SIDED
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.effects.words import effect_label
 from doe_kc.ground.numbers import number, unit_words, with_sd
-from doe_kc.load_cases import LOAD_CASES
-from doe_kc.reports.names import case_label, response_name
+from doe_kc.load_cases import case_label
 
 HEADLINES: dict[VerdictKind, str] = {
     "named": "Effect named",
@@ -50,44 +50,12 @@ def own_sentences(discovery: Discovery) -> list[str]:
     return [s for s in discovery.sentences if not (discovery.unexplained and s.startswith("Unexplained:"))]
 
 
-def effect_label(ident: str) -> str:
-    """Name of an effect."""
-    return EFFECTS[ident].label
-
-
-def place_of(hypothesis: Hypothesis) -> str:
-    """Where or how the effect is looked for, empty for one place only."""
-    return place_words(hypothesis.name.removeprefix(hypothesis.effect).strip())
-
-
-def place_words(place: str) -> str:
-    """A location as in `Hypothesis.location`: a bushing or joint, a response, a load case."""
-    if place in RESPONSE_UNITS:
-        return response_name(place)
-    if place in LOAD_CASES:
-        return case_label(place).lower()
-    head, _, side = place.rpartition("_")
-    return f"{head} {SIDE_WORDS[side]}" if side in SIDE_WORDS else place.replace("_", " ")
-
-
-def hypothesis_label(hypothesis: Hypothesis) -> str:
-    """Name and place, e.g. `Bushing preload, LLR`."""
-    place = place_of(hypothesis)
-    return f"{effect_label(hypothesis.effect)}, {place}" if place else effect_label(hypothesis.effect)
-
-
 def physics_words(finding: Finding) -> str:
     """What happens in the car, and what it means at the sizes that were estimated."""
     options: dict[str, Any] = dict(finding.hypothesis.fixed)
     options |= {e.key: e.value for e in finding.estimates if e.index is None}
     effect = EFFECTS[finding.hypothesis.effect]
     return f"{effect.physics} {effect.consequence(options)}".strip()
-
-
-def hypothesis_words(hypothesis: Hypothesis) -> str:
-    """Name and place within a sentence, e.g. `bushing preload, LLR`."""
-    label = hypothesis_label(hypothesis)
-    return label[0].lower() + label[1:]
 
 
 def mistaken_words(ident: str, axle: Axle) -> str:

@@ -9,22 +9,19 @@ from pathlib import Path
 from openpyxl.workbook import Workbook
 
 from doe_kc import __version__
+from doe_kc.curves import response_name
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.thresholds import RELEVANT
+from doe_kc.effects.words import effect_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.discovery_effects import effect_table
 from doe_kc.reports.discovery_isolability import isolability_table
 from doe_kc.reports.discovery_library import library_table
 from doe_kc.reports.discovery_parameters import tuned_table
 from doe_kc.reports.discovery_tables import GapRow, disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery_words import (
-    HEADLINES,
-    contrast_words,
-    effect_label,
-    own_sentences,
-)
+from doe_kc.reports.discovery_words import HEADLINES, contrast_words, own_sentences
 from doe_kc.reports.effect_words import effect_words
 from doe_kc.reports.gap_steps import gap_steps
-from doe_kc.reports.names import case_label, response_name
 from doe_kc.reports.render.charts import add_marks, chart_sheet
 from doe_kc.reports.render.workbook import lines_sheet, new_book, table_sheet, write_book
 from doe_kc.reports.table import Column, Table, Value

@@ -8,8 +8,9 @@ from doe_kc.correlation.answer_record import EffectWords
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
+from doe_kc.effects.words import effect_label, hypothesis_label
 from doe_kc.reports.discovery_effects import kind_of
-from doe_kc.reports.discovery_words import effect_label, found_sizes, hypothesis_label, physics_words
+from doe_kc.reports.discovery_words import found_sizes, physics_words
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 SIZE_WORDS: Mapping[str, str] = {

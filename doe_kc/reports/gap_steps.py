@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from doe_kc.discovery.result import Discovery
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.reports.discovery_words import hypothesis_label
+from doe_kc.effects.words import hypothesis_label
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,21 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.correlation.result import Correlation
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, SIDE_WORDS, SIDES, CaseCurves
+from doe_kc.curves import (
+    RESPONSE_LABELS,
+    RESPONSE_UNITS,
+    RIG_RESPONSES,
+    SIDE_WORDS,
+    SIDES,
+    CaseCurves,
+    response_name,
+)
 from doe_kc.ground.numbers import number, sd_format
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
 from doe_kc.reports import style
 from doe_kc.reports.correlation_curves import BAND_SDS, CaseView, case_views, has_loop
-from doe_kc.reports.names import case_label, response_name
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.sheet import Sheet, sheet

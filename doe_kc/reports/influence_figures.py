@@ -14,10 +14,10 @@ from matplotlib.colors import Colormap, LinearSegmentedColormap
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.study import Influence
 from doe_kc.reports.color_scale import STRIPS, draw_color_scale
 from doe_kc.reports.influence_layout import Layout, group_steps, layout, step_text
-from doe_kc.reports.names import case_label
 from doe_kc.reports.panel import PageBox, Panel
 from doe_kc.reports.series import draw_series
 from doe_kc.reports.sheet import Sheet, sheet

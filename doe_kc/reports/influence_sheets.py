@@ -11,6 +11,7 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.study import Influence
 from doe_kc.reports.influence_layout import (
     BASELINE_ROW,
@@ -25,7 +26,6 @@ from doe_kc.reports.influence_layout import (
     section,
     step_text,
 )
-from doe_kc.reports.names import case_label
 from doe_kc.reports.render.cells import (
     FLAGGED,
     HEADER_FILL,

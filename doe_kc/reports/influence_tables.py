@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.relations import (
     STRONG_PERCENT,
     CharacteristicLinks,
@@ -12,7 +13,6 @@ from doe_kc.parameter_influence.relations import (
     Together,
 )
 from doe_kc.parameter_influence.selection_result import CharacteristicForecast, Selection, VariableAdvice
-from doe_kc.reports.names import case_label
 from doe_kc.reports.table import Column, Row, SheetLayout, Table, TerminalCell, Value
 
 IMITATED = 1e6

@@ -11,7 +11,7 @@ from openpyxl.workbook import Workbook
 from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc import __version__
-from doe_kc.load_cases import LOAD_CASES
+from doe_kc.load_cases import LOAD_CASES, case_label
 from doe_kc.parameter_influence.identifiability import COLLINEAR, NO_INFLUENCE
 from doe_kc.parameter_influence.relations import Relations
 from doe_kc.parameter_influence.selection_result import Selection
@@ -24,7 +24,6 @@ from doe_kc.reports.influence_tables import (
     selection_table,
     together_table,
 )
-from doe_kc.reports.names import case_label
 from doe_kc.reports.render.cells import page, put, title
 from doe_kc.reports.render.workbook import lines_sheet, new_book, put_table, table_sheet, write_book
 from doe_kc.reports.table import Table

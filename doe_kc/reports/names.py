@@ -4,22 +4,9 @@ from __future__ import annotations
 
 import re
 
-from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD
+from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD, response_name
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
-
-RESPONSE_NAMES = {
-    "spin": "caster (knuckle)",
-    "wc_x": "wheel centre x",
-    "wc_y": "wheel centre y",
-    "wc_z": "wheel centre z",
-    "tyre_load": "tyre load",
-}
-
-
-def case_label(load_case: str) -> str:
-    """Name of a load case; Static for what needs none."""
-    return LOAD_CASES[load_case].label if load_case in LOAD_CASES else load_case.capitalize()
 
 
 def input_label(load_case: str, unit: str) -> str:
@@ -32,11 +19,6 @@ def input_label(load_case: str, unit: str) -> str:
 def without_remark(axis: str) -> str:
     """Label of an axis without its remark on signs, which does not fit a small panel."""
     return re.sub(r" \([^)]*\)", "", axis)
-
-
-def response_name(response: str) -> str:
-    """Short name of a response within a sentence or an axis."""
-    return RESPONSE_NAMES.get(response, response)
 
 
 def response_axis(response: str) -> str:

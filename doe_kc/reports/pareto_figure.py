@@ -13,7 +13,7 @@ from doe_kc.correlation.front import VIOLATION, Front
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.panel import Dash, Panel
 from doe_kc.reports.panel_axis import PanelAxis
 from doe_kc.reports.series import draw_series

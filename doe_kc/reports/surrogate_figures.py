@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.series import draw_series

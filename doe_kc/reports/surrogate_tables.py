@@ -9,7 +9,7 @@ import pandas as pd
 
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.table import Column, SheetLayout, Table, TerminalCell, Value, three_digits
 from doe_kc.surrogate_models.calibration import coverage_interval

@@ -11,7 +11,7 @@ from doe_kc.correlation.record import EffectRecord
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screening.contrasts import LOOP_SHAPES, Contrast
 from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.reports.discovery_words import effect_label
+from doe_kc.effects.words import effect_label, place_words
 from doe_kc.study import Study
 
 PLACES_LISTED = 8
@@ -31,7 +31,7 @@ class AdoptedEffect:
     def label(self) -> str:
         """Name and place, in words."""
         label = effect_label(self.id).lower()
-        return f"{label} ({self.location})" if self.location else label
+        return f"{label} ({place_words(self.location)})" if self.location else label
 
     @property
     def on_rig(self) -> bool:

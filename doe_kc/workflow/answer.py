@@ -13,13 +13,15 @@ from doe_kc.characteristics import characteristics_of, reduce_all
 from doe_kc.correlation.answer_record import AnswerRecord, EffectWords, GapRecord
 from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
 from doe_kc.correlation.result import Correlation
+from doe_kc.curves import response_name
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.effects.words import effect_label
 from doe_kc.ground.output import write_json
+from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
 from doe_kc.reports.correlation_characteristics import characteristic_table
-from doe_kc.reports.discovery_words import effect_label, size_words
+from doe_kc.reports.discovery_words import size_words
 from doe_kc.reports.effect_words import effect_words
-from doe_kc.reports.names import case_label, response_name
 from doe_kc.reports.overview import Overview
 from doe_kc.reports.overview_sheet import write_overview
 from doe_kc.reports.page.answer import files_there, write_answer_page

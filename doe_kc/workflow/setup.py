@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from doe_kc.axle import Axle
+from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement import Manifest
 
 
@@ -19,8 +20,15 @@ def setup_differences(axle: Axle, manifest: Manifest) -> list[str]:
             "[tyre] static_load",
         ),
     ]
-    return [
+    told = [
         f"{manifest.name}: the rig's {key} is {rig:g}, the model's {ours:g}; set {where} of the axle file."
         for key, rig, ours, where in pairs
         if rig is not None and ours and abs(rig - ours) > 1e-6 * abs(ours)
     ]
+    left_out = [case for case in manifest.records if case in LOAD_CASES and case not in axle.load_cases]
+    if left_out:
+        told.append(
+            f"{manifest.name}: has records of {', '.join(left_out)}, no load case of the axle: left out. "
+            "Is the axle file that of this car?"
+        )
+    return told

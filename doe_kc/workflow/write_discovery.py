@@ -9,6 +9,7 @@ from typing import Any
 
 from doe_kc.axle_file.write import write_axle
 from doe_kc.discovery.result import Discovery
+from doe_kc.effects.words import hypothesis_words
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.reports.discovery_effects import effect_table
@@ -17,7 +18,7 @@ from doe_kc.reports.discovery_isolability import isolability_table
 from doe_kc.reports.discovery_library import library_table
 from doe_kc.reports.discovery_parameters import tuned_table
 from doe_kc.reports.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery_words import HEADLINES, hypothesis_words
+from doe_kc.reports.discovery_words import HEADLINES
 from doe_kc.reports.discovery_workbook import write_discovery_workbook
 from doe_kc.reports.page.discovery import write_discovery_page
 from doe_kc.reports.page.links import link_pages

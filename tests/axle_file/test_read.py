@@ -367,3 +367,11 @@ def test_a_flexible_strut_is_in_the_equations(tmp_path: Path) -> None:
     axle = read_axle(written(tmp_path, edited("flexibility = 0.0", "flexibility = 0.5")))
     assert axle.topology.strut_bending
     assert parameter_value(axle, "strut.flexibility") == 0.5
+
+
+def test_a_steering_input_drives_sixty_millimetres_of_rack_unless_the_file_says_otherwise() -> None:
+    document = tomllib.loads(TEXT)
+    del document["load_cases"]["steer"]
+    document["steering"]["rack_mm_per_rev"] = 48.0
+    axle = axle_from_document(document, source="test")
+    assert axle.load_cases["steer"].amplitude == pytest.approx(60.0 / 48.0 * 360.0)

@@ -56,6 +56,17 @@ def test_every_hypothesis_loads_back_with_the_tuned_parameters(
         assert again.values[name] == pytest.approx(value, rel=1e-12, abs=0.0)
 
 
+def test_a_table_by_the_other_name_is_changed_in_its_place(tmp_path: Path) -> None:
+    text = PLAIN + "\n[effects.damper_friction]  # measured\nforce_N = 80.0\n"
+    (tmp_path / "other.toml").write_text(text, encoding="utf-8")
+    axle = apply_effect(
+        read_axle(tmp_path / "other.toml"), "strut_friction", {"force_N": 90.0}, source="test"
+    )
+    again, new = written(axle, tmp_path, text)
+    assert again.effects["strut_friction"]["force_N"] == 90.0
+    assert "[effects.damper_friction]  # measured" in new and "[effects.strut_friction]" not in new
+
+
 def test_conditioning_loops_are_written_where_the_file_says_otherwise(tmp_path: Path) -> None:
     axle = with_hypothesis(read_axle(AXLE), next(h for h in LIBRARY if h.effect == "strut_friction"), 1.0)
     again, text = written(axle.conditioned(1), tmp_path)

@@ -104,3 +104,17 @@ def test_a_double_wishbone_with_its_spring_on_the_upper_arm_is_a_changed_file(tm
         loads = [rig.static.y[rig.kernel.layout.output_names.index(f"tyre_load@{side}")] for side in "LR"]
         assert loads == pytest.approx([axle.values["tyre.static_load"]] * 2, rel=1e-9)
     assert abs(rates[1] - rates[0]) > 1.0
+
+
+def test_a_spring_by_another_name_is_written_back(tmp_path: Path) -> None:
+    shipped = (FOLDER / "rigid_rear.toml").read_text(encoding="utf-8")
+    assert "[springs.spring]" in shipped
+    (tmp_path / "own.toml").write_text(
+        shipped.replace("[springs.spring]", "[springs.coil]"), encoding="utf-8"
+    )
+    text = (EXAMPLE.parent / "rigid_rear" / "axle.toml").read_text(encoding="utf-8")
+    text = text.replace('type = "rigid_rear"', 'type = "own.toml"').replace("[spring]", "[coil]")
+    (tmp_path / "axle.toml").write_text(text, encoding="utf-8")
+    axle = with_values(read_axle(tmp_path / "axle.toml"), {"coil.rate": 31.5, "right.coil.rate": 33.0})
+    again = read_axle(write_axle(axle, tmp_path / "axle.toml", tmp_path / "new.toml"))
+    assert dict(again.values) == dict(axle.values)

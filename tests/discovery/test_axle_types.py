@@ -24,7 +24,7 @@ from doe_kc.workflow.write_discovery import write_discovery
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 LOAD_CASES = ("lateral", "lateral_opposite")
-LIBRARY = ("hub_compliance", "subframe_flexibility", "strut_friction")
+LIBRARY = ("hub_compliance", "subframe_flexibility", "damper_friction")
 HIDDEN = {"camber_Nm_deg": 3400.0, "toe_Nm_deg": 5400.0}
 """Of the hub in both cars."""
 FOREIGN = {

@@ -12,11 +12,14 @@ import pytest
 
 from doe_kc.axle import parameter_value, with_values
 from doe_kc.axle.model import BUSHINGS
+from doe_kc.axle.places import places_of
 from doe_kc.axle.topology import Topology
 from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
 from doe_kc.axle_types import DEFAULT_TYPE, built_in
+from doe_kc.effects import EFFECTS as ALL_EFFECTS
 from doe_kc.effects import Option, apply_effect
+from doe_kc.examples import example_folder
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE, nominal
 from tests.reference import MCPHERSON_EFFECTS as EFFECTS
@@ -351,3 +354,16 @@ def test_the_table_name_of_a_file_is_the_effect_too() -> None:
         if effect.table:
             named = apply_effect(nominal(), effect.table, {}, source="test")
             assert named == apply_effect(nominal(), effect.id, {}, source="test")
+
+
+@pytest.mark.parametrize(
+    ("axle_type", "ident"), [("mcpherson_front", "strut_friction"), ("rigid_rear", "damper_friction")]
+)
+@pytest.mark.parametrize("name", ["strut_friction", "damper_friction"])
+def test_friction_of_the_damper_by_either_name(axle_type: str, ident: str, name: str) -> None:
+    plain = read_axle(example_folder(axle_type) / "axle.toml")
+    axle = apply_effect(plain, name, {"force_N": 80.0}, source="test")
+    assert list(axle.effects) == [ident]
+    assert axle.values["strut_friction.force@L"] == 80.0
+    both = [ALL_EFFECTS[e] for e in ("strut_friction", "damper_friction")]
+    assert [e.id for e in both if e.possible(places_of(plain))] == [ident]

@@ -10,6 +10,7 @@ import pytest
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.effects.words import hypothesis_label, place_words
 from doe_kc.reports.discovery_curves import model_values, model_views, view_gaps
 from doe_kc.reports.discovery_effects import effect_rows, effect_table
 from doe_kc.reports.discovery_evidence import evidence_steps
@@ -23,14 +24,7 @@ from doe_kc.reports.discovery_isolability import (
 from doe_kc.reports.discovery_library import library_table
 from doe_kc.reports.discovery_parameters import tuned_parameters, tuned_table
 from doe_kc.reports.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery_words import (
-    HEADLINES,
-    found_sizes,
-    hypothesis_label,
-    limit_words,
-    place_words,
-    size_words,
-)
+from doe_kc.reports.discovery_words import HEADLINES, found_sizes, limit_words, size_words
 from doe_kc.reports.render.csv import table_frame
 from tests.discovery.cases import LOAD_CASES, discovery, records
 
@@ -140,7 +134,7 @@ def test_steps_are_ranked_and_the_last_takes_nothing() -> None:
     for step in steps:
         gains = [c.gain for c in step.candidates if c.refitted]
         assert gains == sorted(gains, reverse=True)
-    assert steps[0].candidates[0].label == "Damper friction"
+    assert steps[0].candidates[0].label == "Strut friction"
 
 
 def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
-from doe_kc.load_cases import LOAD_CASES
-from doe_kc.reports.names import case_label, input_label, response_axis, response_name
+from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES, response_name
+from doe_kc.load_cases import LOAD_CASES, case_label
+from doe_kc.reports.names import input_label, response_axis
 
 
 @pytest.mark.parametrize("load_case", LOAD_CASES)

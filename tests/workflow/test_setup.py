@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from doe_kc.axle import design_parameters, with_values
+from doe_kc.axle_file import read_axle
 from doe_kc.measurement import load_manifest
 from doe_kc.solver.suite import solve
 from doe_kc.workflow.measure import vertical_scatter
@@ -20,6 +21,12 @@ def test_another_ratio_or_load_is_told() -> None:
     assert len(told) == 2
     assert "rack_mm_per_rev is 52, the model's 50" in told[0]
     assert "4300" in told[1] and "[tyre] static_load" in told[1]
+
+
+def test_records_that_the_axle_has_no_load_case_for_are_told() -> None:
+    axle = read_axle(EXAMPLE.parent / "five_link_rear" / "axle.toml")
+    told = setup_differences(axle, load_manifest(EXAMPLE / "rig" / "test.toml"))
+    assert "has records of steer, no load case of the axle: left out" in told[-1]
 
 
 def test_scatter_starts_at_zero_and_leaves_out_what_is_looked_for() -> None:

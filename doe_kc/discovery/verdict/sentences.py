@@ -13,6 +13,7 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.extra_test import ExtraTest
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.effects import EFFECTS
+from doe_kc.effects.words import place_words
 from doe_kc.ground.numbers import number, unit_words, with_sd
 
 
@@ -90,7 +91,7 @@ def _listed(names: Sequence[str]) -> str:
 def _label(finding: Finding) -> str:
     label = EFFECTS[finding.hypothesis.effect].label.lower()
     place = finding.hypothesis.location
-    return f"{label} ({place})" if place else label
+    return f"{label} ({place_words(place)})" if place else label
 
 
 def _one(finding: Finding) -> str:
@@ -192,8 +193,8 @@ def _component_words(status: HypothesisStatus) -> str:
     if test is None:
         return ""
     return (
-        f"; or measure {', '.join(test.parts)} on a bench, after which its typical size stands out by "
-        f"{test.separation:.0f} standard deviations"
+        f"; or measure {', '.join(test.parts)} on a bench, after which its typical size is "
+        f"{test.separation:.0f} times its uncertainty"
     )
 
 
@@ -201,7 +202,7 @@ def _separated(one: str, other: str, tests: Sequence[ExtraTest]) -> str:
     pair = f"{_known(one)} from {_known(other)}"
     if not tests:
         return f"No further load case of this rig tells {pair}."
-    listed = " or ".join(f"{t.words} ({t.separation:.0f} standard deviations)" for t in tests)
+    listed = " or ".join(f"{t.words} (apart by {t.separation:.0f} times the uncertainty)" for t in tests)
     return f"To tell {pair}, run {listed}."
 
 

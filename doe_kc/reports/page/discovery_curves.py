@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, response_name
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.reports.discovery_curves import ModelView, model_names, model_views, worst_views
 from doe_kc.reports.discovery_gaps import MODEL_COLOURS
 from doe_kc.reports.discovery_tables import gap_table
-from doe_kc.reports.names import case_label, response_axis, response_name
+from doe_kc.reports.names import response_axis
 from doe_kc.reports.page.curves import ShownModel, curves_html
 from doe_kc.reports.render.page import Section, table_html
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.study import Influence
-from doe_kc.reports.names import case_label
 from doe_kc.reports.render.page import Section, table_html, write_page
 from doe_kc.reports.table import (
     NEGATIVE_FILL,

@@ -20,7 +20,7 @@ from doe_kc.axle.parameter_kinds import (
 )
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.effects import EFFECTS
-from doe_kc.reports.names import case_label
+from doe_kc.load_cases import case_label
 
 MINUS = "\N{MINUS SIGN}"
 _CODE = re.compile(r"(?<![\w.\]])(?:[A-Za-z]\w*\.)?[A-Za-z]\w*(?:\.[A-Za-z]\w*)?(?![\w\[])")

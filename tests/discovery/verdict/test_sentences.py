@@ -20,6 +20,6 @@ def test_parts_that_show_a_hidden_effect_are_advised_the_fewest_parts_first() ->
     assert first == (
         f"Not testable here, {EFFECTS['steer_arm_compliance'].label.lower()}: "
         f"{EFFECTS['steer_arm_compliance'].shown_by}; or measure scb.Tz on a bench, after which its typical "
-        "size stands out by 12 standard deviations."
+        "size is 12 times its uncertainty."
     )
     assert "measure scb.Tz, arb.radius on a bench" in second

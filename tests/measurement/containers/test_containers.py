@@ -97,6 +97,76 @@ def test_rpc(tmp_path: Path, floats: bool) -> None:
         read_record(tmp_path / "v.rsp", "vertical")
 
 
+def write_hdf5_mat(path: Path) -> None:
+    """As MATLAB saves version 7.3: a user block of 512 bytes, columns as (1, n), text as uint16."""
+    import h5py
+
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for n, h in NAMES.items():
+            group = file.create_group(n)
+            group.attrs["MATLAB_class"] = np.bytes_("struct")
+            group["data"] = COLUMNS[h][np.newaxis] + 3.0
+            group["offset"] = np.array([[3.0]])
+            text = group.create_dataset("units", data=np.array([[ord(c)] for c in "mm"], dtype=np.uint16))
+            text.attrs["MATLAB_class"] = np.bytes_("char")
+        file.create_group("#refs#")["a"] = np.arange(128.0)
+    header = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124, b" ") + b"\x00\x02IM"
+    path.write_bytes(header.ljust(512, b"\x00") + path.read_bytes()[512:])
+
+
+def test_matlab_7_3(tmp_path: Path) -> None:
+    pytest.importorskip("h5py", reason="the extra hdf5 is not in")
+    write_hdf5_mat(tmp_path / "v.mat")
+    same(read_record(tmp_path / "v.mat", "vertical", channels=with_units(NAMES)), plain(tmp_path))
+    table = read_table(tmp_path / "v.mat", None, "vertical")
+    assert {heading.unit for heading in table.channels} == {"mm"}
+    whole = (tmp_path / "v.mat").read_bytes()
+    (tmp_path / "v.mat").write_bytes(whole[: len(whole) // 3])
+    with pytest.raises(InputError, match=r"cannot be read as a MATLAB 7\.3 file"):
+        read_table(tmp_path / "v.mat", None, "vertical")
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")  # asammdf, of a damaged file
+def test_mdf(tmp_path: Path) -> None:
+    asammdf = pytest.importorskip("asammdf", reason="the extra mdf is not in")
+    time = np.arange(128) * 0.1
+    signals = [
+        asammdf.Signal(samples=v, timestamps=time, name=h.split(" [")[0], unit=h[:-1].split(" [")[1])
+        for h, v in COLUMNS.items()
+        if not h.startswith("time")
+    ]
+    with asammdf.MDF(version="4.10") as file:
+        file.append(signals)
+        file.save(tmp_path / "v.mf4")
+    same(read_record(tmp_path / "v.mf4", "vertical"), plain(tmp_path))
+    with pytest.raises(InputError, match=r"cannot be read as MDF.*group number"):
+        read_table(tmp_path / "v.mf4", "7", "vertical")
+    (tmp_path / "v.mf4").write_bytes((tmp_path / "v.mf4").read_bytes()[:900])
+    with pytest.raises(InputError, match="cannot be read as MDF"):
+        read_table(tmp_path / "v.mf4", None, "vertical")
+
+
+def test_tdms(tmp_path: Path) -> None:
+    nptdms = pytest.importorskip("nptdms", reason="the extra tdms is not in")
+
+    def channels(group: str) -> list[object]:
+        return [
+            nptdms.ChannelObject(
+                group, h.split(" [")[0], v, properties={"unit_string": h[:-1].split(" [")[1]}
+            )
+            for h, v in COLUMNS.items()
+        ]
+
+    with nptdms.TdmsWriter(tmp_path / "v.tdms") as file:
+        file.write_segment([*channels("vertical"), *channels("other")])
+    same(read_record(tmp_path / "v.tdms", "vertical"), plain(tmp_path))
+    with pytest.raises(InputError, match='no group "roll", its groups are other, vertical'):
+        read_table(tmp_path / "v.tdms", "roll", "vertical")
+    (tmp_path / "v.tdms").write_bytes(b"TDSm" + bytes(200))
+    with pytest.raises(InputError, match="cannot be read as TDMS"):
+        read_table(tmp_path / "v.tdms", None, "vertical")
+
+
 @pytest.mark.parametrize(("suffix", "module"), [("mf4", "asammdf"), ("tdms", "nptdms"), ("mat", "h5py")])
 def test_a_missing_extra_is_one_sentence(
     tmp_path: Path, suffix: str, module: str, monkeypatch: pytest.MonkeyPatch

@@ -74,7 +74,7 @@ CHECKS: list[tuple[str, str, dict[str, Any], str, dict[str, float]]] = [
      series("ufo|upper front", ("L",), **BALL)),
     ("five_link_rear", "subframe_flexibility", {"scale": 1.0 / SMALL}, "compliance",
      series("sub-frame half|centre", **HALVES)),
-    ("five_link_rear", "strut_friction", {"force_N": 0.1}, "friction", FRICTION),
+    ("five_link_rear", "damper_friction", {"force_N": 0.1}, "friction", FRICTION),
     ("double_wishbone_front", "ball_compliance", {"joints": ["UBJ_L", "UBJ_R"], **SOFT_BALL}, "compliance",
      series("ubj|knuckle", **BALL)),
     ("double_wishbone_front", "ball_compliance", {"joints": ["LBJ_L", "LBJ_R"], **SOFT_BALL}, "compliance",
@@ -84,7 +84,7 @@ CHECKS: list[tuple[str, str, dict[str, Any], str, dict[str, float]]] = [
     ("double_wishbone_front", "rack_mount_compliance", {"k_N_mm": 6000.0 / SMALL}, "compliance",
      series("rack housing|sub-frame", ("",), y=SMALL / 6000.0)),
     ("semi_trailing_rear", "hub_compliance", SOFT_HUB, "compliance", series("wheel|arm", **HUB)),
-    ("twist_beam_rear", "strut_friction", {"force_N": 0.1}, "friction", FRICTION),
+    ("twist_beam_rear", "damper_friction", {"force_N": 0.1}, "friction", FRICTION),
     ("rigid_rear", "ball_compliance", {"joints": ["PHA"], **SOFT_BALL}, "compliance",
      series("pha|axle", ("",), **BALL)),
 ]  # fmt: skip
