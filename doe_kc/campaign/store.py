@@ -20,7 +20,7 @@ from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver
 
 EVALUATION_COLUMNS = "key, parameters, reason, characteristics, windows, seconds, origin, created, versions"
-MARKS = ", ".join("?" * 11)
+VALUE_MARKS = ", ".join("?" * 11)
 """For the values of a row."""
 
 
@@ -50,7 +50,9 @@ class Store:
         with in_words(self._where):
             self._connection.execute("BEGIN IMMEDIATE")
             try:
-                self._connection.executemany(f"INSERT OR REPLACE INTO evaluations VALUES ({MARKS})", rows)
+                self._connection.executemany(
+                    f"INSERT OR REPLACE INTO evaluations VALUES ({VALUE_MARKS})", rows
+                )
                 self._connection.execute("COMMIT")
             except BaseException:
                 if self._connection.in_transaction:

@@ -20,7 +20,7 @@ from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""
-SINGULAR = "singular equilibrium: no sensitivity exists"
+SINGULAR_EQUILIBRIUM = "singular equilibrium: no sensitivity exists"
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
@@ -140,4 +140,4 @@ def equilibrium_change(k: Kernel, matrix: FloatArray, right: FloatArray) -> Floa
     try:
         return np.asarray(np.linalg.solve(matrix / scale, -right / scale))
     except np.linalg.LinAlgError:
-        raise np.linalg.LinAlgError(SINGULAR) from None
+        raise np.linalg.LinAlgError(SINGULAR_EQUILIBRIUM) from None

@@ -19,13 +19,20 @@ from scipy import sparse
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.blocks import SINGULAR, Block, Points, block_names, equilibrium_change, interpreted_blocks
+from doe_kc.solver.blocks import (
+    SINGULAR_EQUILIBRIUM,
+    Block,
+    Points,
+    block_names,
+    equilibrium_change,
+    interpreted_blocks,
+)
 from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of
 
 SENSITIVITY = Path(__file__).with_name("sensitivity.c")
-FLAGS = {"sensitivity": "-O3"}
+DERIVATIVE_FLAGS = {"sensitivity": "-O3"}
 """By part; the rest -O1."""
 _INT, _ADDRESS = ctypes.c_int, ctypes.c_void_p
 _ARGUMENTS = (
@@ -167,7 +174,7 @@ def derivative_library(topology: Topology) -> DerivativeLibrary:
         generated = c_sources(joint) | c_sources(blocks["constants"])
         return generated | {"sensitivity": handwritten(SENSITIVITY)}
 
-    path = library_of(topology, "derivatives", sources, FLAGS)
+    path = library_of(topology, "derivatives", sources, DERIVATIVE_FLAGS)
     library = ctypes.CDLL(str(path))
     library.sensitivity.argtypes = _ARGUMENTS
     return DerivativeLibrary(path, library)
@@ -218,5 +225,5 @@ class CompiledDerivatives:
         if code < 0:
             raise MemoryError("the derivatives could not allocate their working memory")
         if code:
-            raise np.linalg.LinAlgError(SINGULAR)
+            raise np.linalg.LinAlgError(SINGULAR_EQUILIBRIUM)
         return StateDerivatives(dx, outputs, after)
