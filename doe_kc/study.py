@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Annotated, Literal
@@ -12,6 +12,7 @@ import numpy as np
 from pydantic import Field
 
 from doe_kc.axle import Axle, Parameter, design_parameters
+from doe_kc.axle.parameters import parameter_value
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics.reduction import FEWEST_POINTS
 from doe_kc.correlation.options import CorrelationOptions
@@ -66,9 +67,11 @@ class Study:
     """A checked study.
 
     axle: in the state that it was measured in, `state`. hidden: values of the axle file that this state
-    hides, by internal name. windows: load case -> half-width of the fit window in the
-    input's unit. parameters: of the influence study. space: the variables on the unchanged axle, those of
-    `use = "selection"` not yet narrowed.
+    hides, by internal name. windows: load case -> half-width of the fit window in the input's unit.
+    parameters: of the influence study. space: the variables on the unchanged axle, those of
+    `use = "selection"` not yet narrowed. twin: the package's own model of the axle that an outside command
+    solves, with the load cases that the command answers; None without a command or where it is switched off.
+    discovery_remark: a sentence on whose model a discovery speaks of; empty of the study's own.
     """
 
     name: str
@@ -92,6 +95,8 @@ class Study:
     discovery: DiscoveryOptions
     state: RigState = field(default_factory=RigState)
     hidden: Mapping[str, float] = field(default_factory=dict)
+    twin: Axle | None = None
+    discovery_remark: str = ""
 
     def __repr__(self) -> str:
         return f"Study({self.name!r}, {self.space.dimension} variables, from {self.source})"
@@ -100,6 +105,12 @@ class Study:
     def folder(self) -> Path:
         """The study file's folder, which its paths are relative to."""
         return self.source.parent
+
+    @property
+    def twin_path(self) -> Path:
+        """The axle file of the twin: the study's own unless it names another."""
+        named = self.solver.twin
+        return self.folder / named if isinstance(named, str) else self.axle_path
 
     @property
     def store(self) -> Path:
@@ -163,7 +174,7 @@ def read_study(
     check_names(file.characteristics, file.curves, str(source))
     file.discovery.check_names(str(source))
     _check_out(out or folder / file.out, folder, folder / file.axle, measurement or own, str(source))
-    return Study(
+    study = Study(
         name=file.name or folder.resolve().name,
         source=source,
         axle=axle,
@@ -186,6 +197,39 @@ def read_study(
         state=state,
         hidden=bar_values(designed, state),
     )
+    return replace(study, twin=_twin(study))
+
+
+def _twin(study: Study) -> Axle | None:
+    """The twin, in the state of the measurement; InputError where it cannot be one of the outside model."""
+    options = study.solver
+    if not options.command or options.twin is False:
+        return None
+    twin = study.as_measured(read_axle(study.twin_path)) if isinstance(options.twin, str) else study.axle
+    place = f"{study.source}: solver.twin {study.twin_path.name}"
+    ours, other = (a.topology.structure.type for a in (study.axle, twin))
+    if ours != other:
+        raise InputError(
+            f"{place}: is of the type {other}, the study's axle of {ours}; name an axle file of that type, "
+            "or twin = false."
+        )
+    answered = [c for c in study.axle.load_cases if not options.load_cases or c in options.load_cases]
+    for case in answered:
+        if case not in twin.load_cases:
+            raise InputError(
+                f"{place}: has no load case {case}, which the outside model answers; add it to the twin, or "
+                "leave it out of solver.load_cases."
+            )
+        ends = [float(np.abs(a.load_cases[case].inputs()).max()) for a in (study.axle, twin)]
+        if ends[1] < ends[0] * (1.0 - 1e-9):
+            unit = study.axle.load_cases[case].unit
+            raise InputError(
+                f"{place}: sweeps load case {case} to {ends[1]:g} {unit}, the study's axle to {ends[0]:g}; "
+                f"give [load_cases.{case}] of the twin the same amplitude."
+            )
+    for path in (*study.space.paths, *(t.follower for t in study.space.ties), *(study.space.fixed or {})):
+        parameter_value(twin, path, source=place)
+    return replace(twin, load_cases={k: c for k, c in twin.load_cases.items() if k in answered})
 
 
 def _check_out(out: Path, folder: Path, axle: Path, measurement: Path | None, source: str) -> None:

@@ -16,8 +16,9 @@ from pathlib import Path
 import numpy as np
 from report_text import number, table
 
-from doe_kc.correlation.assessment import STATUS_LABELS, harmed, inside
+from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.correlation.posterior import BOUND_SHARE
+from doe_kc.correlation.status import STATUS_LABELS
 from doe_kc.ground.numbers import with_sd
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study

@@ -6,13 +6,14 @@ import contextlib
 import os
 import shutil
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from doe_kc.axle import design_parameters
+from doe_kc.axle import Axle, design_parameters
 from doe_kc.axle_file import read_axle
 from doe_kc.ground.errors import InputError
 from doe_kc.load_cases import LOAD_CASES
@@ -237,3 +238,65 @@ def test_a_null_character_in_a_path_is_refused_by_its_key(tmp_path: Path) -> Non
     (tmp_path / "study.toml").write_text('axle = "axle.toml"\nmeasurement = "rig\\u0000"\n', encoding="utf-8")
     with pytest.raises(InputError, match="measurement holds a null character"):
         read_study(tmp_path)
+
+
+OUTSIDE = 'axle = "axle.toml"\n[solver]\ncommand = ["solve"]\n'
+
+
+def test_the_twin_of_an_outside_model(tmp_path: Path) -> None:
+    plain = read_study(written(tmp_path, OUTSIDE))
+    assert plain.twin is not None and plain.twin.values == plain.axle.values
+    assert plain.twin_path == plain.axle_path
+    assert read_study(written(tmp_path, OUTSIDE + "twin = false\n")).twin is None
+    assert read_study(written(tmp_path, 'axle = "axle.toml"\n')).twin is None
+    few = read_study(written(tmp_path, OUTSIDE + 'load_cases = ["roll"]\n'))
+    assert few.twin is not None and list(few.twin.load_cases) == ["roll"]
+    text = (EXAMPLE / "axle.toml").read_text(encoding="utf-8")
+    (tmp_path / "own.toml").write_text(text.replace("28.0", "29.0"), encoding="utf-8")
+    named = read_study(written(tmp_path, OUTSIDE + 'twin = "own.toml"\n'))
+    assert named.twin is not None and named.twin.values["spring.rate@L"] == 29.0
+    assert named.twin_path == tmp_path / "own.toml"
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ('twn = "axle.toml"', "solver.twn is unknown.*twin"),
+        ("twin = 3", "solver.twin: expected the path of an axle file, true or false"),
+        ('twin = ""', "solver.twin: is no path"),
+        ('twin = "none.toml"', "none.toml: there is no such TOML file"),
+        ('twin = "short.toml"', "sweeps load case roll to 2 deg, the study's axle to 4; give"),
+        ('twin = "other.toml"', "is of the type double_wishbone_front.*twin = false"),
+    ],
+)
+def test_a_twin_that_cannot_be_one(tmp_path: Path, keys: str, message: str) -> None:
+    other = EXAMPLE.parent / "double_wishbone_front" / "axle.toml"
+    shutil.copy(other, tmp_path / "other.toml")
+    text = (EXAMPLE / "axle.toml").read_text(encoding="utf-8")
+    (tmp_path / "short.toml").write_text(text.replace("amplitude = 4.0", "amplitude = 2.0"), encoding="utf-8")
+    path = written(tmp_path, OUTSIDE + keys + "\n")
+    with pytest.raises(InputError, match=message) as caught:
+        read_study(path)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+def test_a_twin_without_a_load_case_that_the_outside_model_answers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read(path: Path) -> Axle:
+        axle = read_axle(path)
+        kept = {k: c for k, c in axle.load_cases.items() if k != "roll" or path.name != "few.toml"}
+        return replace(axle, load_cases=kept)
+
+    monkeypatch.setattr("doe_kc.study.read_axle", read)
+    shutil.copy(EXAMPLE / "axle.toml", tmp_path / "few.toml")
+    keys = OUTSIDE + 'twin = "few.toml"\n'
+    with pytest.raises(InputError, match=r"few.toml: has no load case roll, which the outside model answers"):
+        read_study(written(tmp_path, keys))
+    few = read_study(written(tmp_path, keys + 'load_cases = ["vertical", "steer"]\n'))
+    assert few.twin is not None and list(few.twin.load_cases) == ["vertical", "steer"]
+
+
+def test_a_twin_without_an_outside_model(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="solver: twin names the twin of an outside model; add command"):
+        read_study(written(tmp_path, 'axle = "axle.toml"\n[solver]\ntwin = "axle.toml"\n'))

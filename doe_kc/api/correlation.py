@@ -15,9 +15,10 @@ import numpy as np
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import Progress, as_study, step_counter, stored
 from doe_kc.axle import Axle
-from doe_kc.correlation.assessment import Assessment, Status, assess
+from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.problem import Evaluated
 from doe_kc.correlation.result import Correlation
+from doe_kc.correlation.status import Status
 from doe_kc.measurement import Measurement
 from doe_kc.reports.correlation_characteristics import characteristic_rows, characteristic_table
 from doe_kc.reports.correlation_evaluations import evaluation_table

@@ -24,6 +24,7 @@ from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study
 from doe_kc.workflow.discovery_document import discovery_lines
 from doe_kc.workflow.measure import study_measurement
+from doe_kc.workflow.twin_discovery import discovery_ground
 from doe_kc.workflow.write_discovery import write_discovery
 
 if TYPE_CHECKING:
@@ -147,8 +148,9 @@ def discover(
     written. workers: processes, one per core by default. progress: called with (what, steps done, of how many
     about).
 
-    Raises InputError for a study or record that is wrong, an unknown effect, or an outside solver (it gives
-    no exact sensitivities); RunError where the axle has no equilibrium.
+    Raises InputError for a study or record that is wrong, an unknown effect, or an outside solver
+    without a twin or curves (through its twin the answer is the outside model's); RunError where the axle
+    has no equilibrium.
 
     >>> result = kc.discover("examples/front_axle", workers=1)
     >>> result.verdict
@@ -159,10 +161,13 @@ def discover(
     chosen = as_study(study)
     measurement = study_measurement(chosen)
     with stored(chosen, out) as kept:
-        result = discovery_of(kept, measurement, exclude=exclude, workers=workers, progress=progress)
+        ground = discovery_ground(kept, measurement)
+        result = discovery_of(
+            ground.study, ground.records, exclude=exclude, workers=workers, progress=progress
+        )
     if out is not None:
         result.write(out, workers=workers)
-    return replace(result, study=chosen)
+    return replace(result, study=replace(ground.study, out=chosen.out))
 
 
 def discovery_of(

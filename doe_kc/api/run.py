@@ -56,6 +56,9 @@ class RunResult(CorrelatedAxle):
         discovery = self.chain.answer.discovery
         if discovery is None:
             return None
+        ground = self.chain.answer.ground
+        if ground is not None:
+            return DiscoveryResult(ground.study, discovery, ground.records)
         return DiscoveryResult(self.study, discovery, self.chain.reduced.measurement)
 
     @cached_property

@@ -107,6 +107,7 @@ def sample(
     method: str | None = None,
     out: str | PathLike[str] | None = None,
     extend: bool = False,
+    curves: bool = True,
     retry_failed: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -118,7 +119,8 @@ def sample(
     seed decides the designs. out: folder for what `doe-kc sample --out` writes, its store among it, whose
     designs are not run again; by default nothing is written (but an outside solver's answers always go to the
     study's store). extend: designs that the store in `out` has already count among the n, and only what is
-    missing is drawn, to complete them. retry_failed: run stored failures again. workers: processes, one per
+    missing is drawn, to complete them. curves: False keeps the characteristics of new designs alone in the
+    store. retry_failed: run stored failures again. workers: processes, one per
     core by default. scheduler: address of a Dask scheduler. progress: called with (what, designs done, of how
     many).
 
@@ -143,6 +145,7 @@ def sample(
             workers=workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
+            keep_curves=curves,
             progress=step_counter(progress, design.method, len(np.atleast_2d(design.values))),
         )
     result = SamplingResult(chosen, sampled)

@@ -7,7 +7,7 @@ one), stiffness factors with nominal 1, the rest in its unit. A plain path moves
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -143,17 +143,64 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
     Raises InputError for an unknown path (with the nearest name), a value that is not finite, or a
     stiffness, factor or radius that is not positive.
     """
-    result: dict[str, float] = {}
-    ranks: dict[str, int] = {}
-    for path, value in values.items():
-        check_value(path, value, source)
-        if value == parameter_value(axle, path, source=source) and not _overrides(axle, path):
-            continue
-        for internal, change in _moves(axle, path, value, source):
-            rank = _rank(path, internal)
-            if rank > ranks.get(internal, -1):
-                result[internal], ranks[internal] = axle.values[internal] + change, rank
-    return _with_matching_topology(axle.changed(result))
+    return ParameterMap(axle, tuple(values), source=source).axle(tuple(values.values()))
+
+
+class ParameterMap:
+    """Axles whose `paths` have other values: what `with_values` does, the paths read once for many designs.
+
+    Raises InputError for an unknown path.
+    """
+
+    def __init__(self, axle: Axle, paths: Sequence[str], *, source: str = "parameter") -> None:
+        self._axle, self._source = axle, source
+        self._paths = [_path_effect(axle, path, source) for path in paths]
+
+    def axle(self, values: Sequence[float]) -> Axle:
+        """The axle with the values of the paths, in their order; InputError as `with_values`."""
+        result: dict[str, float] = {}
+        ranks: dict[str, int] = {}
+        known = self._axle.values
+        for effect, value in zip(self._paths, values, strict=True):
+            if not (math.isfinite(value) and value > effect.least):
+                check_value(effect.path, value, self._source)
+            if value == effect.value and not effect.overrides:
+                continue
+            change = effect.sign * value - effect.reference
+            for internal, factor, rank in effect.moves:
+                if rank > ranks.get(internal, -1):
+                    result[internal], ranks[internal] = known[internal] + change * factor, rank
+        return _with_matching_topology(self._axle.changed(result))
+
+
+@dataclass(frozen=True)
+class _PathEffect:
+    """What a path moves. value: it has; least: any larger is allowed, the others are looked at closely;
+    reference: internal value that sign * value replaces; moves: internal name, factor on the change, rank."""
+
+    path: str
+    value: float
+    least: float
+    overrides: bool
+    sign: float
+    reference: float
+    moves: tuple[tuple[str, float, int], ...]
+
+
+def _path_effect(axle: Axle, path: str, source: str) -> _PathEffect:
+    name, side = _split(axle, path, source)
+    reference = axle.values[_internal(axle, name, side or "L")]
+    positive = must_be_positive(name) or not_below_zero(name)
+    moves = _moves(axle, name, side, reference)
+    return _PathEffect(
+        path=path,
+        value=_to_chassis(name, side, reference),
+        least=0.0 if positive else -math.inf,
+        overrides=_overrides(axle, path),
+        sign=_to_left(name, side, 1.0),
+        reference=reference,
+        moves=tuple((internal, factor, _rank(path, internal)) for internal, factor in moves),
+    )
 
 
 def _with_matching_topology(axle: Axle) -> Axle:
@@ -175,6 +222,12 @@ def switched_topology(axle: Axle, path: str) -> Topology:
     return replace(axle.topology, **flags)
 
 
+def topology_with(axle: Axle, values: Mapping[str, float]) -> Topology:
+    """The topology of `with_values`, by the values alone that can switch it."""
+    switching = {p: v for p, v in values.items() if p.removeprefix(side_prefix(p)) in SWITCHES}
+    return with_values(axle, switching).topology if switching else axle.topology
+
+
 def _overrides(axle: Axle, path: str) -> bool:
     """Whether setting the path to the value it has still keeps it from moving with another."""
     return bool(side_prefix(path)) or path.split(".")[0] in axle.follow
@@ -190,29 +243,27 @@ def _rank(path: str, internal: str) -> int:
 
 def internal_gradient(axle: Axle, path: str, *, source: str = "parameter") -> dict[str, float]:
     """d(internal value) / d(path), followers included: what a unit change of the path changes."""
-    unit = parameter_value(axle, path, source=source) + 1.0
-    return dict(_moves(axle, path, unit, source))
+    effect = _path_effect(axle, path, source)
+    return {internal: effect.sign * factor for internal, factor, _ in effect.moves}
 
 
-def _moves(axle: Axle, path: str, value: float, source: str) -> Iterator[tuple[str, float]]:
-    name, side = _split(axle, path, source)
+def _moves(axle: Axle, name: str, side: str | None, reference: float) -> Iterator[tuple[str, float]]:
+    """Internal values that a path moves, and by how much over the change of the one that it is read from."""
     known, sides = axle.values, (side,) if side else ("L", "R")
-    reference = known[_internal(axle, name, sides[0])]
-    change = _to_left(name, side, value) - reference
     scales = reference != 0 and must_be_positive(name)
     if f"{name}@{sides[0]}" not in known:
-        yield name, change * (known[name] / reference if scales else 1.0)
+        yield name, 1.0
         return
     for each in sides:
         internal = f"{name}@{each}"
-        yield internal, change * (known[internal] / reference if scales else 1.0)
+        yield internal, known[internal] / reference if scales else 1.0
     point, _, axis = name.partition(".")
     if axis not in "xyz":
         return
     for follower, leader in axle.follow.items():
         if leader == point:
             for each in sides:
-                yield f"{follower}.{axis}@{each}", change
+                yield f"{follower}.{axis}@{each}", 1.0
 
 
 def check_value(path: str, value: float, source: str) -> None:

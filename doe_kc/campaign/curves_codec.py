@@ -56,7 +56,7 @@ def _case_header(case: CaseCurves, arrays: list[FloatArray]) -> dict[str, Any]:
 
 def _listed(curves: Mapping[str, FloatArray], arrays: list[FloatArray]) -> dict[str, bool]:
     """Response -> whether its numbers are stored."""
-    out = {name: bool(np.any(curve)) for name, curve in curves.items()}
+    out = {name: bool(curve.any()) for name, curve in curves.items()}
     arrays += [curve for name, curve in curves.items() if out[name]]
     return out
 

@@ -64,7 +64,7 @@ def evaluations_frame(store: Store, windows: Mapping[str, float], origin: str = 
 def curves_frames(store: Store, windows: Mapping[str, float]) -> Iterator[pd.DataFrame]:
     """The curves of each evaluation that has some: see `curve_rows`."""
     for record in store.records():
-        curves = store.read(record, windows).curves if record.packed.curves is not None else None
+        curves = store.read(record, windows).curves if record.packed.curves else None
         if curves is not None:
             yield curve_rows(record, curves)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
 
 from doe_kc.campaign.interrupts import Interrupts
-from doe_kc.campaign.record import Packed, Task
+from doe_kc.campaign.record import BatchResult, Packed, Task
 from doe_kc.ground.errors import RunError
 from doe_kc.true_solver.protocol import Values
 
@@ -17,50 +17,66 @@ REMEDY = "often for lack of memory; use fewer --workers"
 MOST_LOSSES = 3
 """Designs one after the other that end their worker, from which it is not the designs' fault."""
 Landed = tuple[str, Packed]
+Batch = tuple[str, ...]
+"""Keys of designs that one task runs."""
 
 
 class PendingRuns:
-    """key -> design of `designs`, each run once. Twice as many as there are workers are under way."""
+    """key -> design of `designs`, each run once, `size` of them by a task. Twice as many tasks as there are
+    workers are under way."""
 
     def __init__(
-        self, executor: Executor, task: Task, designs: Mapping[str, Values], interrupts: Interrupts
+        self,
+        executor: Executor,
+        task: Task,
+        designs: Mapping[str, Values],
+        interrupts: Interrupts,
+        size: int = 1,
     ) -> None:
         self._executor = executor
         self._task = task
-        self._queue = deque(designs.items())
+        keys = list(designs)
+        self._queue = deque(tuple(keys[i : i + size]) for i in range(0, len(keys), size))
         self._designs = designs
-        self._flying: dict[Future[Packed], str] = {}
+        self._flying: dict[Future[BatchResult], Batch] = {}
         self._interrupts = interrupts
         self._suspects: list[str] = []
 
-    def results(self) -> Iterator[Landed]:
-        """Key and result of every design as it lands.
+    def results(self) -> Iterator[list[Landed]]:
+        """Keys and results of every batch as it lands.
 
         When a pool breaks, it is made anew and the designs under way run again one by one; a design that
-        breaks it alone is a failure. RunError when one after the other does, or the pool cannot be renewed.
+        breaks it alone is a failure. RunError when one after the other does, or the pool cannot be renewed;
+        the error of a design that ends the campaign, after the results of its batch before it.
         """
         while self._queue or self._flying:
             broken = self._send()
             with self._interrupts.allowed():
                 wait(self._flying, return_when=FIRST_COMPLETED)
-            suspects = []
+            suspects: list[str] = []
             for future in [f for f in self._flying if f.done()]:
-                packed = self._packed(future)
-                key = self._flying.pop(future)
-                if packed is None:
-                    suspects.append(key)
-                else:
-                    yield from self._sentences()
-                    yield key, packed
+                yield from self._landed(future, suspects)
             if suspects or broken:
                 yield from self._after_a_break(suspects)
         yield from self._sentences()
 
-    def finished(self) -> Iterator[Landed]:
+    def _landed(self, future: Future[BatchResult], suspects: list[str]) -> Iterator[list[Landed]]:
+        """What a task that is done has given; its keys are suspects when it went down with the pool."""
+        result = self._result(future)
+        batch = self._flying.pop(future)
+        if result is None:
+            suspects += batch
+            return
+        yield from self._sentences()
+        yield list(zip(batch, result.packed, strict=False))
+        if result.error is not None:
+            raise result.error
+
+    def finished(self) -> Iterator[list[Landed]]:
         """Those that have landed but were not asked for yet; does not wait."""
-        for future, key in list(self._flying.items()):
+        for future, batch in list(self._flying.items()):
             if future.done() and not future.cancelled() and future.exception() is None:
-                yield key, future.result()
+                yield list(zip(batch, future.result().packed, strict=False))
 
     def abandon(self) -> None:
         """Forget the rest, and end what runs where that is possible."""
@@ -75,17 +91,21 @@ class PendingRuns:
         workers = getattr(self._executor, "workers", None) or 2 * (os.cpu_count() or 1)
         room = 2 * workers if workers > 1 else 1
         while self._queue and len(self._flying) < room:
-            key, values = self._queue[0]
             try:
-                with self._interrupts.allowed():
-                    self._flying[self._executor.submit(self._task, values)] = key
+                self._submit(self._queue[0])
             except BrokenExecutor:
                 return True
             self._queue.popleft()
         return False
 
-    def _packed(self, future: Future[Packed]) -> Packed | None:
-        """The result; None when it went down with the pool, a failure when its workers were lost."""
+    def _submit(self, batch: Batch) -> Future[BatchResult]:
+        with self._interrupts.allowed():
+            future = self._executor.submit(self._task, [self._designs[key] for key in batch])
+            self._flying[future] = batch
+        return future
+
+    def _result(self, future: Future[BatchResult]) -> BatchResult | None:
+        """The result; None when it went down with the pool, failures when its workers were lost."""
         try:
             return future.result()
         except BrokenExecutor:
@@ -96,36 +116,27 @@ class PendingRuns:
                 "kept, the same command resumes."
             ) from None
         except getattr(self._executor, "lost", ()):
-            return _lost()
+            batch = self._flying[future]
+            if len(batch) == 1:
+                return BatchResult((_lost(),))
+            self._queue.extend((key,) for key in batch)
+            return BatchResult(())
 
-    def _after_a_break(self, suspects: list[str]) -> Iterator[Landed]:
+    def _after_a_break(self, suspects: list[str]) -> Iterator[list[Landed]]:
         """Run everything that was under way again, each alone, so that the culprit is known."""
         with self._interrupts.allowed():
             wait(self._flying)
-        for future, key in list(self._flying.items()):
-            packed = self._packed(future)
-            del self._flying[future]
-            if packed is None:
-                suspects.append(key)
-            else:
-                yield key, packed
+        for future in list(self._flying):
+            yield from self._landed(future, suspects)
         self._renew()
         for key in suspects:
-            packed = self._alone(key)
-            if packed is not None:
-                yield from self._sentences()
-                yield key, packed
-            else:
+            with self._interrupts.allowed():
+                future = self._submit((key,))
+                wait([future])
+            alone: list[str] = []
+            yield from self._landed(future, alone)
+            if alone:
                 self._mark_crashed(key)
-
-    def _alone(self, key: str) -> Packed | None:
-        with self._interrupts.allowed():
-            future = self._executor.submit(self._task, self._designs[key])
-            self._flying[future] = key
-            wait([future])
-        packed = self._packed(future)
-        del self._flying[future]
-        return packed
 
     def _mark_crashed(self, key: str) -> None:
         """A design that ended its worker; a failure once another design shows that workers can live."""
@@ -134,9 +145,9 @@ class PendingRuns:
             raise RunError(f"{LOST} time and again, {REMEDY}.")
         self._renew()
 
-    def _sentences(self) -> Iterator[Landed]:
-        for key in self._suspects:
-            yield key, _lost()
+    def _sentences(self) -> Iterator[list[Landed]]:
+        if self._suspects:
+            yield [(key, _lost()) for key in self._suspects]
         self._suspects.clear()
 
     def _renew(self) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -20,6 +20,9 @@ from doe_kc.solver.result import NotConverged
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
 from doe_kc.true_solver.protocol import TrueSolver, Values
 
+LEFT_OUT = b""
+"""In place of curves that were not to be kept."""
+REGISTERED = frozenset(CHARACTERISTICS)
 KEY_DIGITS = 12
 """Significant digits that tell two designs apart: 0.1 + 0.2 is 0.3."""
 
@@ -38,7 +41,7 @@ def design_key(values: Mapping[str, float]) -> str:
     return hashlib.sha256(json.dumps(pairs).encode()).hexdigest()
 
 
-def run_one(solver: TrueSolver, values: Values) -> Packed:
+def run_one(solver: TrueSolver, values: Values, *, keep_curves: bool = True) -> Packed:
     """One design, packed. InputError, RunError and MemoryError end the campaign, all else is a failure."""
     try:
         outcome = checked(solver.evaluate(values))
@@ -48,19 +51,40 @@ def run_one(solver: TrueSolver, values: Values) -> Packed:
         raise
     except Exception as error:  # whatever an outside solver trips over
         outcome = failure(f"{solver.name} raised {type(error).__name__}: {error}")
-    return packed_outcome(outcome)
+    return packed_outcome(outcome, keep_curves=keep_curves)
 
 
-def task_for(solver: TrueSolver) -> Task:
-    """What to submit to an executor for each design."""
-    return partial(run_one, solver)
+@dataclass(frozen=True)
+class BatchResult:
+    """packed: of the designs of a batch, in order, up to the one that ended the campaign by `error`."""
+
+    packed: tuple[Packed, ...]
+    error: DoeKcError | None = None
+
+
+def run_batch(solver: TrueSolver, keep_curves: bool, designs: Sequence[Values]) -> BatchResult:
+    """Designs one after the other; the failure of one is a value and leaves the others alone."""
+    done: list[Packed] = []
+    for values in designs:
+        try:
+            packed = run_one(solver, values, keep_curves=keep_curves)
+        except DoeKcError as error:
+            return BatchResult(tuple(done), error)
+        done.append(packed)
+    return BatchResult(tuple(done))
+
+
+def task_for(solver: TrueSolver, *, keep_curves: bool = True) -> Task:
+    """What to submit to an executor for each batch of designs."""
+    return partial(run_batch, solver, keep_curves)
 
 
 @dataclass(frozen=True)
 class Packed:
     """An outcome that is small to send and to store.
 
-    characteristics: id -> value of those that are known. curves: of `curves_codec.pack`. seconds: of the run.
+    characteristics: id -> value of those that are known. curves: of `curves_codec.pack`, `LEFT_OUT`, or None
+    from a solver that gives none. seconds: of the run.
     """
 
     reason: str
@@ -86,19 +110,26 @@ class StoredEvaluation:
     versions: Mapping[str, str]
 
     @property
+    def curves_left_out(self) -> bool:
+        """Whether the run had curves that were not to be kept."""
+        return self.packed.curves == LEFT_OUT
+
+    @property
     def status(self) -> str:
         """ok or failed."""
         return "failed" if self.packed.reason else "ok"
 
 
-Task = Callable[[Values], Packed]
+Task = Callable[[Sequence[Values]], BatchResult]
 
 
-def packed_outcome(outcome: Outcome) -> Packed:
+def packed_outcome(outcome: Outcome, *, keep_curves: bool = True) -> Packed:
     """What to keep of an outcome."""
     pairs = zip(CHARACTERISTICS, map(float, outcome.characteristics), strict=True)
     known = {name: value for name, value in pairs if math.isfinite(value)}
-    block = pack(outcome.curves) if outcome.curves is not None and not outcome.failed else None
+    block = None
+    if outcome.curves is not None and not outcome.failed:
+        block = pack(outcome.curves) if keep_curves else LEFT_OUT
     return Packed(outcome.reason, known, block, outcome.seconds)
 
 
@@ -112,11 +143,16 @@ def outcome_of(record: StoredEvaluation, windows: Mapping[str, float], *, curves
     values = np.array([packed.characteristics.get(name, math.nan) for name in CHARACTERISTICS])
     if packed.reason:
         return Outcome(None, values * math.nan, packed.reason, packed.seconds)
-    again = dict(record.windows) != dict(windows) or set(packed.characteristics) != set(CHARACTERISTICS)
-    stored_curves = unpack(packed.curves) if packed.curves is not None and (curves or again) else None
+    again = is_to_reduce_again(record, windows)
+    stored_curves = unpack(packed.curves) if packed.curves and (curves or again) else None
     if stored_curves is not None and again:
         values = _reduced_again(stored_curves, windows, values)
     return Outcome(stored_curves if curves else None, values, "", packed.seconds)
+
+
+def is_to_reduce_again(record: StoredEvaluation, windows: Mapping[str, float]) -> bool:
+    """Whether `outcome_of` needs the curves of a record: other windows, or characteristics that it lacks."""
+    return dict(record.windows) != dict(windows) or record.packed.characteristics.keys() != REGISTERED
 
 
 def _reduced_again(curves: CurveSet, windows: Mapping[str, float], stored: FloatArray) -> FloatArray:

@@ -15,6 +15,7 @@ from doe_kc import __version__
 from doe_kc.campaign.executors import executor_for, in_process
 from doe_kc.campaign.interrupts import Interrupts
 from doe_kc.campaign.pending import PendingRuns
+from doe_kc.campaign.processes import available_cores
 from doe_kc.campaign.record import Packed, StoredEvaluation, design_key, task_for
 from doe_kc.campaign.store import Store, open_store
 from doe_kc.ground.errors import DoeKcError, RunError
@@ -24,6 +25,10 @@ from doe_kc.true_solver.protocol import TrueSolver, Values
 Progress = Callable[[int], None]
 IN_PROCESS_DESIGNS = 2
 """Designs of a quick solver that are run in this process."""
+BATCH = 32
+"""Designs of a quick solver that a worker runs at most before they are stored: a tenth of a second."""
+BATCHES_A_WORKER = 4
+"""At least, so that workers end together."""
 
 
 class Campaign:
@@ -32,6 +37,7 @@ class Campaign:
     store: a store that stays the caller's, the path of one to open, or None for one in memory.
     executor: stays the caller's; by default worker processes, as many as `workers` (one per core), or the
     Dask cluster at the address `scheduler`. retry_failed: run stored failures again, once a campaign.
+    keep_curves: False stores the characteristics of new evaluations alone.
     """
 
     def __init__(
@@ -43,9 +49,11 @@ class Campaign:
         workers: int | None = None,
         scheduler: str | None = None,
         retry_failed: bool = False,
+        keep_curves: bool = True,
     ) -> None:
         self.solver = solver
         self.retry_failed = retry_failed
+        self.keep_curves = keep_curves
         self.runs = 0
         """True-solver runs made so far."""
         self.asked = 0
@@ -68,12 +76,13 @@ class Campaign:
         """Outcomes in the order of the designs (path -> absolute value); failures are values.
 
         origin: who asks, such as "sample:lhs", kept beside the result. progress: told how many more of the
-        designs are done. curves: False leaves curves in the store, for more designs than memory holds.
+        designs are done. curves: False leaves curves in the store, for more designs than memory holds; True
+        runs designs again that were stored without theirs.
         InputError for an unknown path. RunError when interrupted; what has finished is stored.
         """
         keys = [design_key(values) for values in designs]
         self.asked += len(keys)
-        missing = self._missing(keys, designs)
+        missing = self._missing(keys, designs, curves=curves and self.keep_curves)
         times = Counter(keys)
         progress(sum(n for key, n in times.items() if key not in missing))
         if missing:
@@ -82,14 +91,14 @@ class Campaign:
         windows = self.solver.windows
         return [self.store.outcome(key, windows, curves=curves) for key in keys]
 
-    def _missing(self, keys: Sequence[str], designs: Sequence[Values]) -> dict[str, Values]:
+    def _missing(self, keys: Sequence[str], designs: Sequence[Values], *, curves: bool) -> dict[str, Values]:
         out: dict[str, Values] = {}
         for key, values in zip(keys, designs, strict=True):
             if key in out:
                 continue
             status = self.store.status(key)
             again = status == "failed" and self.retry_failed and key not in self._ran
-            if status is None or again:
+            if status is None or again or self.store.lacks_curves(key, self.solver.windows, curves=curves):
                 out[key] = values
         return out
 
@@ -97,38 +106,55 @@ class Campaign:
         few = self.solver.quick and len(missing) <= IN_PROCESS_DESIGNS
         executor = self._here if few else self.executor
         interrupts = Interrupts()
-        flight = PendingRuns(executor, task_for(self.solver), missing, interrupts)
+        task = task_for(self.solver, keep_curves=self.keep_curves)
+        flight = PendingRuns(executor, task, missing, interrupts, self._batch_size(len(missing)))
         try:
             with interrupts:
-                for key, packed in flight.results():
-                    self._keep(key, missing[key], packed, origin)
-                    done(key)
+                for landed in flight.results():
+                    self._keep(landed, missing, origin)
+                    for key, _ in landed:
+                        done(key)
         except BaseException as error:
             with contextlib.suppress(DoeKcError):
-                for key, packed in flight.finished():
-                    self._keep(key, missing[key], packed, origin)
+                for landed in flight.finished():
+                    self._keep(landed, missing, origin)
             flight.abandon()
             if isinstance(error, KeyboardInterrupt):
                 raise RunError(self._interrupted()) from None
             raise
 
-    def _keep(self, key: str, values: Values, packed: Packed, origin: str) -> None:
-        record = StoredEvaluation(
-            key=key,
-            parameters=dict(values),
-            packed=packed,
-            windows=dict(self.solver.windows),
-            origin=origin,
-            created=datetime.now(UTC).isoformat(timespec="milliseconds"),
-            versions={
-                "doe_kc": __version__,
-                "python": platform.python_version(),
-                "solver": self.solver.name,
-            },
+    def _batch_size(self, designs: int) -> int:
+        """How many a task runs: one of a solver that takes its time, whose every result is worth keeping."""
+        if not self.solver.quick:
+            return 1
+        workers = getattr(self.executor, "workers", None) or available_cores()
+        return max(1, min(BATCH, designs // (BATCHES_A_WORKER * workers)))
+
+    def _keep(self, landed: Sequence[tuple[str, Packed]], designs: Mapping[str, Values], origin: str) -> None:
+        """In one transaction."""
+        windows = dict(self.solver.windows)
+        created = datetime.now(UTC).isoformat(timespec="milliseconds")
+        versions = {
+            "doe_kc": __version__,
+            "python": platform.python_version(),
+            "solver": self.solver.name,
+        }
+        self.store.put_all(
+            [
+                StoredEvaluation(
+                    key=key,
+                    parameters=dict(designs[key]),
+                    packed=packed,
+                    windows=windows,
+                    origin=origin,
+                    created=created,
+                    versions=versions,
+                )
+                for key, packed in landed
+            ]
         )
-        self.store.put(record)
-        self._ran.add(key)
-        self.runs += 1
+        self._ran.update(key for key, _ in landed)
+        self.runs += len(landed)
 
     def _interrupted(self) -> str:
         if self.store.path is None:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
 from doe_kc.campaign import store_file
 from doe_kc.campaign.curves_codec import DamagedCurves
-from doe_kc.campaign.record import Packed, StoredEvaluation, outcome_of
+from doe_kc.campaign.record import Packed, StoredEvaluation, is_to_reduce_again, outcome_of
 from doe_kc.campaign.store_file import REMOVE, in_words, lock
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import make_folder
@@ -20,6 +20,8 @@ from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver
 
 EVALUATION_COLUMNS = "key, parameters, reason, characteristics, windows, seconds, origin, created, versions"
+VALUE_MARKS = ", ".join("?" * 11)
+"""For the values of a row."""
 
 
 class Store:
@@ -40,23 +42,22 @@ class Store:
 
     def put(self, record: StoredEvaluation) -> None:
         """Store a record, in place of one with its key; RunError when the disk is full or not writable."""
-        packed = record.packed
-        row = (
-            record.key,
-            json.dumps(dict(record.parameters)),
-            record.status,
-            packed.reason,
-            json.dumps(dict(packed.characteristics), allow_nan=False),
-            json.dumps(dict(record.windows)),
-            packed.curves,
-            packed.seconds,
-            record.origin,
-            record.created,
-            json.dumps(dict(record.versions)),
-        )
+        self.put_all([record])
+
+    def put_all(self, records: Sequence[StoredEvaluation]) -> None:
+        """Store records as `put`, in one transaction: all of them, or none."""
+        rows = [_row(record) for record in records]
         with in_words(self._where):
-            marks = ", ".join("?" * len(row))
-            self._connection.execute(f"INSERT OR REPLACE INTO evaluations VALUES ({marks})", row)
+            self._connection.execute("BEGIN IMMEDIATE")
+            try:
+                self._connection.executemany(
+                    f"INSERT OR REPLACE INTO evaluations VALUES ({VALUE_MARKS})", rows
+                )
+                self._connection.execute("COMMIT")
+            except BaseException:
+                if self._connection.in_transaction:
+                    self._connection.execute("ROLLBACK")
+                raise
 
     def status(self, key: str) -> str | None:
         """ok, failed, or None for a design that has not been evaluated."""
@@ -64,21 +65,43 @@ class Store:
             row = self._connection.execute("SELECT status FROM evaluations WHERE key = ?", (key,)).fetchone()
         return None if row is None else str(row[0])
 
+    def lacks_curves(self, key: str, windows: Mapping[str, float], *, curves: bool) -> bool:
+        """Whether a design was stored without the curves that it had, and they are asked for: by `curves`, or
+        by windows other than those that it was reduced with."""
+        with in_words(self._where):
+            row = self._connection.execute(
+                "SELECT windows FROM evaluations WHERE key = ? AND length(curves) = 0", (key,)
+            ).fetchone()
+        return row is not None and (curves or json.loads(row[0]) != dict(windows))
+
     def outcome(self, key: str, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
         """What was stored, its characteristics reduced with `windows`; KeyError for a design not there.
 
         curves: False leaves them out of the outcome, which saves memory and time.
         """
+        record = self._record(key, "curves" if curves else "NULL")
+        if not curves and not record.packed.reason and is_to_reduce_again(record, windows):
+            record = self._record(key, "curves")
+        return self.read(record, windows, curves=curves)
+
+    def _record(self, key: str, curves: str) -> StoredEvaluation:
+        """curves: what to read of them, an expression of SQL."""
         with in_words(self._where):
             row = self._connection.execute(
-                f"SELECT {EVALUATION_COLUMNS}, curves FROM evaluations WHERE key = ?", (key,)
+                f"SELECT {EVALUATION_COLUMNS}, {curves} FROM evaluations WHERE key = ?", (key,)
             ).fetchone()
         if row is None:
             raise KeyError(key)
-        return self.read(_record(row), windows, curves=curves)
+        return _record(row)
 
     def read(self, record: StoredEvaluation, windows: Mapping[str, float], *, curves: bool = True) -> Outcome:
-        """The outcome of a record of this store; InputError when its curves are damaged."""
+        """The outcome of a record of this store; InputError when its curves are damaged, or were left out and
+        other windows ask for them."""
+        if record.curves_left_out and dict(record.windows) != dict(windows):
+            raise InputError(
+                f"{self._where}: evaluation {record.key[:12]} was stored without curves, so that its "
+                "characteristics cannot be fitted over other windows; sample again with --curves all."
+            )
         try:
             return outcome_of(record, windows, curves=curves)
         except DamagedCurves:
@@ -112,6 +135,24 @@ class Store:
 
     def __exit__(self, *_error: object) -> None:
         self.close()
+
+
+def _row(record: StoredEvaluation) -> tuple[object, ...]:
+    """In the order of the table's columns."""
+    packed = record.packed
+    return (
+        record.key,
+        json.dumps(dict(record.parameters)),
+        record.status,
+        packed.reason,
+        json.dumps(dict(packed.characteristics), allow_nan=False),
+        json.dumps(dict(record.windows)),
+        packed.curves,
+        packed.seconds,
+        record.origin,
+        record.created,
+        json.dumps(dict(record.versions)),
+    )
 
 
 def _record(row: tuple[Any, ...]) -> StoredEvaluation:

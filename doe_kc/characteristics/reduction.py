@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,10 +77,42 @@ def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None 
 def reduce_all(curves: CurveSet, windows: Mapping[str, float] | None = None) -> dict[str, float]:
     """Every registered characteristic by id; windows: load case -> half-width in place of the default."""
     chosen = windows or {}
-    return {
-        ident: reduce_one(entry, curves, window=chosen.get(entry.load_case))
-        for ident, entry in CHARACTERISTICS.items()
+    out = {
+        ident: reduce_one(entry, curves) for ident, entry in CHARACTERISTICS.items() if entry.kind == "static"
     }
+    for entries in GRADIENTS:
+        out |= _slopes(entries, curves, chosen.get(entries[0].load_case))
+    return {ident: out[ident] for ident in CHARACTERISTICS}
+
+
+def _gradients() -> tuple[tuple[Characteristic, ...], ...]:
+    groups = defaultdict[tuple[str, str], list[Characteristic]](list)
+    for entry in CHARACTERISTICS.values():
+        if entry.kind != "static":
+            groups[entry.load_case, entry.abscissa].append(entry)
+    return tuple(tuple(entries) for entries in groups.values())
+
+
+GRADIENTS = _gradients()
+"""Registered gradients that are fitted over the same abscissa of the same load case."""
+
+
+def _slopes(entries: Sequence[Characteristic], curves: CurveSet, window: float | None) -> dict[str, float]:
+    """Those of one group of `GRADIENTS`, as `reduce_one` gives them one by one."""
+    out = dict.fromkeys((e.id for e in entries), float("nan"))
+    case = curves.cases.get(entries[0].load_case)
+    if case is None or (entries[0].abscissa == "wheel_travel" and "wc_z" not in case.mean):
+        return out
+    known = [e for e in entries if e.response in case.mean]
+    if not known:
+        return out
+    inside = fit_window(case, window)
+    x = abscissa(entries[0], case, curves.half_track)[inside]
+    dx = x - x.mean()
+    weights = dx / (dx @ dx)
+    y = np.array([case.mean[e.response][LEFT_WHEEL] for e in known])[:, inside]
+    slopes = (y - y.mean(axis=1, keepdims=True)) @ weights
+    return out | {e.id: e.scale * float(b) for e, b in zip(known, slopes, strict=True)}
 
 
 def reduction_gradient(

@@ -9,25 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.search_targets import hold_distance, hold_rms
+from doe_kc.correlation.status import STATUS_LABELS, Status
 from doe_kc.targets import Improvement
 from doe_kc.targets.comparison import constraint_interval
 from doe_kc.targets.improvement import SIGNIFICANT
 
-Status = Literal["sound", "doubtful", "not_usable"]
 BOUND_COUNT_SHARE = 0.1
 """Share of the variables that may end at a bound: more of them stand in for something."""
 MISFIT = 1.2
 """Whitened RMS of the deviations from which they are more than noise; its own scatter is some 0.01."""
-STATUS_LABELS: dict[Status, str] = {
-    "sound": "Sound",
-    "doubtful": "Doubtful",
-    "not_usable": "Not usable",
-}
 
 
 @dataclass(frozen=True)

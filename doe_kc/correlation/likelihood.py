@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
 from typing import Literal
 
 import numpy as np
@@ -14,6 +15,7 @@ from scipy.linalg import cholesky, solve_triangular
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import TYRE_LOAD, CurveSet
+from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.reduction import static_sd
@@ -63,12 +65,59 @@ class CurveData:
 
     def whitened(self, rows: FloatArray) -> FloatArray:
         """L^-1 rows for (n,) or (n, p)."""
-        return np.asarray(self._inverse @ rows)
+        return np.asarray(solve_triangular(self.root, rows, lower=True, check_finite=False))
+
+
+@dataclass(frozen=True)
+class CurveGroup:
+    """k consecutive curves of one load case at the same n inputs, whitened together."""
+
+    curves: tuple[CurveData, ...]
+    """(k,) mean curves, or half-width curves."""
+    place: slice
+    """Of their k n data in the residual."""
+
+    @property
+    def first(self) -> CurveData:
+        """The first curve, whose load case, inputs and branches are those of all."""
+        return self.curves[0]
+
+    @property
+    def places(self) -> list[slice]:
+        """(k,) of each curve's data in the residual."""
+        n, start = self.first.size, self.place.start
+        return [slice(start + i * n, start + (i + 1) * n) for i in range(len(self.curves))]
 
     @cached_property
-    def _inverse(self) -> FloatArray:
-        """L^-1, kept: curves are whitened hundreds of times."""
-        return np.asarray(solve_triangular(self.root, np.eye(self.size), lower=True, check_finite=False))
+    def inverses(self) -> FloatArray:
+        """(k, n, n) L^-1 of each curve, kept: curves are whitened hundreds of times."""
+        eye = np.eye(self.first.size)
+        return np.array([c.whitened(eye) for c in self.curves])
+
+    @cached_property
+    def values(self) -> FloatArray:
+        """(k, n) what was measured."""
+        return np.array([c.value for c in self.curves])
+
+    def whitened(self, rows: FloatArray) -> FloatArray:
+        """(k n, p) of rows (k, n, p)."""
+        return np.asarray((self.inverses @ rows).reshape(-1, rows.shape[-1]))
+
+    def model(self, curves: CurveSet) -> FloatArray:
+        """(k, n) values of a model at the inputs."""
+        case = curves.cases[self.first.load_case]
+        branches = case.mean if self.first.branches == "mean" else case.half_width
+        values = np.array([branches[c.response][c.side] for c in self.curves])
+        return _interpolated_rows(self.first.input, case.input, values)
+
+    def slopes(self, gradients: CurveGradients) -> FloatArray:
+        """(k, n, p) derivatives of a model at the inputs; of loops nothing where no friction makes any."""
+        case, n = self.first.load_case, self.first.size
+        if self.first.branches == "half_width" and case not in gradients.half_width:
+            return np.zeros((len(self.curves), n, len(gradients.paths)))
+        every = gradients.cases if self.first.branches == "mean" else gradients.half_width
+        rows = np.array([every[case][c.response][c.side] for c in self.curves])
+        return interpolated(self.first.input, gradients.inputs[case], rows)
 
 
 @dataclass(frozen=True)
@@ -87,7 +136,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Likelihood:
+class Likelihood(FieldsOnly):
     """All data of a correlation. Residuals are (model - measured) in units of the errors, (M,)."""
 
     curves: tuple[CurveData, ...]
@@ -102,33 +151,29 @@ class Likelihood:
         """(M,) whitened residual of a model; KeyError for a load case that it lacks."""
         if curves is None and self.size > sum(f.row >= 0 for f in self.figures):
             raise ValueError("the model gives no curves to compare with the measured ones")
-        models = self._models(curves) if curves is not None else []
-        parts = [c.whitened(model - c.value) for c, model in zip(self.curves, models, strict=False)]
+        out = np.empty(self.size)
+        for group in self.groups if curves is not None else ():
+            assert curves is not None
+            out[group.place] = group.whitened((group.model(curves) - group.values)[..., None])[:, 0]
         scalars = [(_scalar(f, curves, characteristics) - f.value) / f.sd for f in self.figures]
-        return np.concatenate([*parts, np.array(scalars)])
-
-    def _models(self, curves: CurveSet) -> list[FloatArray]:
-        """The model's values of each curve, (n,), interpolated for all curves of the same inputs at once."""
-        out: list[FloatArray] = [np.zeros(0)] * len(self.curves)
-        for places in self._same_inputs:
-            data = [self.curves[i] for i in places]
-            case = curves.cases[data[0].load_case]
-            values = np.array([_branch_curves(c, curves)[c.response][c.side] for c in data])
-            for i, model in zip(places, _interpolated_rows(data[0].input, case.input, values), strict=True):
-                out[i] = model
+        out[self.size - len(scalars) :] = scalars
         return out
 
     @cached_property
-    def _same_inputs(self) -> list[list[int]]:
-        """Places of the curves, those of a load case with the same inputs together."""
-        places: dict[tuple[str, bytes], list[int]] = {}
-        for i, curve in enumerate(self.curves):
-            places.setdefault((curve.load_case, curve.input.tobytes()), []).append(i)
-        return list(places.values())
+    def groups(self) -> tuple[CurveGroup, ...]:
+        """All curves in their order, consecutive ones of the same inputs together."""
+        out: list[CurveGroup] = []
+        start = 0
+        for _, same in groupby(self.curves, lambda c: (c.load_case, c.branches, c.input.tobytes())):
+            members = tuple(same)
+            end = start + sum(c.size for c in members)
+            out.append(CurveGroup(members, slice(start, end)))
+            start = end
+        return tuple(out)
 
     def jacobian(self, gradients: CurveGradients, characteristics: FloatArray) -> FloatArray:
         """(M, p) derivative of the residual. characteristics: (all registered, p) their gradients."""
-        parts = [c.whitened(_rows(c, gradients)) for c in self.curves]
+        parts = [group.whitened(group.slopes(gradients)) for group in self.groups]
         scalars = [_scalar_row(f, gradients, characteristics) / f.sd for f in self.figures]
         tail = np.array(scalars).reshape(len(scalars), len(gradients.paths))
         return np.vstack([*parts, tail])
@@ -152,8 +197,11 @@ def rewhitened(rows: FloatArray, before: Likelihood, after: Likelihood) -> Float
     if before is after:
         return rows
     out = rows.copy()
-    for (old, place), new in zip(before.slices(), after.curves, strict=True):
-        out[place] = new.whitened(old.root @ rows[place])
+    for old, new in zip(before.groups, after.groups, strict=True):
+        if any(a is not b for a, b in zip(old.curves, new.curves, strict=True)):
+            change = new.inverses @ np.array([c.root for c in old.curves])
+            k, n, _ = change.shape
+            out[old.place] = (change @ rows[old.place].reshape(k, n, -1)).reshape(k * n, *rows.shape[1:])
     return out
 
 
@@ -279,11 +327,6 @@ def _static(measurement: Measurement) -> Iterator[Figure]:
                 yield Figure(f"static.{response}", response, side, -1, float(value), sd[response])
 
 
-def _branch_curves(data: CurveData, curves: CurveSet) -> Mapping[str, FloatArray]:
-    case = curves.cases[data.load_case]
-    return case.mean if data.branches == "mean" else case.half_width
-
-
 def _interpolated_rows(at: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:
     """(k, m) rows, (k, n) on a rising grid, at `at`, (m,): each as `np.interp`, to the last bit."""
     cell = np.clip(np.searchsorted(grid, at, side="right") - 1, 0, grid.size - 2)
@@ -292,14 +335,6 @@ def _interpolated_rows(at: FloatArray, grid: FloatArray, rows: FloatArray) -> Fl
     out = slope * (np.maximum(at, grid[0]) - grid[cell]) + low
     out[:, at >= grid[-1]] = rows[:, -1:]
     return np.asarray(out)
-
-
-def _rows(data: CurveData, gradients: CurveGradients) -> FloatArray:
-    if data.branches == "half_width" and data.load_case not in gradients.half_width:
-        return np.zeros((data.size, len(gradients.paths)))
-    slopes = gradients.cases if data.branches == "mean" else gradients.half_width
-    values = slopes[data.load_case][data.response][data.side]
-    return interpolated(data.input, gradients.inputs[data.load_case], values)
 
 
 def _scalar(figure: Figure, curves: CurveSet | None, characteristics: FloatArray) -> float:

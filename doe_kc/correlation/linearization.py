@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
@@ -14,7 +15,7 @@ from doe_kc.solver import suite
 from doe_kc.solver.curve_gradient import (
     CurveGradients,
     characteristic_gradients,
-    curve_gradients,
+    gradients_of,
     interpolated,
 )
 from doe_kc.solver.result import Solution
@@ -46,13 +47,31 @@ def linearize(
     """
     there = with_values(axle, space.values(point))
     solution = solve(there)
-    paths = [*space.paths, *(tie.follower for tie in space.ties)]
+    paths = _moved_paths(space)
     exact = sensitivities(there, solution, paths)
     chain = _chain(space, point)
     slopes = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
-    return Linearization(
-        slopes @ chain, _chained(curve_gradients(there, solution, paths, exact), chain, space)
-    )
+    return Linearization(slopes @ chain, _chained(gradients_of(solution, exact), chain, space.paths))
+
+
+def linearized_curves(
+    there: Axle,
+    solution: Solution,
+    space: Space,
+    point: FloatArray,
+    directions: Mapping[str, Mapping[str, float]],
+) -> CurveGradients:
+    """Curves of the axle at `point` (d,) to first order: d variables, ties followed, then `directions`.
+
+    solution: of that axle. directions: see `sensitivities`.
+    """
+    exact = sensitivities(there, solution, _moved_paths(space), directions)
+    chain = block_diag(_chain(space, point), np.eye(len(directions)))
+    return _chained(gradients_of(solution, exact), chain, (*space.paths, *directions))
+
+
+def _moved_paths(space: Space) -> list[str]:
+    return [*space.paths, *(tie.follower for tie in space.ties)]
 
 
 def _chain(space: Space, point: FloatArray) -> FloatArray:
@@ -63,13 +82,13 @@ def _chain(space: Space, point: FloatArray) -> FloatArray:
     return np.vstack([slopes, *followers])
 
 
-def _chained(gradients: CurveGradients, chain: FloatArray, space: Space) -> CurveGradients:
+def _chained(gradients: CurveGradients, chain: FloatArray, paths: tuple[str, ...]) -> CurveGradients:
     def chained(cases: Mapping[str, Mapping[str, FloatArray]]) -> dict[str, dict[str, FloatArray]]:
         return {case: {r: g @ chain for r, g in responses.items()} for case, responses in cases.items()}
 
     return replace(
         gradients,
-        paths=space.paths,
+        paths=paths,
         cases=chained(gradients.cases),
         static={r: g @ chain for r, g in gradients.static.items()},
         half_width=chained(gradients.half_width),

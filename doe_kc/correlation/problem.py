@@ -12,6 +12,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.correlation.least_squares import PRIOR_RIDGE, Prior
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization, linearize, scaled_slopes
+from doe_kc.correlation.twin import Twin
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.targets import Rating, Score, Targets, rate, score
@@ -77,7 +78,8 @@ class Evaluated:
 
 @dataclass(frozen=True)
 class Problem:
-    """axle: the model that points are applied to. exact: whether its sensitivities can be had.
+    """axle: the model that points are applied to. exact: whether its sensitivities can be had. twin: the
+    package's own model beside that of an outside solver; None without one.
 
     targets: of the rating that is reported. sought: of the search; None where it works on the rating alone.
     ridge: of its prior.
@@ -92,6 +94,12 @@ class Problem:
     exact: bool
     sought: Targets | None = None
     ridge: float = PRIOR_RIDGE
+    twin: Twin | None = None
+
+    @property
+    def has_slopes(self) -> bool:
+        """Whether there are sensitivities: exact ones of the solver, or those of the twin."""
+        return self.exact or self.twin is not None
 
     @property
     def search(self) -> Targets:
@@ -104,12 +112,18 @@ class Problem:
         return Prior.of(self.space.start, self.space.prior_sd, self.ridge)
 
     def linearize(self, point: FloatArray) -> Linearization:
-        """Exact first-order expansion at a point (d,); RunError for a solver that gives none."""
-        if not self.exact:
+        """Exact first-order expansion at a point (d,), of the twin where the solver gives none.
+
+        RunError without either, NotConverged where the model has no equilibrium.
+        """
+        if not self.has_slopes:
             raise RunError("the study's solver gives no sensitivities; choose a method that needs none.")
         key = point.tobytes()
         if key not in self._expansions:
-            self._expansions[key] = linearize(self.axle, self.space, point, self.windows)
+            if self.twin is not None:
+                self._expansions[key] = self.twin.linearize(self.space, point)
+            else:
+                self._expansions[key] = linearize(self.axle, self.space, point, self.windows)
             while len(self._expansions) > EXPANSION_CACHE:
                 self._expansions.pop(next(iter(self._expansions)))
         return self._expansions[key]
@@ -120,7 +134,7 @@ class Problem:
         return {}
 
     def output_slopes(self, point: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Exact slopes of the targets' characteristics (k, d) and of the scaled curves (N, d)."""
+        """Slopes of the targets' characteristics (k, d) and of the scaled curves (N, d), see `linearize`."""
         expansion = self.linearize(point)
         rows = [scaled_slopes(t, expansion.curves) for t in self.search.curves]
         if self.search.misfit is not None:
@@ -128,6 +142,12 @@ class Problem:
             rows.append(jacobian / np.sqrt(self.search.misfit.size))
         empty = np.zeros((0, self.space.dimension))
         return expansion.characteristics[self.search.rows], np.vstack([empty, *rows])
+
+    def twin_answer(self, point: FloatArray) -> Evaluated:
+        """What the twin says of a point (d,), judged as an answer of the solver; RunError without a twin."""
+        if self.twin is None:
+            raise RunError("the problem has no twin; ask the study's solver.")
+        return self.judged(-1, Candidate(point, "twin"), self.twin.answer(self.space, point))
 
     def judged(self, index: int, candidate: Candidate, outcome: Outcome) -> Evaluated:
         """The candidate with its answer scored and rated; a response that is not finite is a failure."""

@@ -14,6 +14,7 @@ from doe_kc.correlation.posterior import ParameterPosterior
 from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation
 from doe_kc.correlation.search_targets import all_measured
+from doe_kc.correlation.twin_agreement import TwinAgreement
 from doe_kc.targets import CurveTarget, Improvement, improvements, mean_improvement, score
 
 
@@ -24,7 +25,8 @@ class Correlation:
     method: its id. steps: what was set before it (ride height, alignment), in sentences. posterior: of the
     variables at the best design from the exact sensitivities; None when the solver gives none or there are
     no records. seconds: of the whole run. relaxation: targets that the bounds do not reach, None where that
-    was not known beforehand. given: the axle as it was handed in, where the run started from another.
+    was not known beforehand. given: the axle as it was handed in, where the run started from another. twin:
+    where an outside model and its twin disagree; None without a twin. Then the posterior is by its slopes.
     """
 
     method: str
@@ -36,6 +38,7 @@ class Correlation:
     notes: tuple[str, ...] = ()
     relaxation: Relaxation | None = None
     given: Evaluated | None = None
+    twin: TwinAgreement | None = None
 
     @property
     def baseline(self) -> Evaluated:

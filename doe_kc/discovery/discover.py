@@ -31,6 +31,7 @@ from doe_kc.discovery.verdict.verdict import Verdict, ambiguous, classes, verdic
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.memory import return_large_arrays
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 
@@ -41,16 +42,17 @@ def discover(
 ) -> Discovery:
     """model: the axle without any effect, its tunable parameters and its records."""
     started = time.perf_counter()
+    return_large_arrays()
     workers = workers or DiscoveryWorkers()
     search, widened = search_within_bounds(model, library, workers)
     nominal = model.residual(model.centre)
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
     temper = max(1.0, residual_map.mean_square)
+    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper)
     compared = alternatives(search, temper, workers)
     members = findings(search, compared)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
-    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper)
     predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
     explained = adequacy(residual_map, predictions)

@@ -19,9 +19,10 @@ from scipy.special import log_ndtr
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.half_lines import log_kept
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
-from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.projection import Changes, Projection, changes
 from doe_kc.discovery.screening.disagreement import Map, residual_map
 from doe_kc.discovery.thresholds import (
     CHORD_STEPS,
@@ -37,12 +38,13 @@ from doe_kc.discovery.thresholds import (
     REUSE_DECREASE,
 )
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
 
 @dataclass(frozen=True)
-class Fit:
+class Fit(FieldsOnly):
     """A model at its most probable point."""
 
     model: EffectModel
@@ -51,7 +53,7 @@ class Fit:
     """(d + m,) the point: parameters, nuisances, amplitudes."""
     residual: FloatArray
     """(M,) model minus records, in standard deviations of the records."""
-    jacobian: FloatArray
+    jacobian: Jacobian
     """(M, d + m) derivative of the residual to z; of a point nearby where a fit ended on that."""
     cost: float
     """Sum of squares of the data that the fit looks at, with the prior's."""
@@ -63,15 +65,18 @@ class Fit:
     @cached_property
     def hessian(self) -> FloatArray:
         """(d + m, d + m) J'J + P^-2 over the data that the fit looks at."""
-        seen = self.jacobian if self.model.left_out is None else self.jacobian[self.model.used]
-        return np.asarray(seen.T @ seen + np.diag(self.model.prior_sd**-2.0))
+        out = self.jacobian.gram + np.diag(self.model.prior_sd**-2.0)
+        if self.model.left_out is None:
+            return out
+        unseen = self.jacobian.rows(~self.model.used)
+        return np.asarray(out - unseen.T @ unseen)
 
     @cached_property
     def gradient(self) -> FloatArray:
         """(d + m,) half the slope of the cost."""
         model = self.model
         pulled = model.prior_sd**-2.0 * (self.z - model.centre)
-        return np.asarray(self.jacobian.T @ np.where(model.used, self.residual, 0.0) + pulled)
+        return self.jacobian.pulled(np.where(model.used, self.residual, 0.0)) + pulled
 
     @cached_property
     def covariance(self) -> FloatArray:
@@ -88,15 +93,24 @@ class Fit:
         """Complement of what tuning and the sizes of the effects can explain, traces held."""
         return self._projection(np.delete(np.arange(self.z.size), self.model.traces))
 
+    def changes(self, rows: FloatArray) -> Changes:
+        """Changes (M,) or (M, k) of the residual, for the projections of this fit."""
+        return changes(self.jacobian, rows)
+
     @cached_property
-    def remainder(self) -> FloatArray:
-        """(M + d + m,) what the projection leaves of the residual."""
-        return self.projection.residual(self.residual)
+    def remainder(self) -> Changes:
+        """The residual, for the projections of this fit."""
+        return changes(self.jacobian, self.residual, is_residual=True)
+
+    @cached_property
+    def misfit_left(self) -> float:
+        """Square of what the projection leaves of the residual: the cost after re-tuning to first order."""
+        return float(self.projection.squares(self.remainder)[0])
 
     @cached_property
     def residual_map(self) -> Map:
         """Where model and records disagree beyond what re-tuning could absorb."""
-        return residual_map(self.model.contrasts, self.residual, self.projection)
+        return residual_map(self.model.contrasts, self.remainder, self.projection)
 
     @cached_property
     def sizes_held(self) -> Projection:
@@ -112,7 +126,7 @@ class Fit:
         """free: places in z that may move."""
         prior = self.model.prior_sd[free]
         offset = (self.z[free] - self.model.centre[free]) / prior
-        gram = self.hessian[np.ix_(free, free)] if self.model.left_out is None else None
+        gram = self.jacobian.gram[np.ix_(free, free)] + np.diag(prior**-2.0)
         return Projection(self.jacobian, prior, offset, free, gram)
 
     @property
@@ -216,11 +230,11 @@ def fit(
             gained = current.cost - cost
             aged = aged + gained if gained < REUSE_DECREASE else 0.0
             if aged and abs(ratio - 1.0) < 1.0 - FIT_GOOD_RATIO:
-                jacobian = _secant(current, step, residual)
+                missed = residual - current.residual - current.jacobian.moved(step)
+                jacobian = current.jacobian.secant(missed, step)
                 current = replace(current, z=trial, residual=residual, jacobian=jacobian, cost=cost)
                 continue
-            kept = current.jacobian[:, : model.calibrations.stop] if aged else None
-            current = _expanded(model, trial, residual, current.evaluations, kept)
+            current, aged = _expanded(model, trial, residual, current.evaluations), 0.0
         elif aged > FRESH_DECREASE:
             current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
         if radius < LEAST_STEP:
@@ -238,19 +252,6 @@ def _hopeless(fit: Fit, ceiling: float) -> bool:
     return fit.cost - (1.0 + HOPELESS_SHARE) * promised > ceiling
 
 
-def _secant(fit: Fit, step: FloatArray, residual: FloatArray) -> FloatArray:
-    """(M, d + m) the derivatives that say what a step did, changed along it alone (C. G. Broyden, Mathematics
-    of Computation 19, 1965). Those to linear nuisances stay what they are."""
-    nuisances = range(fit.model.calibrations.stop, fit.model.dimension)
-    moved = step.copy()
-    moved[nuisances] = 0.0
-    square = float(moved @ moved)
-    if square == 0.0:
-        return fit.jacobian
-    missed = residual - fit.residual - fit.jacobian @ step
-    return fit.jacobian + np.outer(missed, moved / square)
-
-
 def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     """Sum of squares of the data that fits look at, with the prior's."""
     seen = residual[model.used]
@@ -260,7 +261,8 @@ def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
 def rewhitened_fit(fit: Fit, model: EffectModel) -> Fit:
     """The fit's point against the same records with other errors, those of `model`; nothing is solved."""
     errors = fit.model.likelihood, model.likelihood
-    residual, jacobian = rewhitened(fit.residual, *errors), rewhitened(fit.jacobian, *errors)
+    residual = rewhitened(fit.residual, *errors)
+    jacobian = model.jacobian(rewhitened(fit.jacobian.own, *errors))
     return replace(
         fit, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, fit.z, residual)
     )
@@ -297,7 +299,7 @@ def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:
     own = np.r_[place]
     order = np.concatenate([np.delete(np.arange(fit.z.size), own), own])
     moved = model.without(hypothesis).extended(hypothesis)
-    return replace(fit, model=moved, z=fit.z[order], jacobian=fit.jacobian[:, order])
+    return replace(fit, model=moved, z=fit.z[order], jacobian=fit.jacobian.ordered(order))
 
 
 def known_columns(fit: Fit, model: EffectModel) -> FloatArray:
@@ -306,13 +308,14 @@ def known_columns(fit: Fit, model: EffectModel) -> FloatArray:
     Those to parameters and calibrations, p together, then those to the sizes of its members; nan where the
     fit's model has not got the member.
     """
-    own = {h.name: (len(h.sizes), place) for h, place in fit.model.places()}
-    columns = [fit.jacobian[:, : fit.model.calibrations.stop]]
+    own, end, first = fit.jacobian.own, fit.model.calibrations.stop, fit.model.linear
+    places = {h.name: p for h, p in fit.model.places()}
+    columns = [own[:, :end]]
     for member in model.members:
-        count, place = own.get(member.name, (0, slice(0)))
-        same = count == len(member.sizes)
+        place = places.get(member.name, slice(first.stop, first.stop))
+        known = own[:, end + place.start - first.stop : end + place.stop - first.stop]
         none = np.full((fit.residual.size, len(member.sizes)), np.nan)
-        columns.append(fit.jacobian[:, place] if same else none)
+        columns.append(known if known.shape[1] == len(member.sizes) else none)
     return np.hstack(columns)
 
 
@@ -323,19 +326,13 @@ def _expanded(
     evaluations: int,
     known: FloatArray | None = None,
 ) -> Fit:
-    """With derivatives at z, those that are `known` or lead the row of what is known taken from there."""
-    end, count = model.calibrations.stop, z.size - model.dimension
-    own = np.full((residual.size, count), np.nan)
-    if known is None:
-        tuning = model.tuning_columns(z, residual)
-    else:
-        tuning = model.with_own_nuisances(known)
-        own[:, : known.shape[1] - end] = known[:, end:]
+    """With derivatives at z, those that are `known` taken from there."""
+    own = model.own_columns(z, residual) if known is None else known.copy()
     missing = np.flatnonzero(np.isnan(own[0]))
-    own[:, missing] = model.amplitude_columns(z, residual, model.dimension + missing)
-    jacobian = np.hstack([tuning, own])
+    places = missing - model.calibrations.stop + model.dimension
+    own[:, missing] = model.amplitude_columns(z, residual, places)
     cost = cost_of(model, z, residual)
-    return Fit(model, z, residual, jacobian, cost, evaluations + missing.size, False)
+    return Fit(model, z, residual, model.jacobian(own), cost, evaluations + missing.size, False)
 
 
 def chord_fit(fit: Fit, model: EffectModel) -> Fit:

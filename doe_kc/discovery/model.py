@@ -11,17 +11,25 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
-from doe_kc.correlation.likelihood import Likelihood, rewhitened
-from doe_kc.correlation.linearization import linearize
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.linearization import linearized_curves
 from doe_kc.curves import CurveSet
-from doe_kc.discovery.clutter import Clutter, joined
+from doe_kc.discovery.jacobian import Jacobian
+from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.nuisances import calibrated
 from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
-from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, AMPLITUDE_STEP, CALIBRATION_STEP, NUISANCE_LIMIT
-from doe_kc.effects import apply_effect
+from doe_kc.discovery.thresholds import (
+    AMPLITUDE_LIMIT,
+    AMPLITUDE_STEP,
+    CALIBRATION_STEP,
+    DIRECTION_STEP,
+    NUISANCE_LIMIT,
+)
+from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.variables import Space
@@ -30,7 +38,7 @@ NO_CHARACTERISTICS = np.zeros(0)
 
 
 @dataclass(frozen=True)
-class EffectModel:
+class EffectModel(FieldsOnly):
     """An axle with effects of unknown size against the records of one car.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
@@ -49,10 +57,9 @@ class EffectModel:
     """Effects in the model."""
     left_out: str | None = None
     """Load case whose records are held back from fits, None for none."""
-    sides: FloatArray | None = None
-    """(M, k) change of the residual by each difference between the sides, per its standard deviation."""
-    clutter: Clutter | None = None
-    """Traces of all effects, of which those of absent ones count; None before they are known."""
+    nuisances: LinearNuisances | None = None
+    """Differences between the sides and traces of all effects, of which those of absent ones count; None
+    before they are known."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
     """Solver of its axles, the same for all models that come of one another."""
 
@@ -87,7 +94,7 @@ class EffectModel:
     @property
     def traces(self) -> slice:
         """Places of the traces of absent effects in z."""
-        count = 0 if self.clutter is None else len(self.clutter.names)
+        count = 0 if self.nuisances is None else len(self.nuisances.traces)
         return slice(self.dimension - count, self.dimension)
 
     @property
@@ -98,13 +105,18 @@ class EffectModel:
     @property
     def dimension(self) -> int:
         """d, parameters and nuisances: all that tuning may move."""
-        linear = 0 if self.linear is None else int(self.linear.shape[1])
+        linear = 0 if self.nuisances is None else self.nuisances.count
         return self.space.dimension + len(self.cases) + linear
 
+    @property
+    def linear(self) -> slice:
+        """Places of the linear nuisances in z."""
+        return slice(self.calibrations.stop, self.dimension)
+
     @cached_property
-    def linear(self) -> FloatArray | None:
-        """(M, k) change of the residual by each nuisance that is linear, None without any."""
-        return joined(self.sides, None if self.clutter is None else self.clutter.beside(self.members))
+    def weights(self) -> FloatArray:
+        """(l,) factor of each linear nuisance: none of the trace of a member."""
+        return np.zeros(0) if self.nuisances is None else self.nuisances.weights(self.members)
 
     @cached_property
     def prior_sd(self) -> FloatArray:
@@ -145,9 +157,9 @@ class EffectModel:
 
     def with_likelihood(self, likelihood: Likelihood) -> EffectModel:
         """The model against the same records with other errors."""
-        sides = None if self.sides is None else rewhitened(self.sides, self.likelihood, likelihood)
-        clutter = None if self.clutter is None else self.clutter.rewhitened(self.likelihood, likelihood)
-        return replace(self, likelihood=likelihood, sides=sides, clutter=clutter)
+        known = self.nuisances
+        after = None if known is None else known.rewhitened(self.likelihood, likelihood)
+        return replace(self, likelihood=likelihood, nuisances=after)
 
     def places(self) -> Iterator[tuple[Hypothesis, slice]]:
         """Each member with the places of its amplitudes in z."""
@@ -190,23 +202,61 @@ class EffectModel:
     def residual_of(self, axle: Axle, z: FloatArray) -> FloatArray:
         """(M,) of any axle, the nuisances as at z."""
         residual = self.likelihood.residual(self._read(axle, z), NO_CHARACTERISTICS)
-        if self.linear is None:
+        if self.nuisances is None:
             return residual
-        return np.asarray(residual + self.linear @ z[self.calibrations.stop : self.dimension])
+        return np.asarray(residual + self.nuisances.moved(self.weights * z[self.linear]))
 
-    def tuning_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
-        """(M, d) derivative of the residual to parameters (exact) and nuisances. residual: at z."""
-        axle = self._driven(self.with_effects(z), z)
-        expansion = linearize(axle, self.space, z[: self.parameters], solve=self.solutions)
-        parameters = self.likelihood.jacobian(expansion.curves, expansion.characteristics)
-        columns = [parameters, self._calibration_columns(z, residual)]
-        return np.hstack(columns if self.linear is None else [*columns, self.linear])
+    def jacobian(self, own: FloatArray) -> Jacobian:
+        """Of derivatives (M, p + m) to parameters, calibrations and amplitudes, and the linear nuisances."""
+        if self.nuisances is None:
+            return Jacobian(own)
+        return Jacobian(own, self.calibrations.stop, self.nuisances, self.weights)
 
-    def with_own_nuisances(self, columns: FloatArray) -> FloatArray:
-        """(M, d) derivatives of a model nearby, (M, d' <= d) or more, with this one's linear nuisances."""
-        if self.linear is None:
-            return columns[:, : self.dimension]
-        return np.hstack([columns[:, : self.calibrations.stop], self.linear])
+    def own_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
+        """(M, p + m) derivative of the residual to parameters, calibrations and amplitudes. residual: at z.
+
+        Exact to the parameters, and to amplitudes that move nothing but numbers of the axle.
+        """
+        axle = self._driven(self.axle_at(z), z)
+        moves = self._directions(z)
+        gradients = linearized_curves(
+            axle,
+            self.solutions(axle),
+            self.space,
+            z[: self.parameters],
+            {str(i): m for i, m in moves.items()},
+        )
+        exact = self.likelihood.jacobian(gradients, np.zeros((0, len(gradients.paths))))
+        amplitudes = np.empty((residual.size, z.size - self.dimension))
+        known = np.array(list(moves), dtype=int) - self.dimension
+        amplitudes[:, known] = exact[:, self.parameters :]
+        others = np.delete(np.arange(amplitudes.shape[1]), known)
+        amplitudes[:, others] = self.amplitude_columns(z, residual, self.dimension + others)
+        calibrations = self._calibration_columns(z, residual)
+        return np.hstack([exact[:, : self.parameters], calibrations, amplitudes])
+
+    def _directions(self, z: FloatArray) -> dict[int, dict[str, float]]:
+        """Place in z of an amplitude -> what it changes the axle's internal values by.
+
+        Without those that change anything else, its equations or what the rig reads, and those so small that
+        they stand for none: their derivatives are differences.
+        """
+        if any(EFFECTS[h.effect].on_rig for h in self.members):
+            return {}
+        here, out = self.axle_at(z), {}
+        for i in range(self.dimension, z.size):
+            moved = z.copy()
+            moved[i] += DIRECTION_STEP
+            there = self.axle_at(moved)
+            change = {
+                name: (value - here.values[name]) / DIRECTION_STEP
+                for name, value in there.values.items()
+                if value != here.values.get(name)
+            }
+            same = there.topology == here.topology and there.load_cases == here.load_cases
+            if same and change and there.values.keys() == here.values.keys():
+                out[i] = change
+        return out
 
     def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""

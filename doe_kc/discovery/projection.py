@@ -1,4 +1,7 @@
-"""Removes from residuals and columns what re-tuning can absorb, the priors of the parameters respected."""
+"""Inner products of residuals and their changes once re-tuning has taken what it can absorb.
+
+The priors of the parameters are respected.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,35 @@ from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csc_array
 
+from doe_kc.discovery.jacobian import Jacobian
+from doe_kc.discovery.thresholds import NULL_SHARE
 from doe_kc.ground.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class Changes:
+    """k changes of a residual, or the residual itself, with their products with the derivatives."""
+
+    rows: FloatArray
+    """(M, k)."""
+    pulled: FloatArray
+    """(n, k) J' rows: all that a projection takes of the derivatives, whatever it holds."""
+    is_residual: bool = False
+    """Whether they are the residual itself, to which the prior's rows belong."""
+
+    def scaled(self, factors: FloatArray) -> Changes:
+        """Linear combinations of the changes, by factors (k, l)."""
+        return Changes(self.rows @ factors, self.pulled @ factors)
+
+    def columns(self, places: NDArray[np.int_] | slice) -> Changes:
+        """Some of the changes."""
+        return Changes(self.rows[:, places], self.pulled[:, places], self.is_residual)
+
+
+def changes(jacobian: Jacobian, rows: FloatArray, *, is_residual: bool = False) -> Changes:
+    """rows: (M,) or (M, k). is_residual: whether they are the residual itself."""
+    own = rows.reshape(rows.shape[0], -1)
+    return Changes(own, jacobian.pulled(own), is_residual)
 
 
 @dataclass(frozen=True)
@@ -18,63 +49,75 @@ class Projection:
     """Orthogonal complement of all that a fitted model can do to first order, effects included.
 
     In the rows of the data, (M,), followed by those of the prior, (d,). Inner products of projected rows
-    are those of C^-1, C = S + J P P J' the covariance of the data with the parameters marginalized.
+    are those of C^-1, C = S + J P P J' the covariance of the data with the parameters marginalized. They
+    follow from products with the derivatives, a'b - (J'a)' H^-1 (J'b), without the projected rows.
     """
 
-    jacobian: FloatArray
-    """(M, n) derivative to all unknowns; not copied, however few of them may move."""
+    jacobian: Jacobian
+    """(M, n) derivative to all unknowns, however few of them may move."""
     prior_sd: FloatArray
     """(d,) standard deviations of the prior of what can be moved."""
     offset: FloatArray
     """(d,) of the fitted point from the prior's mean, in its standard deviations."""
     free: NDArray[np.int_]
     """(d,) columns of what can be moved; parameters held at a bound still count as free."""
-    gram: FloatArray | None = None
-    """(d, d) J'J + P^-2 where it is known."""
+    gram: FloatArray
+    """(d, d) H = J'J + P^-2."""
 
     @cached_property
     def _root(self) -> FloatArray:
-        """(d, d) lower Cholesky factor L of J'J + P^-2: [J; P^-1] L'^-1 is an orthonormal basis.
+        """(d, d) lower Cholesky factor L of H: [J; P^-1] L'^-1 is an orthonormal basis.
 
         The normal equations serve: the prior bounds their condition, and the factor takes a quarter of the
         time and none of the memory of a QR decomposition.
         """
-        gram = self.gram
-        if gram is None:
-            own = self.jacobian[:, self.free]
-            gram = own.T @ own + np.diag(self.prior_sd**-2.0)
-        return np.asarray(cholesky(gram, lower=True))
+        return np.asarray(cholesky(self.gram, lower=True))
 
-    def __call__(self, rows: FloatArray) -> FloatArray:
-        """(M + d, ...) of changes of the residual (M,) or (M, k)."""
-        return self._complement(rows, np.zeros((self.offset.size, *rows.shape[1:])))
+    def inner(self, one: Changes, other: Changes) -> FloatArray:
+        """(k, l) inner products of projected changes, or with the projected residual."""
+        product = one.rows.T @ other.rows - self._coordinates(one).T @ self._coordinates(other)
+        both = one.is_residual and other.is_residual
+        return np.asarray(product + float(self.offset @ self.offset) if both else product)
 
-    def residual(self, rows: FloatArray) -> FloatArray:
-        """(M + d,) of a residual (M,) itself; its square is the cost after re-tuning."""
-        return self._complement(rows, self.offset)
+    def gram_of(self, rows: Changes) -> FloatArray:
+        """(k, k) inner products of projected changes with each other."""
+        own = self._coordinates(rows)
+        product = rows.rows.T @ rows.rows - own.T @ own
+        return np.asarray(product + float(self.offset @ self.offset) if rows.is_residual else product)
 
-    def products(self, rows: csc_array, residual: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Inner products (k, k) of projected sparse changes (M, k), and (k,) of them with a residual (M,).
+    def squares(self, rows: Changes) -> FloatArray:
+        """(k,) squared lengths of projected changes; of the projected residual the cost after re-tuning.
 
-        Without the projected rows, which are dense.
+        0 where what is left is rounding.
         """
-        absorbed = self._coordinates((rows.T @ self.jacobian).T[self.free])
-        slope = self._coordinates(self._pulled(residual) + self.offset / self.prior_sd)
+        before = np.sum(rows.rows**2, axis=0) + float(self.offset @ self.offset) * rows.is_residual
+        left = before - np.sum(self._coordinates(rows) ** 2, axis=0)
+        return np.asarray(np.where(left > NULL_SHARE * before, left, 0.0))
+
+    def moves(self, rows: Changes) -> FloatArray:
+        """(d, k) by which what can be moved follows changes, in standard deviations of its prior."""
+        back = solve_triangular(self._root, self._coordinates(rows), lower=True, trans="T")
+        return np.asarray(-back / self.prior_sd[:, None])
+
+    def remaining(self, rows: Changes) -> FloatArray:
+        """(M, k) what re-tuning leaves of changes in the rows of the data."""
+        every = np.zeros((self.jacobian.size, rows.rows.shape[1]))
+        every[self.free] = self.prior_sd[:, None] * self.moves(rows)
+        return rows.rows + self.jacobian.moved(every)
+
+    def products(self, rows: csc_array, residual: Changes) -> tuple[FloatArray, FloatArray]:
+        """Inner products (k, k) of projected sparse changes (M, k), and (k,) of them with the residual."""
+        absorbed = self._triangular(self.jacobian.pulled(rows)[self.free])
         gram = (rows.T @ rows).toarray() - absorbed.T @ absorbed
-        return np.asarray(gram), np.asarray(rows.T @ residual - absorbed.T @ slope)
+        along = rows.T @ residual.rows - absorbed.T @ self._coordinates(residual)
+        return np.asarray(gram), np.asarray(along[:, 0])
 
-    def _pulled(self, rows: FloatArray) -> FloatArray:
-        """(d, ...) J' rows, of what can be moved."""
-        return np.asarray((self.jacobian.T @ rows)[self.free])
+    def _coordinates(self, rows: Changes) -> FloatArray:
+        """(d, k) in the orthonormal basis."""
+        pulled = rows.pulled[self.free]
+        return self._triangular(
+            pulled + (self.offset / self.prior_sd)[:, None] if rows.is_residual else pulled
+        )
 
-    def _coordinates(self, pulled: FloatArray) -> FloatArray:
-        """(d, ...) in the orthonormal basis, of [J; P^-1]' times rows."""
-        return np.asarray(solve_triangular(self._root, pulled, lower=True))
-
-    def _complement(self, rows: FloatArray, prior: FloatArray) -> FloatArray:
-        weight = (1.0 / self.prior_sd).reshape(-1, *[1] * (rows.ndim - 1))
-        coordinates = self._coordinates(self._pulled(rows) + weight * prior)
-        move = solve_triangular(self._root, coordinates, lower=True, trans="T")
-        every = np.zeros((self.jacobian.shape[1], *rows.shape[1:]))
-        every[self.free] = move
-        return np.concatenate([rows - self.jacobian @ every, prior - weight * move])
+    def _triangular(self, pulled: FloatArray) -> FloatArray:
+        return np.asarray(solve_triangular(self._root, pulled, lower=True, check_finite=False))

@@ -22,7 +22,7 @@ Arrays = Mapping[str, FloatArray]
 BYTES = 8
 """Size of a number in the store."""
 TABLE = "packed_results"
-FORMAT = "3"
+FORMAT = "4"
 """Format of what is stored: raise it with every change of what a result means, of how it is computed so far
 that its numbers differ, or of what is packed. Results of another format are not taken up, and computed
 anew."""
@@ -101,8 +101,9 @@ def fingerprint(model: EffectModel) -> str:
     axle = model.axle
     for text in (sorted(axle.values.items()), axle.topology, axle.load_cases, model.space, model.left_out):
         digest.update(repr(text).encode())
-    if model.linear is not None:
-        digest.update(np.ascontiguousarray(model.linear).tobytes())
+    if model.nuisances is not None:
+        digest.update(np.ascontiguousarray(model.nuisances.columns).tobytes())
+        digest.update(model.weights.tobytes())
     for member in model.members:
         digest.update(repr(member).encode())
     for curve in model.likelihood.curves:

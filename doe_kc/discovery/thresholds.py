@@ -86,6 +86,10 @@ its own."""
 AMPLITUDE_STEP = 0.001
 """typical sizes, step of amplitudes for their derivatives, forward differences. Measured on five effects:
 columns were off by 0.07 % at most, by 0.7 % at 0.01 and by 0.2 % at 0.00001."""
+DIRECTION_STEP = 1e-06
+"""typical sizes, step of amplitudes for the derivatives of the axle's numbers, from which those of the curves
+follow exactly. Rounding is a millionth of them, a compliance of a hundredth of its typical size bends by a
+ten-thousandth."""
 CALIBRATION_STEP = 0.1
 """standard deviations, step of the calibrations of inputs for their derivatives. They are linear far beyond
 it."""

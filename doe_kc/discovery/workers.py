@@ -52,34 +52,52 @@ class DiscoveryWorkers:
     ) -> list[Screened]:
         """Every hypothesis added to a fitted model, in their order. shapes: where each begins, see
         `screen`."""
-        base = fingerprint(fit.model)
-        begun: Sequence[FloatArray | None] = shapes or [None] * len(hypotheses)
-        own = [np.zeros(0) if shape is None else shape for shape in begun]
+        return self.screenings_beside([(fit, hypotheses)], shapes=shapes)[0]
+
+    def screenings_beside(
+        self,
+        fits: Sequence[tuple[Fit, Sequence[Hypothesis]]],
+        *,
+        shapes: Sequence[FloatArray] | None = None,
+    ) -> list[list[Screened]]:
+        """Hypotheses added to each of several fitted models, all at once. shapes: of all in their order."""
+        wanted = [(k, h) for k, (_, hypotheses) in enumerate(fits) for h in hypotheses]
+        begun: Sequence[FloatArray | None] = shapes or [None] * len(wanted)
+        bases = [fingerprint(fit.model) for fit, hypotheses in fits]
         keys = [
-            key_of("screen", base, fit.z, repr(h), shape) for h, shape in zip(hypotheses, own, strict=True)
+            key_of("screen", bases[k], fits[k][0].z, repr(h), np.zeros(0) if shape is None else shape)
+            for (k, h), shape in zip(wanted, begun, strict=True)
         ]
-        self._begun += len(hypotheses)
+        self._begun += len(wanted)
         out: dict[int, Screened] = {}
-        missing: list[int] = []
-        for i, (key, h) in enumerate(zip(keys, hypotheses, strict=True)):
+        for i, (key, (_, h)) in enumerate(zip(keys, wanted, strict=True)):
             known = self._cache.get(key)
-            if known is None:
-                missing.append(i)
-            else:
+            if known is not None:
                 out[i] = _unpacked(h, known)
         if out:
             self.watch("screening effects", len(out))
-        missing.sort(key=lambda i: -effort(hypotheses[i]))  # the long ones first, or one worker ends alone
-        parts = max(1, min(len(missing), CHUNKS * self._workers))
-        groups = [missing[k::parts] for k in range(parts) if missing[k::parts]]
-        tasks = [(fit, [(hypotheses[i], begun[i]) for i in part]) for part in groups]
+        groups = self._groups([i for i in range(len(wanted)) if i not in out], wanted)
+        tasks = [(fits[wanted[g[0]][0]][0], [(wanted[i][1], begun[i]) for i in g]) for g in groups]
         for at, results in self._run(_screen_many, tasks):
-            part = groups[at]
-            for i, result in zip(part, results, strict=True):
+            for i, result in zip(groups[at], results, strict=True):
                 self._cache.put(keys[i], _packed(result))
                 out[i] = result
-            self.watch("screening effects", len(part))
-        return [out[i] for i in range(len(hypotheses))]
+            self.watch("screening effects", len(groups[at]))
+        places = iter(range(len(wanted)))
+        return [[out[next(places)] for _ in hypotheses] for _, hypotheses in fits]
+
+    def _groups(self, missing: Sequence[int], wanted: Sequence[tuple[int, Hypothesis]]) -> list[list[int]]:
+        """Tasks of one model each, an even share of what is missing for each worker some times over.
+
+        The long ones first, or one worker ends alone.
+        """
+        out: list[list[int]] = []
+        for k in dict.fromkeys(wanted[i][0] for i in missing):
+            own = sorted((i for i in missing if wanted[i][0] == k), key=lambda i: -effort(wanted[i][1]))
+            share = CHUNKS * self._workers * len(own) / len(missing)
+            parts = max(1, min(len(own), round(share)))
+            out += [own[j::parts] for j in range(parts)]
+        return out
 
     def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
         """Fits from several starts, None where one has no equilibrium.
@@ -107,14 +125,15 @@ class DiscoveryWorkers:
     def held_out(self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
-        predictions: dict[int, HeldOut] = {}
+        predictions: dict[str, HeldOut] = {}
         self._begun += len(cases)
-        for i, result in self._run(
-            held_out, [(tuned, with_effects, with_discrepancy, case) for case in cases]
-        ):
-            predictions[i] = result
-            self.watch("load cases held out", 1)
-        return tuple(predictions[i] for i in range(len(cases)))
+        parts = min(len(cases), self._workers)  # each is sent three fits, of some 50 MB together
+        groups = [cases[k::parts] for k in range(parts)]
+        tasks = [(tuned, with_effects, with_discrepancy, group) for group in groups]
+        for _, results in self._run(_held_out_many, tasks):
+            predictions |= {r.load_case: r for r in results}
+            self.watch("load cases held out", len(results))
+        return tuple(predictions[case] for case in cases)
 
     def scan(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
         """Begins the generic scan at a model; what is returned waits for it.
@@ -146,6 +165,12 @@ def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]
     return [screen(fit, h, shape) for h, shape in starts]
 
 
+def _held_out_many(
+    tuned: Fit, with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
+) -> list[HeldOut]:
+    return [held_out(tuned, with_effects, with_discrepancy, case) for case in cases]
+
+
 def _scan(tuned: Fit, temper: float) -> Scan | None:
     try:
         return scan(tuned, temper=temper)
@@ -167,11 +192,10 @@ def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: 
 
 def _packed_fit(fit: Fit) -> Arrays:
     """Without what its model says of it, the derivatives to linear nuisances among that."""
-    linear = range(fit.model.calibrations.stop, fit.model.dimension)
     return {
         "z": fit.z,
         "residual": fit.residual,
-        "jacobian": np.delete(fit.jacobian, linear, axis=1),
+        "jacobian": fit.jacobian.own,
         "evaluations": np.array(float(fit.evaluations)),
         "converged": np.array(float(fit.converged)),
     }
@@ -182,10 +206,8 @@ def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
     if not known["z"].size:
         return None
     z, residual = known["z"], known["residual"]
-    own, at = known["jacobian"], model.calibrations.stop
-    parts = [own] if model.linear is None else [own[:, :at], model.linear, own[:, at:]]
     counts = int(known["evaluations"]), bool(known["converged"])
-    return Fit(model, z, residual, np.hstack(parts), cost_of(model, z, residual), *counts)
+    return Fit(model, z, residual, model.jacobian(known["jacobian"]), cost_of(model, z, residual), *counts)
 
 
 def _packed(screening: Screened) -> Arrays:

@@ -34,6 +34,8 @@ def summary(correlation: Correlation, assessment: Assessment | None = None) -> d
         "Stopped": correlation.run.stopped,
         "Time": f"{correlation.seconds:.1f} s",
     }
+    if correlation.twin is not None:
+        lines["Twin"] = correlation.twin.line
     return lines | {
         f"Beforehand{_number(i, len(correlation.steps))}": s for i, s in enumerate(correlation.steps)
     }

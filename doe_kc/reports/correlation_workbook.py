@@ -25,6 +25,7 @@ from doe_kc.reports.render.charts import add_bars, add_picture, chart_sheet
 from doe_kc.reports.render.workbook import TABLE_FIRST_ROW, lines_sheet, new_book, table_sheet, write_book
 from doe_kc.reports.style import BASELINE_COLOUR, FINAL_COLOUR
 from doe_kc.reports.table import four_digits
+from doe_kc.reports.twin_tables import twin_table
 
 CORRELATION_LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Characteristics: left wheel.",
@@ -40,8 +41,8 @@ CORRELATION_LEGEND = {
     "standard deviations of the target away.",
     "Distance": "(value - target) / sd of the target; empty for a target without error.",
     "Normalised": "1 + sign(target) (value - target) / sqrt(target² + 0.005): value / target away from zero.",
-    "sd of a parameter": "Standard deviation from the exact sensitivities at the final design, all variables "
-    "free together, prior from the bounds.",
+    "sd of a parameter": "Standard deviation from the exact sensitivities at the final design (of the twin "
+    "where an outside solver has one), all variables free together, prior from the bounds.",
     "Not visible": "The measurement does not halve what was known before it; the final value says nothing "
     "about the car.",
     "Curves": "RMS deviation from the measured mean curve of both wheels; noise is the RMS error of that "
@@ -61,8 +62,8 @@ def write_correlation_workbook(
     loops: Sequence[LoopWidth] = (),
     axle_picture: bytes | None = None,
 ) -> Path:
-    """Write sheets Summary, DNA, Axle, Characteristics, Parameters, Curves, Hysteresis, Evaluations, Rating
-    terms and Legend; Axle and Hysteresis where there is a picture and where there are loops.
+    """Write sheets Summary, DNA, Axle, Characteristics, Parameters, Curves, Twin, Hysteresis, Evaluations,
+    Rating terms and Legend; Axle, Twin and Hysteresis where there is a picture, a twin, and are loops.
 
     study: name in titles and page headers. date: as it shall stand in the summary. notes: further lines of
     the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
@@ -80,6 +81,8 @@ def write_correlation_workbook(
     _dna_chart(dna, table_sheet(book, characteristic_table(correlation), study), correlation)
     table_sheet(book, parameter_table(correlation), study)
     table_sheet(book, curve_table(correlation), study)
+    if correlation.twin is not None:
+        table_sheet(book, twin_table(correlation.twin), study)
     if loops:
         table_sheet(book, hysteresis_table(loops), study)
     table_sheet(book, evaluation_table(correlation), study)
@@ -118,6 +121,7 @@ def _summary_sheet(
     doubts = {
         "Status": assessment.status != "sound",
         "Constraints": not correlation.feasible,
+        "Twin": correlation.twin is not None and correlation.twin.status != "sound",
         **dict.fromkeys(remarks, True),
     }
     remark = "What the correlation reached, and what to know before using it."

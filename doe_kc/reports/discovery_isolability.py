@@ -81,10 +81,12 @@ def isolability(discovery: Discovery) -> Isolability:
     order = list(EFFECTS)
     stands = sorted(discovery.statuses, key=lambda s: (order.index(s.hypothesis.effect), s.hypothesis.name))
     changes = _changes(discovery)
-    remaining = discovery.fitted.tuning_projection(np.array([changes[s.hypothesis.name] for s in stands]).T)
-    length = np.linalg.norm(remaining, axis=0)
-    scaled = remaining / np.where(length > 0.0, length, 1.0)
-    correlation = np.clip(np.abs(scaled.T @ scaled), 0.0, 1.0)
+    fit = discovery.fitted
+    own = fit.changes(np.array([changes[s.hypothesis.name] for s in stands]).T)
+    length = np.sqrt(fit.tuning_projection.squares(own))
+    scale = np.where(length > 0.0, length, 1.0)
+    products = fit.tuning_projection.gram_of(own) / np.outer(scale, scale)
+    correlation = np.clip(np.abs(products), 0.0, 1.0)
     hidden = length < VISIBLE_LEVEL
     correlation[hidden, :] = correlation[:, hidden] = np.nan
     return Isolability(

@@ -8,8 +8,9 @@ from math import isfinite, nan
 from textwrap import shorten
 
 from doe_kc.correlation.answer_record import AnswerRecord, CaseGap, EffectWords
-from doe_kc.correlation.assessment import MISFIT, STATUS_LABELS, Assessment, inside
+from doe_kc.correlation.assessment import MISFIT, Assessment, inside
 from doe_kc.correlation.result import Correlation
+from doe_kc.correlation.status import STATUS_LABELS
 from doe_kc.ground.numbers import at_sd, signed, unit_words, with_sd
 from doe_kc.load_cases import CASE_ORDER, case_label
 from doe_kc.reports.axle_views import AxleView, correlation_view

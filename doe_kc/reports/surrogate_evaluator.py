@@ -66,6 +66,9 @@ def mean(formula, u):
     inner = rows @ (curvature * z)
     half = -0.5 * (curvature @ (z * z) + (rows * rows) @ curvature)
     terms = np.exp(half + inner)
+    if formula["matern"]:
+        distance = np.sqrt(np.maximum(-10.0 * (half + inner), 0.0))
+        terms = (1.0 + distance + distance**2 / 3.0) * np.exp(-distance)
     if formula["pinned"]:
         terms = terms - np.exp(half) * (1.0 + inner)
     return float(total + np.array(formula["weight"]) @ terms)
@@ -134,14 +137,16 @@ def _listed(formula: MeanFormula, block: int | None) -> dict[str, object]:
         "weight": formula.weight.tolist(),
         "rows": block,
         "pinned": formula.pinned,
+        "matern": formula.matern,
     }
 
 
 def write_book_evaluator(path: Path, saved: SavedSurrogate, formulas: list[MeanFormula]) -> Path:
     """Sheet Evaluator: values to type in, characteristics by live formulas; their numbers in other sheets.
 
-    Terms has a column an output and a row a design, Rows the designs, Numbers a column an output: level, then
-    slope, centre and curvature of every variable. RunError as `write_book`.
+    Terms has a column an output and a row a design, Distances alike for a Matérn kernel, Rows the designs,
+    Numbers a column an output: level, then slope, centre and curvature of every variable. RunError as
+    `write_book`.
     """
     book = new_book(f"Surrogate: {saved.study}")
     blocks, which = _row_blocks(formulas)
@@ -155,9 +160,9 @@ def write_book_evaluator(path: Path, saved: SavedSurrogate, formulas: list[MeanF
         for i, row in enumerate(block):
             for c, value in enumerate(row):
                 sheet.cell(c + 1, i + 1, float(value))
-    terms = book.create_sheet("Terms")
+    terms, distances = book.create_sheet("Terms"), book.create_sheet("Distances")
     for j, (formula, place) in enumerate(zip(formulas, which, strict=True)):
-        _put_terms(terms, j, saved.outputs[j].id, formula, place)
+        _put_terms(terms, distances, j, saved.outputs[j].id, formula, place)
     for j, known in enumerate(saved.outputs):
         r, column = FIRST + j, get_column_letter(j + 1)
         put(front, r, 8, clean(f"{known.id}"))
@@ -205,9 +210,12 @@ def _put_numbers(ws: Worksheet, j: int, name: str, formula: MeanFormula) -> None
         ws.cell(r, j + 1, float(value))
 
 
-def _put_terms(ws: Worksheet, j: int, name: str, formula: MeanFormula, block: int | None) -> None:
+def _put_terms(
+    ws: Worksheet, distances: Worksheet, j: int, name: str, formula: MeanFormula, block: int | None
+) -> None:
     """Every row's part of the sum, its weight as a number in its formula."""
-    ws.cell(1, j + 1, clean(name))
+    for sheet in (ws, distances):
+        sheet.cell(1, j + 1, clean(name))
     if block is None:
         return
     d, column = len(formula.centre), get_column_letter(j + 1)
@@ -216,7 +224,12 @@ def _put_terms(ws: Worksheet, j: int, name: str, formula: MeanFormula, block: in
     for i, weight in enumerate(formula.weight):
         at = get_column_letter(i + 1)
         row = f"'Rows {block + 1}'!${at}$1:${at}${d}"
-        term = f"EXP(-0.5*SUMPRODUCT({v},({z}-{row})^2))"
+        square = f"SUMPRODUCT({v},({z}-{row})^2)"
+        term = f"EXP(-0.5*{square})"
+        if formula.matern:
+            distances.cell(i + 2, j + 1, f"=SQRT(5*{square})")
+            s = f"Distances!{column}{i + 2}"
+            term = f"(1+{s}+{s}^2/3)*EXP(-{s})"
         if formula.pinned:
             inner = f"SUMPRODUCT({v},{z},{row})"
             term = f"({term}-EXP(-0.5*SUMPRODUCT({v},{z}^2+{row}^2))*(1+{inner}))"

@@ -16,6 +16,8 @@ from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.series import draw_series
 from doe_kc.reports.sheet import Sheet, sheet
 from doe_kc.reports.style import COLOUR_CYCLE, MARKERS, PALETTE
+from doe_kc.reports.surrogate_learning import learning_curves
+from doe_kc.reports.surrogate_responses import response_surfaces, slices
 from doe_kc.reports.surrogate_tables import left_out_predictions, left_out_sd
 from doe_kc.reports.words import POINTS
 from doe_kc.surrogate_models.models import SURROGATES
@@ -197,7 +199,8 @@ def write_surrogate_figures(
     workers: int | None = None,
     pictures: PictureFormat = PNG,
 ) -> list[Path]:
-    """Pictures `predicted_against_true`, `residuals` and `model_quality`; returns their paths.
+    """Pictures `predicted_against_true`, `residuals`, `model_quality`, `slices`, `response_surfaces` and
+    `learning_curve`; returns their paths.
 
     Raises RunError when the folder cannot be written.
     """
@@ -205,5 +208,10 @@ def write_surrogate_figures(
         (folder / "predicted_against_true", partial(predicted_against_true, report, study=study)),
         (folder / "residuals", partial(residuals, report, study=study)),
         (folder / "model_quality", partial(model_quality, report, study=study)),
+        (folder / "slices", partial(slices, report, study=study)),
+        (folder / "response_surfaces", partial(response_surfaces, report, study=study)),
     ]
+    if report.curve is not None:
+        draw = partial(learning_curves, report, report.curve, study=study)
+        jobs.append((folder / "learning_curve", draw))
     return draw_series(jobs, workers, pictures=pictures)

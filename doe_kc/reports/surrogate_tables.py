@@ -12,7 +12,6 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.table import Column, SheetLayout, Table, TerminalCell, Value, three_digits
-from doe_kc.surrogate_models.calibration import coverage_interval
 from doe_kc.surrogate_models.models import SURROGATES
 from doe_kc.surrogate_models.report import SurrogateReport
 from doe_kc.surrogate_models.study import Judged
@@ -37,9 +36,9 @@ class QualityRow:
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Between which the calibrated coverage is with 95 % confidence, counted on so few designs."""
-        low, high = coverage_interval(self.fit.covered[self.index], len(self.fit.held.residual))
-        return float(low), float(high)
+        """Between which the calibrated coverage of new designs is with 95 % confidence."""
+        low, high = self.fit.limits
+        return float(low[self.index]), float(high[self.index])
 
     @property
     def quality(self) -> Quality:

@@ -13,32 +13,32 @@ from scipy import sparse
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
+from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.compiled import compiled_kernel
 from doe_kc.solver.kernel import Buffered, Kernel, kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, generate, library_of
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""
-BLOCK_FLAGS = "-O0"
-"""Long functions: at -O1 they take three times as long to compile and no less to run."""
+SINGULAR_EQUILIBRIUM = "singular equilibrium: no sensitivity exists"
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
 def blocks(topology: Topology) -> Mapping[str, ca.Function]:
-    """Derivative functions by block name: R_x is d(residual)/dx, Y_c d(outputs)/dc, and so on.
+    """Derivative functions by block name, of those to x, u and z: R_x is d(residual)/dx, and so on.
 
     Compiled where that can be done: interpreted they take four times as long.
     """
-    if os.environ.get(COMPILE_VARIABLE) == "0":
-        return interpreted_blocks(topology)
-    names = _names(kernel(topology).nz > 0)
+    names = [n for n in block_names(kernel(topology).nz > 0) if n.endswith(("_x", "_u", "_z")) and n != "R_x"]
 
     def sources() -> dict[str, str]:
         functions = interpreted_blocks(topology)
-        return {_function(name): generate(functions[name]) for name in names}
+        return {part: text for name in names for part, text in c_sources(functions[name]).items()}
 
+    if os.environ.get(COMPILE_VARIABLE) == "0":
+        return interpreted_blocks(topology)
     try:
-        own = str(library_of(topology, "blocks", sources, {_function(name): BLOCK_FLAGS for name in names}))
+        own = str(library_of(topology, "blocks", sources, {}))
         jacobian = str(compiled_kernel(topology).path)
     except CompileError:
         return interpreted_blocks(topology)
@@ -46,11 +46,10 @@ def blocks(topology: Topology) -> Mapping[str, ca.Function]:
     return out | {"R_x": ca.external("jacobian", jacobian)}
 
 
-def _names(states: bool) -> list[str]:
-    """Blocks but R_x, which the kernel has. states: whether there are friction states z."""
-    parts, by = ("R", "Y", "Z"), ("x", "c", "u", "z")
-    count = slice(None, None if states else -1)
-    return ["constants", *(n for p in parts[count] for d in by[count] if (n := f"{p}_{d}") != "R_x")]
+def block_names(states: bool) -> list[str]:
+    """Names of all blocks, in the order of sensitivity.c. states: whether there are friction states z."""
+    plain = ["R_x", "R_c", "R_u", "Y_x", "Y_c", "Y_u"]
+    return [*plain, *(("R_z", "Y_z", "Z_x", "Z_c", "Z_u", "Z_z") if states else ()), "constants"]
 
 
 def _function(name: str) -> str:
@@ -67,8 +66,8 @@ def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
     by = {"x": eq.x, "c": eq.c, "u": eq.u, "z": eq.z}
     out = {
         name: ca.Function(_function(name), symbols, [ca.jacobian(of[name[0]], by[name[2]])])
-        for name in _names(k.nz > 0)
-        if name != "constants"
+        for name in block_names(k.nz > 0)
+        if name not in ("R_x", "constants")
     }
     out["R_x"] = k.functions["jacobian"]
     out["constants"] = ca.Function(_function("constants"), [eq.p], [ca.jacobian(eq.constants, eq.p)])
@@ -141,4 +140,4 @@ def equilibrium_change(k: Kernel, matrix: FloatArray, right: FloatArray) -> Floa
     try:
         return np.asarray(np.linalg.solve(matrix / scale, -right / scale))
     except np.linalg.LinAlgError:
-        raise np.linalg.LinAlgError("singular equilibrium: no sensitivity exists") from None
+        raise np.linalg.LinAlgError(SINGULAR_EQUILIBRIUM) from None

@@ -9,22 +9,22 @@ from functools import lru_cache
 from itertools import accumulate
 from pathlib import Path
 
-import casadi as ca
 import numpy as np
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, kernel
-from doe_kc.solver.library import generate, library_of
+from doe_kc.solver.library import handwritten, library_of
 from doe_kc.solver.newton import NewtonSettings
 
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
 DRIVER = Path(__file__).with_name("driver.c")
-INT, LONG, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_longlong, ctypes.c_double, ctypes.c_void_p
+INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
-    *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, INT, INT, LONG, LONG, INT, INT, ADDRESS,
+    *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, INT, INT, INT, INT, ADDRESS,
     INT, *(ADDRESS,) * 4, INT, *(ADDRESS,) * 9, INT, ADDRESS, ADDRESS,
 )  # fmt: skip
 """Of `march` in driver.c, in its order."""
@@ -36,8 +36,6 @@ class CompiledKernel:
 
     path: Path
     library: ctypes.CDLL
-    size_iw: int
-    size_w: int
 
     def march(
         self,
@@ -81,7 +79,7 @@ class CompiledKernel:
             *(kernel.nx, active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
             *(jacobian_rows, jacobian_cols, tail, scale, c_in),
             *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
-            *(self.size_iw, self.size_w, start.guess, len(kernel.slips), slips),
+            *(start.guess, len(kernel.slips), slips),
             *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
             *(*out[:3], iterations_out, *out[3:], counts.ctypes.data),
             *(capacity, rows.ctypes.data, iterations_out + n * whole.itemsize),
@@ -121,16 +119,12 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
 
     def sources() -> dict[str, str]:
         functions = kernel(topology).functions
-        generated = {name: generate(functions[name]) for name in (*MARCHED, "constants")}
-        return generated | {"driver": DRIVER.read_text()}
+        out = {"driver": handwritten(DRIVER)}
+        for name in (*MARCHED, "constants"):
+            out |= c_sources(functions[name])
+        return out
 
     path = library_of(topology, KERNEL_LIBRARY, sources, COMPILER_FLAGS)
-    functions = [ca.external(name, str(path)) for name in MARCHED]
     library = ctypes.CDLL(str(path))
     library.march.argtypes = MARCH_ARGUMENTS
-    return CompiledKernel(
-        path,
-        library,
-        max(f.sz_iw() for f in functions),
-        max(f.sz_w() for f in functions),
-    )
+    return CompiledKernel(path, library)

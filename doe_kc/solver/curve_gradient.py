@@ -84,10 +84,11 @@ def _half_widths(
 
 
 def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:
-    """(m, p) rows (n, p) on `grid`, linear between its points."""
+    """(..., m, p) rows (..., n, p) on `grid`, linear between its points."""
     right = np.clip(np.searchsorted(grid, wanted), 1, grid.size - 1)
     share = (wanted - grid[right - 1]) / (grid[right] - grid[right - 1])
-    return np.asarray(rows[right - 1] + share[:, None] * (rows[right] - rows[right - 1]))
+    low = rows[..., right - 1, :]
+    return np.asarray(low + share[:, None] * (rows[..., right, :] - low))
 
 
 def characteristic_gradients(

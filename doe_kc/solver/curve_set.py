@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
+from doe_kc.axle.topology import TOPOLOGY_CACHE
 from doe_kc.curves import ANGLES, RESPONSE_UNITS, SIDES, TYRE_LOAD, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import CaseSolution, Solution
@@ -35,10 +38,9 @@ def case_curves(solution: Solution, case: CaseSolution) -> CaseCurves:
     grid = rising(case)
     mean, half = mean_and_half_width(case, [b.y for b in case.branches])
     zero = int(np.argmin(np.abs(grid)))
-    names = solution.output_names
-    columns = [names.index(f"{response}@{side}") for response in RESPONSE_UNITS for side in SIDES]
+    columns = _response_columns(solution.output_names)
     shape = (len(RESPONSE_UNITS), len(SIDES), grid.size)
-    absolute, halves = mean.T[columns].reshape(shape), half.T[columns].reshape(shape)
+    absolute, halves = mean[:, columns].T.reshape(shape), half[:, columns].T.reshape(shape)
     changes = absolute - absolute[:, :, zero : zero + 1]
     means = {
         response: absolute[i] if response == TYRE_LOAD else changes[i]
@@ -51,6 +53,12 @@ def case_curves(solution: Solution, case: CaseSolution) -> CaseCurves:
         means,
         dict(zip(RESPONSE_UNITS, halves, strict=True)),
     )
+
+
+@lru_cache(maxsize=TOPOLOGY_CACHE)
+def _response_columns(output_names: tuple[str, ...]) -> list[int]:
+    """Columns of the curves' responses, left and right."""
+    return [output_names.index(f"{response}@{side}") for response in RESPONSE_UNITS for side in SIDES]
 
 
 def curve_set(solution: Solution) -> CurveSet:

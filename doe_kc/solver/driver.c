@@ -5,8 +5,6 @@
 #include <string.h>
 
 typedef long long integer;
-typedef int (*generated)(const double **, double **, integer *, double *, int);
-
 int residual(const double **, double **, integer *, double *, int);
 int jacobian(const double **, double **, integer *, double *, int);
 int outputs(const double **, double **, integer *, double *, int);
@@ -32,8 +30,7 @@ typedef struct {
     const double *scale, *c;
     double tol, refresh;                /* force residual in N; contraction that asks for a new Jacobian */
     int max_iterations, max_halvings;
-    integer *iw;
-    double *w, *r, *trial_r, *x_trial, *d, *nz_jac, *lu;
+    double *r, *trial_r, *x_trial, *d, *nz_jac, *lu;
     int *pivot;
     int have_lu;
     long long counts[4];                /* residuals, Jacobians, factorizations, Newton steps */
@@ -42,7 +39,7 @@ typedef struct {
 static void evaluate(problem *p, const double *x, const double *u, const double *z, double *r) {
     const double *arg[4] = {x, p->c, u, z};
     double *result[1] = {r};
-    residual(arg, result, p->iw, p->w, 0);
+    residual(arg, result, 0, 0, 0);
     p->counts[0]++;
 }
 
@@ -56,23 +53,15 @@ static double norm(const problem *p, const double *r) {
     return worst;
 }
 
-static int factor(problem *p, const double *x, const double *u, const double *z) {
-    const double *arg[4] = {x, p->c, u, z};
-    double *result[1] = {p->nz_jac};
-    int m = p->active;
-    double *a = p->lu;
-    jacobian(arg, result, p->iw, p->w, 0);
-    p->counts[1]++;
-    p->counts[2]++;
-    memset(a, 0, sizeof(double) * m * m);
-    for (int k = 0; k < p->nnz; k++)
-        if (p->row[k] < m && p->col[k] < m) a[p->row[k] + m * p->col[k]] = p->nz_jac[k] / p->scale[p->row[k]];
+/* LU of a (m, m), column by column, rows swapped; 0, or 1 where it is singular. */
+FOR_THIS_PROCESSOR
+static int eliminate(int m, double *a, int *pivot) {
     for (int k = 0; k < m; k++) {
         int best = k;
-        double *ck = a + m * k;
+        double *restrict ck = a + m * k;
         for (int i = k + 1; i < m; i++)
             if (fabs(ck[i]) > fabs(ck[best])) best = i;
-        p->pivot[k] = best;
+        pivot[k] = best;
         if (!(fabs(ck[best]) > 0.0)) return 1;
         if (best != k)
             for (int j = 0; j < m; j++) {
@@ -83,30 +72,49 @@ static int factor(problem *p, const double *x, const double *u, const double *z)
         double inverse = 1.0 / ck[k];
         for (int i = k + 1; i < m; i++) ck[i] *= inverse;
         for (int j = k + 1; j < m; j++) {
-            double *cj = a + m * j, f = cj[k];
+            double *restrict cj = a + m * j, f = cj[k];
             if (f != 0.0)
                 for (int i = k + 1; i < m; i++) cj[i] -= f * ck[i];
         }
     }
-    p->have_lu = 1;
     return 0;
 }
 
-static void solve(const problem *p, const double *r, double *d) {
-    int m = p->active;
-    const double *a = p->lu;
-    for (int i = 0; i < m; i++) d[i] = r[i] / p->scale[i];
+FOR_THIS_PROCESSOR
+static void substitute(int m, const double *restrict a, const int *pivot, double *restrict d) {
     for (int k = 0; k < m; k++) {
-        double t = d[p->pivot[k]];
-        d[p->pivot[k]] = d[k];
+        double t = d[pivot[k]];
+        d[pivot[k]] = d[k];
         d[k] = t;
     }
-    for (int k = 0; k < m; k++)
-        for (int i = k + 1; i < m; i++) d[i] -= a[i + m * k] * d[k];
-    for (int k = m - 1; k >= 0; k--) {
-        d[k] /= a[k + m * k];
-        for (int i = 0; i < k; i++) d[i] -= a[i + m * k] * d[k];
+    for (int k = 0; k < m; k++) {
+        double f = d[k];
+        for (int i = k + 1; i < m; i++) d[i] -= a[i + m * k] * f;
     }
+    for (int k = m - 1; k >= 0; k--) {
+        double f = d[k] /= a[k + m * k];
+        for (int i = 0; i < k; i++) d[i] -= a[i + m * k] * f;
+    }
+}
+
+static int factor(problem *p, const double *x, const double *u, const double *z) {
+    const double *arg[4] = {x, p->c, u, z};
+    double *result[1] = {p->nz_jac};
+    int m = p->active;
+    double *a = p->lu;
+    jacobian(arg, result, 0, 0, 0);
+    p->counts[1]++;
+    p->counts[2]++;
+    memset(a, 0, sizeof(double) * m * m);
+    for (int k = 0; k < p->nnz; k++)
+        if (p->row[k] < m && p->col[k] < m) a[p->row[k] + m * p->col[k]] = p->nz_jac[k] / p->scale[p->row[k]];
+    p->have_lu = !eliminate(m, a, p->pivot);
+    return !p->have_lu;
+}
+
+static void solve(const problem *p, const double *r, double *d) {
+    for (int i = 0; i < p->active; i++) d[i] = r[i] / p->scale[i];
+    substitute(p->active, p->lu, p->pivot, d);
 }
 
 /* Whether a fresh Newton step neither moves the axle nor improves a residual that is small already. */
@@ -231,7 +239,7 @@ static int slips_back(problem *p, int slips, const int *slip, const double *x, c
    between: with friction, `passed` rows of step, share, u, x, z of every equilibrium, at most `capacity`. */
 int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
           const int *tail_control, const double *scale, const double *c, double tol, double refresh,
-          int max_iterations, int max_halvings, integer size_iw, integer size_w, int guess, int slips, const int *slip,
+          int max_iterations, int max_halvings, int guess, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
           int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
           int *iterations_out, double *level_out, double *end, long long *counts,
@@ -241,13 +249,11 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, *u_on, snap = 0.0, wish = 1.0;
     int points = known < HISTORY ? known : HISTORY, failed = 0, coordinates = 0;
     double finest = ldexp(1.0, -max_halvings) * (1.0 + 1e-9);
-    size_t doubles = size_w + 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
+    size_t doubles = 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
     memory = malloc(sizeof(double) * doubles);
-    p.iw = malloc(sizeof(integer) * (size_iw + 1));
     p.pivot = malloc(sizeof(int) * n);
-    if (!memory || !p.iw || !p.pivot) { free(memory); free(p.iw); free(p.pivot); return -1; }
+    if (!memory || !p.pivot) { free(memory); free(p.pivot); return -1; }
     double *m = memory;
-    p.w = m; m += size_w;
     p.r = m; m += n;
     p.trial_r = m; m += n;
     p.x_trial = m; m += n;
@@ -338,7 +344,7 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
                 ++*passed;
                 const double *arg[4] = {x, c, u_next, z};
                 double *result[1] = {z_out + (size_t)step * nz};
-                state_update(arg, result, p.iw, p.w, 0);
+                state_update(arg, result, 0, 0, 0);
                 memcpy(z, z_out + (size_t)step * nz, sizeof(double) * nz);
             }
             if (points == HISTORY) {
@@ -359,7 +365,7 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
             memcpy(x_out + (size_t)step * n, x, sizeof(double) * n);
             const double *arg[4] = {x, c, u_next, z};
             double *result[1] = {y_out + (size_t)step * ny};
-            outputs(arg, result, p.iw, p.w, 0);
+            outputs(arg, result, 0, 0, 0);
         }
     }
     end[0] = hs[points - 1];
@@ -369,7 +375,6 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     memcpy(end + 2 + nu + nz, hx + (points - 1) * n, sizeof(double) * n);
     memcpy(counts, p.counts, sizeof(p.counts));
     free(memory);
-    free(p.iw);
     free(p.pivot);
     return failed;
 }

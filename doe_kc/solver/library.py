@@ -26,7 +26,8 @@ DEFAULT_FLAGS = "-O1"
 COMPILE_TIMEOUT = 600.0
 """s; of a machine that does much else."""
 PACKAGE = Path(__file__).parents[1]
-ORIGINS = ("solver/**/*.py", "solver/*.c", "axle/*.py", "curves.py")
+PROCESSOR_HEADER = Path(__file__).with_name("processor.h")
+ORIGINS = ("solver/**/*.py", "solver/*.[ch]", "axle/*.py", "curves.py")
 """Sources of the package that generated code follows from."""
 
 
@@ -173,11 +174,9 @@ def fingerprint(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
-def generate(function: ca.Function) -> str:
-    """C source of a CasADi function."""
-    generator = ca.CodeGenerator(f"{function.name()}_part.c", {"with_header": False})
-    generator.add(function)
-    return str(generator.dump())
+def handwritten(file: Path) -> str:
+    """C source of a file of the package, with what chooses a processor's vector instructions before it."""
+    return PROCESSOR_HEADER.read_text() + file.read_text()
 
 
 def _compile(compiler: str, scratch: Path, sources: dict[str, str], flags: Mapping[str, str]) -> Path:

@@ -152,9 +152,9 @@ def _solve_case(
             BranchSolution(
                 name,
                 inputs,
-                np.vstack([y0, path.y]),
-                np.vstack([x0, path.x]),
-                np.vstack([z0, path.z]),
+                np.concatenate([y0[None], path.y]),
+                np.concatenate([x0[None], path.x]),
+                np.concatenate([z0[None], path.z]),
                 u,
                 path,
             )
@@ -180,5 +180,5 @@ def _start(
         return Start(inputs[:1], static.x[None, :], u[0], static.z), origin
     seeds = np.arange(SEEDS, 0, -1)
     s = np.concatenate([done[0].input[seeds], inputs[:1]])
-    x = np.vstack([done[0].x[seeds], static.x])
+    x = np.concatenate([done[0].x[seeds], static.x[None]])
     return Start(s, x, u[0], static.z), origin

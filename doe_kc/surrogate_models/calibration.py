@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import final
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import stdtr, stdtrit
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.interface import Fitted, LeftOut
@@ -14,6 +14,10 @@ from doe_kc.surrogate_models.validation import NOMINAL, NOMINAL_WIDTH
 
 LEAST_VARIANCE_RATIO = 1e-12
 """Variance ratio below which a residual of zero against a variance of zero counts as in order."""
+DEPENDENCE = 2.0
+"""Standard errors of the factor's logarithm that were found on 500 separate designs, over what n independent
+errors would have: left-out errors share most of their designs, and the model in use is another one than those
+of the folds (0.55, 0.3 and 0.2 at 50, 100 and 200 designs instead of 0.25, 0.18 and 0.12)."""
 
 
 def calibration_factors(left_out: LeftOut) -> FloatArray:
@@ -52,15 +56,20 @@ def coverage_after(left_out: LeftOut) -> FloatArray:
     return np.asarray((ratio <= student_width(n - 1) ** 2 * others).mean(axis=0))
 
 
-def coverage_interval(coverage: FloatArray, rows: int) -> tuple[FloatArray, FloatArray]:
-    """(m,) lower and upper 95 % limit of a coverage counted on `rows` rows.
+def coverage_interval(left_out: LeftOut) -> tuple[FloatArray, FloatArray]:
+    """(m,) lower and upper 95 % limit of the coverage on new designs.
 
-    Reference: E. B. Wilson, J. Am. Stat. Assoc. 22, 1927.
+    The factor is a mean of n ratios; its logarithm has the standard error s = sd / (mean sqrt(n)), taken
+    `DEPENDENCE` times, and an interval that is exp(+-z s / 2) too wide covers Student's t within so much of
+    its width.
     """
-    square = NOMINAL_WIDTH**2 / rows
-    middle = (coverage + square / 2.0) / (1.0 + square)
-    half = np.sqrt(square * (coverage * (1.0 - coverage) + square / 4.0)) / (1.0 + square)
-    return middle - half, middle + half
+    ratio = _standardised(left_out)
+    rows = len(ratio)
+    error = DEPENDENCE * ratio.std(axis=0) / np.maximum(ratio.mean(axis=0), LEAST_VARIANCE_RATIO)
+    off = np.exp(0.5 * NOMINAL_WIDTH * error / np.sqrt(rows))
+    width, freedom = student_width(rows), max(rows / 2.0, 1.0)
+    low, high = (2.0 * stdtr(freedom, width * factor) - 1.0 for factor in (1.0 / off, off))
+    return np.asarray(low), np.asarray(high)
 
 
 @final

@@ -2,7 +2,8 @@
 
 mean(u) = level + slope'(u - centre) + sum over rows i of weight_i g_i(u), with z = u - centre, q = z'Vz,
 g_i = exp(r_i - (q + q_i) / 2), r_i = z'Vz_i, and where value and slope at the centre are known ("pinned")
-g_i = exp(r_i - (q + q_i) / 2) - exp(-(q + q_i) / 2) (1 + r_i).
+g_i = exp(r_i - (q + q_i) / 2) - exp(-(q + q_i) / 2) (1 + r_i). Of a Matérn kernel ("matern") it is
+g_i = (1 + s + s² / 3) exp(-s), s = sqrt(5 (q + q_i - 2 r_i)).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.calibration import Calibrated
 from doe_kc.surrogate_models.interface import Fitted
+from doe_kc.surrogate_models.kernel import matern
 from doe_kc.surrogate_models.models.gp import FittedGaussianProcess
 from doe_kc.surrogate_models.models.rbf import FittedRadialBasis
 from doe_kc.surrogate_models.ordinary_kriging import OrdinaryKriging
@@ -38,6 +40,7 @@ class MeanFormula:
     rows: FloatArray
     weight: FloatArray
     pinned: bool = False
+    matern: bool = False
 
     def mean(self, u: FloatArray) -> FloatArray:
         """(p,) of points (p, d)."""
@@ -45,6 +48,8 @@ class MeanFormula:
         inner = (z * self.curvature) @ self.rows.T
         half = -0.5 * (((z * z) @ self.curvature)[:, None] + (self.rows**2) @ self.curvature)
         terms = np.exp(half + inner)
+        if self.matern:
+            terms, _ = matern(np.maximum(-2.0 * (half + inner), 0.0))
         if self.pinned:
             terms = terms - np.exp(half) * (1.0 + inner)
         return np.asarray(self.level + z @ self.slope + terms @ self.weight)
@@ -79,6 +84,7 @@ def _process(fitted: FittedGaussianProcess) -> list[MeanFormula]:
         MeanFormula(
             float(level[j] + scale[j] * constant[j]), slope[j] + scale[j] * p.slope[j], fitted.centre,
             p.kernel.curvature[j], p.z, scale[j] * p.kernel.bend[j] * p.alpha[j], p.kernel.pinned,
+            p.kernel.matern,
         )
         for j in range(fitted.outputs)
     ]  # fmt: skip

@@ -4,7 +4,8 @@ k(x, x') = c + z'Wz + b E(x, x') + nugget [x = x'],  z = x - centre,  W, V diago
 E = exp(r - (q + q') / 2) with r = z'Vz', q = z'Vz: the squared exponential of length-scales 1 / sqrt(V).
 Where value and slope at the centre are known ("pinned"), E is that kernel conditioned on both being zero
 there: exp(-(q + q') / 2) (exp(r) - 1 - r), and W = c = 0.
-Reference: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, 2006, ch. 4 and 9.4.
+Where it is "matern", E = (1 + s + s² / 3) exp(-s) with s = sqrt(5 (q + q' - 2 r)): Matérn's, 5/2.
+Reference: C. E. Rasmussen, C. K. I. Williams, Gaussian Processes for Machine Learning, 2006, eq. 4.17, 9.4.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ class CovarianceKernel:
 
     relevance: (m, d) diagonal of W, the variance of each linear coefficient. curvature: (m, d) diagonal of V,
     inverse squared length-scales. bend, constant, nugget: (m,) variances b, c and of the training rows.
+    pinned, matern: which E it is; not both.
     """
 
     relevance: FloatArray
@@ -30,6 +32,7 @@ class CovarianceKernel:
     constant: FloatArray
     nugget: FloatArray
     pinned: bool = False
+    matern: bool = False
 
     def scaled(self, factor: FloatArray) -> CovarianceKernel:
         """The same functions, of outputs with variances times `factor` (m,); the nugget stays."""
@@ -64,12 +67,23 @@ def bend(kernel: CovarianceKernel, z: FloatArray, other: FloatArray) -> Bend:
     other_square = kernel.curvature @ (other * other).T
     inner = weighted_inner(kernel.curvature, z, other)
     half = -0.5 * (square[:, :, None] + other_square[:, None, :])
+    if kernel.matern:
+        value, slope = matern(np.maximum(-2.0 * (half + inner), 0.0))
+        return Bend(value, 2.0 * slope, -2.0 * slope)
     full = np.exp(np.minimum(half + inner, 0.0))
     if not kernel.pinned:
         return Bend(full, -full, full)
     damping = np.exp(half)
     value = full - damping * (1.0 + inner)
     return Bend(value, -value, full - damping)
+
+
+def matern(square: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """E of squared distances q in length-scales, and dE/dq = -5/6 (1 + s) exp(-s)."""
+    distance = np.sqrt(5.0 * square)
+    decay = np.exp(-distance)
+    slope = (-5.0 / 6.0) * (1.0 + distance) * decay
+    return decay * (1.0 + distance + distance * distance / 3.0), slope
 
 
 def bend_at_itself(kernel: CovarianceKernel, z: FloatArray) -> tuple[FloatArray, FloatArray]:

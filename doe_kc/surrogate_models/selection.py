@@ -13,19 +13,26 @@ from doe_kc.surrogate_models.interface import Fitted, LeftOut
 
 ERROR_MARGIN = 0.1
 """Share by which the left-out squared error may exceed the best model's for the sake of simplicity."""
-EXACT = 1e-4
-"""1 - Q2 below which a model counts as exact, and the simplest such model is taken."""
+EXACT = 1e-6
+"""1 - Q2 below which a model counts as exact, and the simplest such model is taken: a thousandth of the
+spread, less than any rig resolves."""
 
 
 def choose(q2: Mapping[str, FloatArray], complexity: Mapping[str, int]) -> tuple[str, ...]:
-    """Model id of each output (m): the simplest whose 1 - Q2 is within the margin of the best.
+    """Model id of each output (m): the simplest whose squared error is within the margin of the best, or
+    whose 1 - Q2 is at most EXACT.
 
-    q2: model -> (m,). Where no model has a Q2 (an output that does not vary), the simplest.
+    The error is the geometric mean of the output's own 1 - Q2 and of the model's over all outputs: some
+    dozens of left-out designs of one output alone take a worse model for the better one in every fourth case
+    (50 designs: error 0.085 instead of 0.089). q2: model -> (m,). Where no model has a Q2 (an output that
+    does not vary), the simplest.
     """
     order = sorted(q2, key=lambda name: complexity[name])
     missed = np.array([np.nan_to_num(1.0 - q2[name], nan=0.0) for name in order])
-    allowed = np.maximum((1.0 + ERROR_MARGIN) * missed.min(axis=0), EXACT)
-    return tuple(order[int(k)] for k in np.argmax(missed <= allowed, axis=0))
+    logarithm = np.log(np.maximum(missed, EXACT))
+    score = 0.5 * (logarithm + logarithm.mean(axis=1, keepdims=True))
+    allowed = (score <= score.min(axis=0) + np.log1p(ERROR_MARGIN)) | (missed <= EXACT)
+    return tuple(order[int(k)] for k in np.argmax(allowed, axis=0))
 
 
 @final

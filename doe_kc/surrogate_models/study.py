@@ -15,7 +15,12 @@ from doe_kc.campaign.processes import available_cores
 from doe_kc.ground.errors import DoeKcError, InputError, RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogate_models.calibration import Calibrated, calibration_factors, coverage_after
+from doe_kc.surrogate_models.calibration import (
+    Calibrated,
+    calibration_factors,
+    coverage_after,
+    coverage_interval,
+)
 from doe_kc.surrogate_models.folds import fold, fold_rows
 from doe_kc.surrogate_models.interface import Fitted, LeftOut, SurrogateModel
 from doe_kc.surrogate_models.models import SURROGATES, make
@@ -36,8 +41,8 @@ Progress = Callable[[int], None]
 class Judged:
     """A model of all outputs. held: residuals of rows it was not fitted to, by refitting where its own would
     be too small, and the variance that the model in use has for these rows left out. factors: (m,) of
-    calibration. covered: (m,) coverage with them, counted on the same rows. seconds: of one fit, of a
-    processor.
+    calibration. covered: (m,) coverage with them, counted on the same rows. limits: (m,) each, between which
+    the coverage of new designs is with 95 % confidence. seconds: of one fit, of a processor.
     """
 
     fitted: Fitted
@@ -45,6 +50,7 @@ class Judged:
     quality: Quality
     factors: FloatArray
     covered: FloatArray
+    limits: tuple[FloatArray, FloatArray]
     seconds: float
 
 
@@ -216,5 +222,11 @@ def _judged(parts: list[_Part], x: FloatArray, y: FloatArray, folds: int, seed: 
     # what they promise says nothing of what it promises (at 50 designs: 90 % covered instead of 94 %).
     held = LeftOut(residual, own.variance)
     return Judged(
-        whole.fitted, held, quality(y, held), calibration_factors(held), coverage_after(held), whole.seconds
+        whole.fitted,
+        held,
+        quality(y, held),
+        calibration_factors(held),
+        coverage_after(held),
+        coverage_interval(held),
+        whole.seconds,
     )

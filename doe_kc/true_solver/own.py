@@ -6,10 +6,11 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import with_values
+from doe_kc.axle.parameters import ParameterMap, topology_with
 from doe_kc.axle.topology import Topology
 from doe_kc.effects import observed
 from doe_kc.solver.curve_set import curve_set
@@ -59,16 +60,26 @@ class AxleSolver:
         In this process, so that forked workers inherit the equations and none compiles for itself.
         """
         asked = Counter(self.asked)
-        asked.update(with_values(self.axle, values).topology for values in designs)
+        asked.update(topology_with(self.axle, values) for values in designs)
         compiled = {self.axle.topology} | {t for t, n in asked.items() if n >= COMPILE_FROM}
         for topology in compiled - self.compiled:
             library_for(topology, None)
         return replace(self, compiled=frozenset(compiled), asked=dict(asked))
 
+    @cached_property
+    def _maps(self) -> dict[tuple[str, ...], ParameterMap]:
+        return {}
+
+    def _map(self, paths: tuple[str, ...]) -> ParameterMap:
+        """Of the paths, which the designs of a campaign have in common."""
+        if paths not in self._maps:
+            self._maps[paths] = ParameterMap(self.axle, paths)
+        return self._maps[paths]
+
     def evaluate(self, values: Values) -> Outcome:
         """All load cases of the axle; InputError for an unknown path or a value that no axle can have."""
         started = time.perf_counter()
-        changed = with_values(self.axle, values)
+        changed = self._map(tuple(values)).axle(tuple(values.values()))
         solution = solve(changed, throw=False, compiled=None if changed.topology in self.compiled else False)
         seconds = time.perf_counter() - started
         if solution.failure is not None:

@@ -28,10 +28,12 @@ from doe_kc.reports.page.answer import files_there, write_answer_page
 from doe_kc.reports.page.links import link_pages
 from doe_kc.reports.page.simulation import write_simulation_page
 from doe_kc.reports.render.json import table_records
+from doe_kc.reports.twin_tables import twin_entry
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discovery_document import effect_entry
 from doe_kc.workflow.gap import answer_gap
+from doe_kc.workflow.twin_discovery import DiscoveryGround
 from doe_kc.workflow.write_correlation import AXLE, axle_note
 
 
@@ -39,7 +41,7 @@ from doe_kc.workflow.write_correlation import AXLE, axle_note
 class Answer:
     """discovery, adoption: None where none was made; with an outside solver a discovery is advice and not
     adopted. gap: None without curves from the solver. further: what speaks against the axle beyond what the
-    correlation itself shows."""
+    correlation itself shows. ground: what a discovery through the twin of an outside model worked on."""
 
     correlation: Correlation
     assessment: Assessment
@@ -47,6 +49,7 @@ class Answer:
     adoption: Adoption | None
     gap: GapRecord | None
     further: tuple[Objection, ...] = ()
+    ground: DiscoveryGround | None = None
 
 
 def answered(
@@ -56,9 +59,12 @@ def answered(
     discovery: Discovery | None,
     adoption: Adoption | None,
     remarks: tuple[str, ...] = (),
+    ground: DiscoveryGround | None = None,
 ) -> Answer:
-    """Judge the axle that was correlated. remarks: what else speaks against calling it sound."""
-    gap = answer_gap(study, measurement, correlation, discovery)
+    """Judge the axle that was correlated. remarks: what else speaks against calling it sound. ground: of the
+    discovery, where it was made on the twin of an outside model; the gap is then that of the outside model,
+    by the records as they are."""
+    gap = answer_gap(study, measurement, correlation, discovery if ground is None else None)
     further = [*_objections(study, discovery, adoption), *(Objection(r) for r in remarks)]
     if gap is not None and gap.final > gap.nominal * 1.001 and gap.final > MISFIT:
         further.append(
@@ -69,7 +75,7 @@ def answered(
             )
         )
     assessment = assess(correlation, misfit=None if gap is None else gap.final, further=further)
-    return Answer(correlation, assessment, discovery, adoption, gap, tuple(further))
+    return Answer(correlation, assessment, discovery, adoption, gap, tuple(further), ground)
 
 
 def _objections(study: Study, discovery: Discovery | None, adoption: Adoption | None) -> Iterator[Objection]:
@@ -151,6 +157,7 @@ def summary_document(
         "verdict": record.verdict,
         "effects": record.effects,
         "characteristics": table_records(characteristic_table(correlation)),
+        **({"twin": twin_entry(correlation.twin)} if correlation.twin is not None else {}),
         "gap": None if record.gap is None else record.gap.model_dump(),
         "rating": correlation.rating,
         "mean_improvement_percent": correlation.mean_improvement,

@@ -31,6 +31,7 @@ from doe_kc.workflow.correlation_problem import given_outcome, study_problem
 from doe_kc.workflow.influence import StudyInfluence
 from doe_kc.workflow.measure import Reduced, reduce_records
 from doe_kc.workflow.run_files import RunFiles
+from doe_kc.workflow.twin_discovery import DiscoveryGround, twin_ground
 
 log = logging.getLogger("doe_kc")
 
@@ -41,10 +42,21 @@ DIFFERENT = (
     "What the model lacks was not looked for: the study's axle file does not describe the car of the outside "
     "model, whose characteristics differ."
 )
+TWIN_ADVICE = (
+    "What the outside model lacks was looked for through its twin, what differs between the two taken off "
+    "the records, as advice: the outside model was correlated as it is."
+)
+NO_TWIN = (
+    "What the outside model lacks was not looked for: its twin does not change as it does, or one of them "
+    "gave no curves."
+)
 ADVICE = (
     "What the model lacks was looked for on the package's own model of the study's axle file, as advice: the "
     "outside model was correlated as it is."
 )
+
+
+HANDED_OVER = "the design handed over"
 
 
 @dataclass(frozen=True)
@@ -102,7 +114,7 @@ def run_chain(study: Study, steps: Steps, files: RunFiles) -> Chain:
 
     def discover(of: Study, records: Measurement) -> Discovery:
         discovery = steps.discover(of, records)
-        files.discovery(discovery, records)
+        files.discovery(discovery, DiscoveryGround(of, records))
         return discovery
 
     def correlate(of: Study, records: Reduced, adoption: Adoption | None) -> Correlation:
@@ -125,7 +137,7 @@ def write_chain_files(chain: Chain, files: RunFiles) -> None:
     files.reduction(chain.reduced)
     files.influence(chain.influence)
     if answer.discovery is not None:
-        files.discovery(answer.discovery, measurement)
+        files.discovery(answer.discovery, answer.ground or DiscoveryGround(files.study, measurement))
     files.correlation(answer, chain.record, measurement)
     files.comparison(chain.comparison)
     files.answer(answer, chain.record, measurement)
@@ -143,13 +155,27 @@ def follow_chain(study: Study, reduced: Reduced, discover: Discover, correlate: 
 
 
 def _with_outside_solver(study: Study, reduced: Reduced, discover: Discover, correlate: Correlate) -> Answer:
-    """The outside model stays as it is; where the package's own says the same, discovery is advice."""
+    """The outside model stays as it is, discovery is advice: through its twin, or without one where the
+    package's own model says the same."""
+    if study.twin is not None:
+        return _with_twin(study, reduced, discover, correlate)
     discovery, remarks = None, (DIFFERENT,)
     if describes_the_same(study, reduced):
         own = replace(study, solver=SolverOptions())
         discovery, remarks = discover(own, reduced.measurement), (ADVICE,)
     correlation = correlate(study, reduced, None)
     return answered(study, reduced.measurement, correlation, discovery, None, remarks)
+
+
+def _with_twin(study: Study, reduced: Reduced, discover: Discover, correlate: Correlate) -> Answer:
+    """Correlate first: what differs between the outside model and its twin is best known where the car is."""
+    correlation = correlate(study, reduced, None)
+    best = correlation.best.outcome
+    discovery, ground, remarks = None, None, (NO_TWIN,)
+    if correlation.twin is not None and correlation.twin.usable and best.curves is not None:
+        ground = twin_ground(study, reduced.measurement, best, correlation.values, HANDED_OVER)
+        discovery, remarks = discover(ground.study, ground.records), (TWIN_ADVICE,)
+    return answered(study, reduced.measurement, correlation, discovery, None, remarks, ground)
 
 
 def describes_the_same(study: Study, reduced: Reduced) -> bool:

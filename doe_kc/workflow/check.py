@@ -25,12 +25,13 @@ from doe_kc.workflow.check_targets import (
 )
 from doe_kc.workflow.rig_checks import axle_curves, rig_findings
 from doe_kc.workflow.setup import setup_differences
+from doe_kc.workflow.twin_check import twin_differences
 
 
 @dataclass(frozen=True)
 class Fault:
     """where: file, record or key. kind: study, solver, method, variables, targets, sampling, surrogates,
-    measurement, record, setup, out, or that of a finding on the records. message: the whole sentence.
+    measurement, record, setup, twin, out, or that of a finding on the records. message: the whole sentence.
     """
 
     where: str
@@ -216,6 +217,8 @@ def _check_store(study: Study) -> None:
 def _warnings(study: Study, manifest: Manifest | None) -> Iterator[Fault]:
     for sentence in axle_warnings(study.axle):
         yield Fault(str(study.axle_path), "axle", sentence)
+    for sentence in twin_differences(study):
+        yield _fault("twin", sentence)
     if manifest is not None:
         for sentence in setup_differences(study.axle, manifest):
             yield _fault("setup", sentence)
@@ -245,6 +248,7 @@ def check_lines(check: StudyCheck) -> list[str]:
     return [
         f"study        {study.name} ({study.source})",
         f"axle         {study.axle.name} ({study.axle_path})",
+        *([f"twin         {study.twin.name} ({study.twin_path})"] if study.twin is not None else []),
         f"load cases   {', '.join(study.axle.load_cases)}",
         f"effects      {', '.join(study.axle.effects) or 'none'}",
         f"parameters   {len(study.parameters)} selected",

@@ -17,6 +17,7 @@ from doe_kc.correlation.posterior import ParameterPosterior, posterior
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation, conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.result import Correlation
+from doe_kc.correlation.twin_agreement import twin_agreement
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.parameter_influence.selection_result import Selection
@@ -37,8 +38,8 @@ from doe_kc.workflow.set_first import set_first
 
 
 def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
-    """Exact first-order expansion at a design; None where there is none."""
-    if not problem.exact:
+    """First-order expansion at a design, of the twin beside an outside solver; None where there is none."""
+    if not problem.has_slopes:
         return None
     try:
         return problem.linearize(design.point)
@@ -79,9 +80,9 @@ NEAREST_WITH_SLOPES = 16
 def sampled(campaign: Campaign, problem: Problem) -> list[tuple[Candidate, Outcome]]:
     """Stored designs of sampling campaigns that lie in the problem's space, those nearest the start.
 
-    Beside exact slopes they say little, and surrogates slow down with the cube of their number.
+    Beside slopes they say little, and surrogates slow down with the cube of their number.
     """
-    start, most = problem.space.start, NEAREST_WITH_SLOPES if problem.exact else NEAREST
+    start, most = problem.space.start, NEAREST_WITH_SLOPES if problem.has_slopes else NEAREST
     designs = [
         (candidate, record.key)
         for record in campaign.store.records("sample:*")
@@ -182,7 +183,9 @@ def correlate(
             until_feasible=options.until == "feasible",
             watch=watch,
         )
-        at_best = expansion_at(problem, run.evaluated[run.best])
+        twin = twin_agreement(problem, run.evaluated, run.evaluated[run.best])
+        believed = twin is None or twin.usable
+        at_best = expansion_at(problem, run.evaluated[run.best]) if believed else None
     return Correlation(
         method=chosen.id,
         problem=problem,
@@ -193,6 +196,7 @@ def correlate(
         seconds=time.perf_counter() - started,
         relaxation=relaxed,
         given=None if given is None else problem.judged(-1, Candidate(space.start, "given axle"), given),
+        twin=twin,
     )
 
 

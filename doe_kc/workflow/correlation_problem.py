@@ -11,6 +11,7 @@ from doe_kc.correlation.linearization import Linearization, linearize
 from doe_kc.correlation.problem import Problem
 from doe_kc.correlation.reach import Relaxation, answers_alike, relaxation
 from doe_kc.correlation.search_targets import all_measured, misfit_term, relaxed_places, search_targets
+from doe_kc.correlation.twin import Twin
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.measurement import Measurement
@@ -93,6 +94,7 @@ def study_problem(
         likelihood=build_likelihood(axle, measurement, targets, only_targets=only_targets),
         windows=study.windows,
         exact=not study.solver.command,
+        twin=None if study.twin is None else Twin(study.twin, study.windows),
     )
 
 
@@ -118,15 +120,16 @@ def sought_problem(
     """The problem with the targets of its search, and the targets out of reach (None: not known).
 
     start: answer to the design that the run starts from. reference: answer of the axle whose distances hold,
-    where that is another one. Without sensitivities of the study's solver those of the package's own serve,
-    where it answers alike.
+    where that is another one. Without sensitivities of the study's solver those of the twin serve, and say
+    what is out of reach where it answers alike; without a twin those of the package's own, where it does.
     """
     curves = start.curves is not None
     wide = all_measured(problem.targets, curves=curves)
     before = reference or start
     baseline = score(wide, before.characteristics, before.curves)
     expansion = start_expansion(problem, start)
-    relaxed = None if expansion is None else reach_of(problem, start, expansion)
+    sure = expansion is not None and (problem.twin is None or twin_alike(problem, start))
+    relaxed = reach_of(problem, start, expansion) if expansion is not None and sure else None
     likelihood = problem.likelihood.without(relaxed_places(problem.targets, relaxed))
     sought = search_targets(
         problem.targets,
@@ -141,11 +144,11 @@ def sought_problem(
 
 
 def start_expansion(problem: Problem, start: Outcome) -> Linearization | None:
-    """First-order expansion at the start; None where there is none. For an outside solver that of the
-    package's own, if both say the same of the start."""
+    """First-order expansion at the start; None where there is none. For an outside solver that of its twin,
+    without one that of the package's own, if both say the same of the start."""
     space = problem.space
     try:
-        if problem.exact:
+        if problem.has_slopes:
             return problem.linearize(space.start)
         own = AxleSolver(problem.axle, problem.windows).evaluate(space.values(space.start))
         if not answers_alike(problem.targets, own, start):
@@ -153,6 +156,14 @@ def start_expansion(problem: Problem, start: Outcome) -> Linearization | None:
         return linearize(problem.axle, space, space.start, problem.windows)
     except NotConverged:
         return None
+
+
+def twin_alike(problem: Problem, start: Outcome) -> bool:
+    """Whether the twin says of the start what the outside solver says."""
+    twin = problem.twin
+    return twin is not None and answers_alike(
+        problem.targets, twin.answer(problem.space, problem.space.start), start
+    )
 
 
 def reach_of(problem: Problem, start: Outcome, expansion: Linearization) -> Relaxation:

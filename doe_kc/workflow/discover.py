@@ -45,7 +45,7 @@ def discover_study(
     if study.solver.command:
         raise InputError(
             f"{study.source}: discovery needs exact sensitivities, which an outside solver does not give; "
-            "remove [solver] command."
+            "compare its twin with the records, or remove [solver] command."
         )
     axle = recorded(study.axle, measurement)
     library = effect_library(axle, exclude)
@@ -66,7 +66,10 @@ def discover_study(
         progress(words, done, total)
 
     with processes(count) as executor, ResultCache(study.discovery_store) as cache:
-        return discover(model, library, DiscoveryWorkers(executor, cache, counted, workers=count))
+        discovery = discover(model, library, DiscoveryWorkers(executor, cache, counted, workers=count))
+    if study.discovery_remark:
+        discovery = replace(discovery, sentences=(*discovery.sentences, study.discovery_remark))
+    return discovery
 
 
 def recorded(axle: Axle, measurement: Measurement) -> Axle:

@@ -18,6 +18,7 @@ from doe_kc.correlation.record import (
     run_document,
 )
 from doe_kc.correlation.result import Correlation
+from doe_kc.correlation.twin_agreement import twin_agreement
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.files import read_bytes
 from doe_kc.ground.output import write_json
@@ -89,6 +90,8 @@ def recall(study: Study, reduced: Reduced | None, folder: Path) -> Recalled:
     given = None if axle is study.axle else given_outcome(study)
     problem, relaxed = sought_problem(study, plain, answers[0][1], given)
     correlation = replace(recalled(record, problem, answers), relaxation=relaxed)
+    run = correlation.run
+    correlation = replace(correlation, twin=twin_agreement(problem, run.evaluated, run.evaluated[run.best]))
     if given is not None:
         correlation = replace(
             correlation, given=problem.judged(-1, Candidate(space.start, "given axle"), given)

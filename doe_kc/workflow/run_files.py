@@ -17,6 +17,7 @@ from doe_kc.workflow.compare import write_comparison
 from doe_kc.workflow.influence import StudyInfluence, write_influence
 from doe_kc.workflow.measure import Reduced, write_reduced
 from doe_kc.workflow.reload_correlation import write_chain
+from doe_kc.workflow.twin_discovery import DiscoveryGround
 from doe_kc.workflow.write_correlation import write_correlation
 from doe_kc.workflow.write_discovery import write_discovery
 
@@ -47,10 +48,10 @@ class RunFiles:
         folder = self.study.out / "influence"
         self._keep(lambda: write_influence(self.study, influence, folder, workers=self.workers))
 
-    def discovery(self, discovery: Discovery, measurement: Measurement) -> None:
+    def discovery(self, discovery: Discovery, ground: DiscoveryGround) -> None:
         """What the axle lacks, in `discover`."""
-        folder = self.study.out / "discover"
-        self._keep(lambda: write_discovery(self.study, discovery, measurement, folder, workers=self.workers))
+        folder, records = self.study.out / "discover", ground.records
+        self._keep(lambda: write_discovery(ground.study, discovery, records, folder, workers=self.workers))
 
     def correlation(self, answer: Answer, record: AnswerRecord, measurement: Measurement) -> None:
         """The correlated axle, in `correlate`; run.json before the rest, so that `report` can mend that."""

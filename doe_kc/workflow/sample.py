@@ -90,6 +90,7 @@ def study_design(study: Study, *, method: str | None, n: int | None, extend: boo
         levels=options.levels,
         table=study.folder / options.table if options.table is not None else None,
         existing=np.array([point for point, _ in stored]) if stored else None,
+        constraints=[constraint.build() for constraint in options.constraint],
     )
     return _joined(study, stored, new) if stored else new
 
@@ -117,13 +118,22 @@ def run_sample(
     workers: int | None = None,
     scheduler: str | None = None,
     retry_failed: bool = False,
+    keep_curves: bool = True,
     progress: Callable[[int], None] = lambda _: None,
 ) -> SampleResult:
-    """Every design of the sample evaluated, by the study's solver into the study's store."""
+    """Every design of the sample evaluated, by the study's solver into the study's store.
+
+    keep_curves: False stores the characteristics of new designs alone.
+    """
     started = time.perf_counter()
     solver = solver_for(study.axle, study.solver, study.windows, study.folder)
     with Campaign(
-        solver, study.store, workers=workers, scheduler=scheduler, retry_failed=retry_failed
+        solver,
+        study.store,
+        workers=workers,
+        scheduler=scheduler,
+        retry_failed=retry_failed,
+        keep_curves=keep_curves,
     ) as campaign:
         outcomes = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
     return SampleResult(design, tuple(outcomes), campaign.runs, time.perf_counter() - started)

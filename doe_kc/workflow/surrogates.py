@@ -25,17 +25,26 @@ from doe_kc.reports.render.csv import table_frame
 from doe_kc.reports.render.terminal import table_lines
 from doe_kc.reports.surrogate_evaluator import write_evaluator
 from doe_kc.reports.surrogate_figures import write_surrogate_figures
+from doe_kc.reports.surrogate_learning import learning_document, learning_lines, learning_table
 from doe_kc.reports.surrogate_workbook import write_surrogate_workbook
 from doe_kc.study import Study
 from doe_kc.surrogate_models.designs import Designs, designs_in_space
 from doe_kc.surrogate_models.influence import agreement, free_variables, surrogate_changes
+from doe_kc.surrogate_models.learning_curve import learning_curve
 from doe_kc.surrogate_models.models import SURROGATES, make
 from doe_kc.surrogate_models.models.gp import FirstOrderTrend
 from doe_kc.surrogate_models.models.gp_slopes import SlopeProcess
 from doe_kc.surrogate_models.report import SurrogateReport
 from doe_kc.surrogate_models.saved import save_surrogate
 from doe_kc.surrogate_models.shares import total_shares
-from doe_kc.surrogate_models.study import VALIDATION_DESIGNS, default_models, fit_study, number_of_tasks
+from doe_kc.surrogate_models.study import (
+    VALIDATION_DESIGNS,
+    default_folds,
+    default_models,
+    fit_study,
+    model_of,
+    number_of_tasks,
+)
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.workflow.predict import saved_surrogate
 
@@ -148,6 +157,16 @@ def run_surrogates(
         trend=plan.trend,
     )
     model, space = fitted.model, study.space
+    curve = learning_curve(
+        {name: model_of(name, plan.trend) for name in fitted.models},
+        fitted.chosen,
+        fitted.x,
+        fitted.y,
+        q2=fitted.of_chosen({name: judged.quality.q2 for name, judged in fitted.models.items()}),
+        folds=study.surrogates.folds or default_folds(len(fitted.x)),
+        seed=study.seed,
+        workers=workers,
+    )
     changes = surrogate_changes(model, space)
     reference = one_at_a_time_changes(study, plan.designs, workers=workers)
     return SurrogateReport(
@@ -159,6 +178,8 @@ def run_surrogates(
         reference=reference,
         agreement=agreement(changes, reference),
         targets=dict(targets or {}),
+        goal=study.surrogates.goal,
+        curve=curve,
     )
 
 
@@ -193,7 +214,7 @@ def write_surrogates(
     study: Study, report: SurrogateReport, folder: Path, *, workers: int | None = None
 ) -> list[Path]:
     """surrogates.xlsx, surrogate.npz for `predict`, evaluators, CSV tables (quality, predictions, influence,
-    shares) and figures; their paths."""
+    shares, learning curve) and figures; their paths."""
     book = write_surrogate_workbook(
         folder / "surrogates.xlsx", report, study=study.name, date=date.today().isoformat()
     )
@@ -203,6 +224,8 @@ def write_surrogates(
         "influence": tables.matrix_frame(report, report.changes),
         "shares": tables.matrix_frame(report, report.shares),
     }
+    if report.curve is not None:
+        frames["learning_curve"] = table_frame(learning_table(report, report.curve))
     csv = [write_csv(folder / f"{name}.csv", frame) for name, frame in frames.items()]
     pictures = write_surrogate_figures(
         report, folder, study=study.name, workers=workers, pictures=study.pictures
@@ -218,7 +241,8 @@ def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
     """`{"designs", "failed", "elsewhere", "chosen": {characteristic: model}, "models": {model: {"seconds",
     "characteristics": {characteristic: {"q2", "rmse", "unit", "coverage", "calibrated_coverage",
     "calibrated_low", "calibrated_high", "sharpness"}}}}, "skipped": {model: reason}, "influence":
-    {characteristic: {parameter: change}}, "shares", "agreement"}`.
+    {characteristic: {parameter: change}}, "shares", "agreement", "goal", "designs_for_goal": {characteristic:
+    {"designs", "low", "high", ...}}}`; the last is empty where half the designs are too few.
     """
     ids = [c.id for c in report.designs.characteristics]
     return {
@@ -234,6 +258,8 @@ def surrogates_document(report: SurrogateReport) -> dict[str, Any]:
         "influence": tables.matrix_document(report, report.changes),
         "shares": tables.matrix_document(report, report.shares),
         "agreement": tables.agreement_document(report),
+        "goal": report.goal,
+        "designs_for_goal": learning_document(report),
     }
 
 
@@ -242,6 +268,7 @@ def surrogate_lines(report: SurrogateReport) -> list[str]:
     lines = table_lines(tables.chosen_table(report))
     lines += [f"{name}: {_average(report, name)}" for name in report.fitted.models]
     lines += [f"{name} left out: {reason}" for name, reason in report.fitted.skipped.items()]
+    lines += learning_lines(report)
     r = report.agreement.correlation
     if np.isfinite(r).any():
         median, least = np.nanmedian(r), np.nanmin(r)

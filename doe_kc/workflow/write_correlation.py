@@ -26,6 +26,7 @@ from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
 from doe_kc.reports.table import Table
+from doe_kc.reports.twin_tables import twin_entry, twin_table
 from doe_kc.study import Study
 
 CORRELATION_TABLES: Mapping[str, Callable[[Correlation], Table[Any]]] = {
@@ -77,6 +78,11 @@ def write_correlation(
             for name, of in CORRELATION_TABLES.items()
         ),
         write_columns(folder / "rating_terms.csv", term_columns(correlation)),
+        *(
+            [write_columns(folder / "twin.csv", table_columns(twin_table(correlation.twin)))]
+            if correlation.twin is not None
+            else ()
+        ),
         *(
             [write_columns(folder / "hysteresis.csv", table_columns(hysteresis_table(loops)))]
             if loops
@@ -138,7 +144,7 @@ def correlation_document(
 
     characteristics: every one with a target; low, high: the constraint interval, where the study sets none
     that of equations 5.1 and 5.2; held, reachable: as in `CharacteristicRow`. parameters: sd is null at a
-    bound, where `inward` tells how far inside the value may lie (68 %).
+    bound, where `inward` tells how far inside the value may lie (68 %). twin: beside an outside model.
     """
     verdict, parameters = assessment or assess(correlation), parameter_table(correlation)
     return {
@@ -151,6 +157,7 @@ def correlation_document(
         "mean_improvement_percent": correlation.mean_improvement,
         "characteristics": table_records(characteristic_table(correlation)),
         "parameters": dict(zip((r.path for r in parameters.rows), table_records(parameters), strict=True)),
+        **({"twin": twin_entry(correlation.twin)} if correlation.twin is not None else {}),
         "axle": str(axle_path),
         "seconds": correlation.seconds,
         "stopped": correlation.run.stopped,

@@ -29,9 +29,11 @@ def test_every_column_is_on_the_page() -> None:
 
 
 def test_the_options_on_the_page_are_taken() -> None:
-    (text,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
-    options = SamplingOptions.model_validate(tomllib.loads(text)["sampling"])
+    plain, constrained = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+    options = SamplingOptions.model_validate(tomllib.loads(plain)["sampling"])
     assert options == SamplingOptions(n=200, table="designs.csv")
+    (constraint,) = SamplingOptions.model_validate(tomllib.loads(constrained)["sampling"]).constraint
+    assert str(constraint.build()) == "2 <= +1 ROB.z -1 RIB.z <= 5"
 
 
 def test_the_python_on_the_page_runs(

@@ -73,6 +73,13 @@ def test_a_sample_and_the_same_again(tmp_path: Path) -> None:
     assert list(table["status"]) == ["ok"] * 6 and len(set(table["LLF.z"])) == 6
     assert table["vertical.ride_rate"].mean() == pytest.approx(span["mean"])
 
+    slim = tmp_path / "slim"
+    succeeds("sample", study, "--workers", 1, "--curves", "none", "--out", slim)
+    without = pd.read_csv(slim / "sample" / "designs.csv")
+    pd.testing.assert_frame_equal(without.drop(columns="seconds"), table.drop(columns="seconds"))
+    (small,), (large,) = ((f / "store").glob("*.sqlite") for f in (slim, study / "out"))
+    assert small.stat().st_size < large.stat().st_size / 2
+
     again = succeeds("sample", study, "--n", 6, "--export", "csv")
     assert "0 run, 6 already there" in again.out
     more = succeeds("sample", study, "--method", "one_at_a_time", "--seed", 3, "--workers", 2)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.axle import with_values
+from doe_kc.axle.parameters import internal_gradient
 from doe_kc.characteristics import reduce_all
-from doe_kc.correlation.linearization import linearize
+from doe_kc.correlation.linearization import linearize, linearized_curves
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
@@ -32,3 +33,20 @@ def test_at_a_rigid_strut_the_derivative_is_the_one_sided_one() -> None:
     moved = np.abs(differences) > 0.01
     assert moved.sum() >= 10
     np.testing.assert_allclose(exact[moved], differences[moved], rtol=1e-7)
+
+
+def test_a_direction_of_internal_values_is_the_path_that_moves_them() -> None:
+    """Per unit of the parameter, where a variable's column is per unit of its place between the bounds."""
+    space = build_space(nominal(), VariableOptions(use=["spring.rate", "ROB.z"]), "test")
+    there = with_values(nominal(), space.values(space.start))
+    directions = {
+        "rate": internal_gradient(there, "spring.rate"),
+        "height": internal_gradient(there, "ROB.z"),
+    }
+    curves = linearized_curves(there, solve(there), space, space.start, directions)
+    order = [curves.paths.index(path) for path in ("spring.rate", "ROB.z")]
+    assert curves.paths[2:] == ("rate", "height")
+    slopes = space.slopes(space.start)[order]
+    for case in curves.cases.values():
+        for columns in case.values():
+            np.testing.assert_allclose(columns[..., 2:] * slopes, columns[..., order], atol=1e-12)

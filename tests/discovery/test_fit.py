@@ -9,9 +9,9 @@ import pytest
 from scipy.stats import multivariate_normal, norm
 
 from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.discovery.fit import Fit, _secant, chord_fit, cost_of, fit, known_columns
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, known_columns
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.search import tune
 from doe_kc.discovery.thresholds import FIT_DECREASE
 from tests.discovery.cases import library, model
 
@@ -28,10 +28,7 @@ def test_residual_and_its_derivatives_agree(with_hub: Fit) -> None:
     rng = np.random.default_rng(2)
     step = 1e-4 * rng.standard_normal(z.size) * model.prior_sd
     change = model.residual(z + step) - model.residual(z - step)
-    jacobian = np.hstack(
-        [model.tuning_columns(z, with_hub.residual), model.amplitude_columns(z, with_hub.residual)]
-    )
-    expected = 2.0 * jacobian @ step
+    expected = 2.0 * model.own_columns(z, with_hub.residual) @ step
     assert np.linalg.norm(change - expected) < 0.01 * np.linalg.norm(expected)
 
 
@@ -66,7 +63,7 @@ def test_evidence_is_that_of_the_linear_gaussian_model() -> None:
         used = np.ones(rows, dtype=bool)
 
     small = Small(nominal.axle, nominal.space, nominal.likelihood)
-    found = Fit(small, z, residual, jacobian, cost_of(small, z, residual), 1, True)
+    found = Fit(small, z, residual, Jacobian(jacobian), cost_of(small, z, residual), 1, True)
     covariance = np.eye(rows) + (jacobian * prior**2) @ jacobian.T
     exact = multivariate_normal(np.zeros(rows), covariance).logpdf(data)
     assert found.evidence == pytest.approx(exact - rows * norm.logpdf(0.0), abs=1e-8)
@@ -105,7 +102,7 @@ def test_evidence_integrates_what_a_bound_holds_back_along_its_half_line() -> No
         z = start + bounded_step(hessian, slope, low - start, np.full(count, np.inf))
         z[0] = max(z[0], low[0])
         residual = data + jacobian @ (z - nominal.centre)
-        return Fit(bounded, z, residual, jacobian, cost_of(bounded, z, residual), 1, True)
+        return Fit(bounded, z, residual, Jacobian(jacobian), cost_of(bounded, z, residual), 1, True)
 
     open_, held = np.full(count, -np.inf), np.full(count, -np.inf)
     held[0] = bound
@@ -122,7 +119,7 @@ def test_derivatives_that_are_known_are_not_taken_anew(with_hub: Fit) -> None:
     new = np.isnan(known).all(axis=0)
     assert new.sum() == len(rod.sizes) and new[-len(rod.sizes) :].all()
     back = known_columns(with_hub, with_hub.model.without(with_hub.model.members[0]))
-    np.testing.assert_array_equal(back, with_hub.jacobian[:, : with_hub.model.calibrations.stop])
+    np.testing.assert_array_equal(back, with_hub.jacobian.own[:, : with_hub.model.calibrations.stop])
 
 
 def test_a_fit_that_cannot_come_near_another_is_given_up(with_hub: Fit) -> None:
@@ -134,14 +131,20 @@ def test_a_fit_that_cannot_come_near_another_is_given_up(with_hub: Fit) -> None:
     assert early.evaluations < whole.evaluations
 
 
-def test_derivatives_follow_a_step_and_leave_linear_nuisances() -> None:
-    """The secant condition; what is exactly linear stays what it is."""
-    tuned = tune(model("named"))
-    rng = np.random.default_rng(3)
-    step = 0.05 * rng.standard_normal(tuned.z.size) * tuned.model.prior_sd
-    residual = tuned.model.residual(tuned.z + step)
-    changed = _secant(tuned, step, residual)
-    linear = slice(tuned.model.calibrations.stop, tuned.model.dimension)
-    np.testing.assert_array_equal(changed[:, linear], tuned.jacobian[:, linear])
-    np.testing.assert_allclose(changed @ step, residual - tuned.residual, atol=1e-8)
-    assert not np.allclose(tuned.jacobian @ step, residual - tuned.residual, atol=1e-8)
+def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
+    """Of a friction and its shape, a compliance and a preload; of a size that is absent, differences only."""
+    members = [*library("steering_friction", "hub_compliance"), library("bushing_preload")[0]]
+    car = model("friction", ("lateral", "steer"))
+    for member in members:
+        extended = car.extended(member)
+        z = np.concatenate([car.centre, np.full(len(member.sizes), 0.4)])
+        residual = extended.residual(z)
+        exact = extended.own_columns(z, residual)[:, extended.calibrations.stop :]
+        differences = extended.amplitude_columns(z, residual)
+        assert np.linalg.norm(exact - differences) < 0.01 * np.linalg.norm(differences)
+    (friction, hub, _), absent = members, extended.centre[: car.dimension]
+    assert car.extended(hub)._directions(np.append(absent, [0.0, 0.5])).keys() == {car.dimension + 1}
+    assert car.extended(friction)._directions(np.append(absent, [0.5, 0.0])).keys() == {
+        car.dimension,
+        car.dimension + 1,
+    }

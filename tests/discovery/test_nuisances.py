@@ -7,6 +7,7 @@ import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.fit import Fit, amplitude_estimates, fit, known_columns
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import INPUT_GAIN
 from doe_kc.effects.hypothesis import Hypothesis
@@ -40,7 +41,7 @@ def test_the_calibration_is_the_effect_s_own_column(tuned: Fit, case: str) -> No
     model = tuned.model.extended(wrong_input(case))
     place = model.calibrations.start + model.cases.index(case)
     effect = model.amplitude_columns(np.append(tuned.z, 0.0), tuned.residual)[:, 0] / np.log(1.05)
-    calibration = tuned.jacobian[:, place] / INPUT_GAIN
+    calibration = tuned.jacobian.dense[:, place] / INPUT_GAIN
     assert np.linalg.norm(effect) > 50.0
     assert np.linalg.norm(effect - calibration) < 0.01 * np.linalg.norm(effect)
 
@@ -70,7 +71,7 @@ def test_the_records_show_the_sum_of_both(tuned: Fit) -> None:
     np.testing.assert_allclose(model.residual(moved), model.residual(z), atol=1e-3)
     blank = np.zeros((model.likelihood.size, z.size))
     totals = [
-        amplitude_estimates(Fit(model, at, blank[:, 0], blank, 0.0, 1, True), steer)[0][0]
+        amplitude_estimates(Fit(model, at, blank[:, 0], Jacobian(blank), 0.0, 1, True), steer)[0][0]
         for at in (z, moved)
     ]
     assert totals[0] == pytest.approx(totals[1], rel=5e-3)

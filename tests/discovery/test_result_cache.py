@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.result_cache import ResultCache, fingerprint, key_of, packed, unpacked
 from doe_kc.ground.errors import InputError
 from tests.discovery.cases import library, model
@@ -52,7 +53,7 @@ def test_whatever_changes_the_answer_changes_the_fingerprint() -> None:
         replace(base, left_out="lateral"),
         replace(base, axle=base.axle.changed({"tyre.static_load": 4301.0})),
         replace(base, likelihood=replace(base.likelihood, curves=(other, *curves[1:]))),
-        replace(base, sides=np.zeros((base.likelihood.size, 1))),
+        replace(base, nuisances=LinearNuisances(np.zeros((base.likelihood.size, 1)))),
     ]
     prints = {fingerprint(m) for m in (base, *changed)}
     assert len(prints) == 1 + len(changed)

@@ -37,10 +37,11 @@ def test_compiled_blocks_are_the_interpreted_ones(
     monkeypatch.delenv("DOE_KC_COMPILE", raising=False)
     blocks.cache_clear()
     compiled, interpreted = blocks(topology), interpreted_blocks(topology)
-    assert compiled.keys() == interpreted.keys()
+    assert compiled.keys() == {n for n in interpreted if n.endswith(("_x", "_u", "_z"))}
     assert ("Z_z" in compiled) == (topology is FRICTIONAL)
     rng = np.random.default_rng(5)
-    for name, function in interpreted.items():
+    for name in compiled:
+        function = interpreted[name]
         at = [rng.uniform(0.5, 1.0, function.nnz_in(i)) for i in range(function.n_in())]
         expected = Block(function)(*at)
         np.testing.assert_allclose(Block(compiled[name])(*at), expected, rtol=1e-9, atol=1e-12)
@@ -55,7 +56,7 @@ def test_without_compiling_they_are_interpreted(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.parametrize("name", ["R_c", "R_u", "Y_x"])
 def test_many_points_are_as_one_by_one(name: str, points: list[Point]) -> None:
-    block = Block(blocks(PLAIN)[name])
+    block = Block(interpreted_blocks(PLAIN)[name])
     single = np.array([block(*point) for point in points])
     assert np.abs(single[0] - single[2]).max() > 0.0
     np.testing.assert_array_equal(block.dense(points), single)

@@ -7,15 +7,26 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from scipy import sparse
 
 from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
 from doe_kc.axle.parameters import settable_paths
+from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.effects import apply_effect
+from doe_kc.examples import EXAMPLE_TYPES, example_folder
+from doe_kc.solver import sensitivity
 from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.derivatives import (
+    CompiledDerivatives,
+    InterpretedDerivatives,
+    StateSequence,
+    derivatives_of,
+)
 from doe_kc.solver.elements.responses import AXLE_OUTPUT_UNITS, OUTPUT_UNITS
 from doe_kc.solver.kernel import kernel
+from doe_kc.solver.library import find_compiler
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
@@ -186,6 +197,52 @@ def _with_effects(name: str) -> tuple[Axle, Sensitivities]:
     for ident, options in LOOPS[name]:
         axle = apply_effect(axle, ident, options, source="test")
     return axle, sensitivities(axle, tight(axle), LOOP_PATHS[name])
+
+
+def interpreted(monkeypatch: pytest.MonkeyPatch, axle: Axle, solution: Solution) -> Sensitivities:
+    with monkeypatch.context() as patch:
+        patch.setattr(
+            sensitivity,
+            "derivatives_of",
+            lambda topology, c, dc: InterpretedDerivatives(kernel(topology), c, dc),
+        )
+        return sensitivities(axle, solution, settable_paths(axle))
+
+
+@pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
+@pytest.mark.parametrize("name", [*EXAMPLE_TYPES, *LOOPS])
+def test_compiled_derivatives_are_the_interpreted_ones(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of every axle type, and of every effect, but for rounding of what a parameter moves
+    most, or not at all."""
+    axle = _with_effects(name)[0] if name in LOOPS else read_axle(example_folder(name) / "axle.toml")
+    solution = solve(axle, [case for case in ("vertical", "lateral", "steer") if case in axle.load_cases])
+    compiled = sensitivities(axle, solution, settable_paths(axle))
+    assert isinstance(
+        derivatives_of(axle.topology, np.zeros(0), sparse.csr_array((0, 0))), CompiledDerivatives
+    )
+    expected = interpreted(monkeypatch, axle, solution)
+    most = np.max([np.abs(b).max(axis=(0, 1)) for case in expected.branches.values() for b in case], axis=0)
+    gap = np.abs(compiled.static - expected.static)
+    assert (gap <= 1e-9 * np.abs(expected.static) + 1e-10 * most + 1e-13).all()
+    for case, branches in expected.branches.items():
+        largest = np.abs(np.concatenate(branches)).max(axis=0)
+        allowed = 1e-9 * largest + 1e-10 * largest.max(axis=0) + 1e-13
+        for own, other in zip(compiled.branches[case], branches, strict=True):
+            gap = np.abs(own - other)
+            worst_at = np.unravel_index(np.argmax(gap - allowed), gap.shape)
+            assert (gap <= allowed).all(), (case, worst_at, gap[worst_at], largest[worst_at[1:]])
+
+
+@pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
+def test_a_singular_equilibrium_has_no_sensitivity() -> None:
+    k = kernel(nominal().topology)
+    c = np.zeros(len(k.constant_values(dict(nominal().values))))
+    derivatives = derivatives_of(k.topology, c, sparse.csr_array((c.size, 1)))
+    states = StateSequence(
+        np.zeros((1, k.nx)), np.zeros((1, k.nu)), np.zeros((1, 0)), np.zeros((1, k.nu, 1)), np.ones(1, bool)
+    )
+    with pytest.raises(np.linalg.LinAlgError, match="no sensitivity exists"):
+        derivatives.along(states, np.zeros((1, 1)), np.zeros((k.ny, 1)), np.zeros((0, 1)))
 
 
 def test_characteristics_of_every_design_parameter() -> None:

@@ -71,11 +71,14 @@ def test_the_document_holds_everything(result: dict[str, object]) -> None:
 
 def test_tables_are_written(study: Path, result: dict[str, object]) -> None:
     folder = study / "out" / "surrogates"
-    tables = {f"{name}.csv" for name in ("quality", "predictions", "influence", "shares")}
+    tables = {f"{name}.csv" for name in ("quality", "predictions", "influence", "shares", "learning_curve")}
     assert {p.name for p in folder.iterdir()} == {"surrogates.xlsx", "surrogate.npz", "evaluator"} | tables
     assert not leftovers(study)
     assert load_workbook(folder / "surrogates.xlsx").sheetnames == [
         "Quality",
+        "Quality chart",
+        "Learning curve",
+        "Designs chart",
         "Influence",
         "Shares",
         "Legend",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.stats import binomtest
+from scipy.special import ndtr
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.ground.errors import InputError
@@ -33,11 +33,19 @@ ORDER = {"linear": 0, "rbf": 2, "gp": 3}
 
 def test_the_simplest_of_the_nearly_best_is_chosen() -> None:
     q2 = {
-        "gp": np.array([0.99, 0.990, 0.99999, np.nan]),
-        "linear": np.array([0.80, 0.9895, 0.99995, np.nan]),
-        "rbf": np.array([0.98, 0.991, 0.99999, np.nan]),
+        "gp": np.array([0.99, 0.9999999, np.nan]),
+        "linear": np.array([0.9895, 0.9999995, np.nan]),
+        "rbf": np.array([0.985, 0.9999999, np.nan]),
     }
-    assert choose(q2, ORDER) == ("gp", "rbf", "linear", "linear")
+    assert choose(q2, ORDER) == ("linear", "linear", "linear")
+    assert choose({k: v[:1] for k, v in q2.items()}, ORDER) == ("linear",)
+
+
+def test_what_other_outputs_tell_of_a_model_counts() -> None:
+    """1 - Q2 of 0.010 and 0.013 in one output, 0.010 and 0.001 in eight others."""
+    q2 = {"linear": np.full(9, 0.990), "gp": np.r_[0.987, np.full(8, 0.999)]}
+    assert choose({k: v[:1] for k, v in q2.items()}, ORDER) == ("linear",)
+    assert choose(q2, ORDER) == ("gp",) * 9
 
 
 def test_joined_models_predict_each_its_own() -> None:
@@ -65,9 +73,18 @@ def test_calibration_repairs_variances_that_are_too_small() -> None:
         0.95, abs=0.02
     )
     assert coverage_after(held) == pytest.approx(0.95, abs=0.03)
-    low, high = coverage_interval(np.array([0.95]), 20)
-    limits = binomtest(19, 20).proportion_ci(method="wilson")
-    assert (low[0], high[0]) == pytest.approx((limits.low, limits.high), abs=1e-6)
+
+
+def test_limits_of_the_coverage_hold_it() -> None:
+    """2000 outputs of 40 independent Gaussian errors each: their true coverage is known."""
+    held = LeftOut(np.random.default_rng(5).standard_normal((40, 2000)), np.ones((40, 2000)))
+    low, high = coverage_interval(held)
+    true = 2.0 * ndtr(1.959964 * np.sqrt(calibration_factors(held))) - 1.0
+    assert ((low <= true) & (true <= high)).mean() > 0.95
+    assert (low < 0.95).all()
+    assert (high > 0.95).all()
+    sure = coverage_interval(LeftOut(np.ones((40, 1)), np.ones((40, 1))))
+    assert np.ravel(sure) == pytest.approx([0.95, 0.95])
 
 
 def test_an_exactly_known_output_keeps_its_variance() -> None:
@@ -152,7 +169,7 @@ def test_too_few_designs_and_unknown_models_are_named() -> None:
     with pytest.raises(InputError, match="'forest' is no surrogate"):
         fit_study(P.x, P.y, models=("forest",))
     assert default_models(40, 72) == ["gp", "gp_ard", "linear", "rbf"]
-    assert default_models(144, 72, slopes=True) == ["gp", "gp_slopes", "linear", "rbf"]
+    assert default_models(401, 72, slopes=True) == ["gp", "gp_slopes", "linear", "rbf"]
 
 
 def test_shares_of_a_plane_are_its_squared_slopes() -> None:

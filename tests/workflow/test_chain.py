@@ -11,11 +11,18 @@ import pytest
 
 from doe_kc.axle_file import read_axle
 from doe_kc.correlation.assessment import harmed, inside
+from doe_kc.correlation.result import Correlation
+from doe_kc.correlation.twin_agreement import TwinAgreement
+from doe_kc.discovery.result import Discovery
+from doe_kc.measurement import Measurement
+from doe_kc.study import Study
 from doe_kc.true_solver.options import SolverOptions
+from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.answer import answer_lines, answer_record, answered, summary_document, write_answer
-from doe_kc.workflow.chain import ADVICE, DIFFERENT, describes_the_same, follow_chain
+from doe_kc.workflow.chain import ADVICE, DIFFERENT, NO_TWIN, TWIN_ADVICE, describes_the_same, follow_chain
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.correlation_problem import study_problem
+from doe_kc.workflow.measure import Reduced
 from tests.discovery.cases import discovery, nominal
 from tests.workflow.chain_cases import answer, reduced, study
 
@@ -151,6 +158,32 @@ def test_an_outside_model_of_another_car_is_not_discovered(
 ) -> None:
     made, reasons = with_outside(tmp_path, monkeypatch, alike=False)
     assert made == ["correlate with None"] and DIFFERENT in reasons
+
+
+@pytest.mark.parametrize("share", [0.99, 0.1])
+def test_an_outside_model_with_a_twin_is_correlated_first_and_advised_through_it(
+    tmp_path: Path, share: float
+) -> None:
+    outside = replace(study(tmp_path), solver=OUTSIDE, axle=nominal(), twin=nominal())
+    made: list[str] = []
+
+    def discover(own: Study, records: Measurement) -> Discovery:
+        made.append("discover")
+        assert own.solver.command == [] and own.twin is None and "in its own terms" in own.discovery_remark
+        assert set(records.curves.cases) == set(nominal().load_cases)
+        return discovery("named")
+
+    def correlated(_study: Study, _reduced: Reduced, adoption: Adoption | None) -> Correlation:
+        made.append(f"correlate with {adoption}")
+        return replace(answer("named", "never").correlation, twin=TwinAgreement((), share, None))
+
+    found = follow_chain(outside, reduced("named"), discover, correlated)
+    if share > 0.5:
+        assert made == ["correlate with None", "discover"]
+        assert TWIN_ADVICE in found.assessment.reasons and found.ground is not None
+    else:
+        assert made == ["correlate with None"]
+        assert NO_TWIN in found.assessment.reasons and found.ground is None
 
 
 def test_whether_two_solvers_describe_the_same_axle(tmp_path: Path) -> None:

@@ -162,3 +162,18 @@ def test_the_command_tells_all_and_writes_them(tmp_path: Path) -> None:
     (tmp_path / "c.json").unlink()
     assert invoke("check", small(tmp_path / "t"), "--json", tmp_path / "c.json").code == 0
     assert json.loads((tmp_path / "c.json").read_text()) == {"errors": [], "warnings": []}
+
+
+TWIN = '[solver]\ncommand = ["solve"]\ntwin = "own.toml"\n'
+
+
+def test_a_twin_with_other_numbers_is_told(tmp_path: Path) -> None:
+    study = small(tmp_path / "s", tables=TWIN)
+    text = (study / "axle.toml").read_text(encoding="utf-8")
+    (study / "own.toml").write_text(text, encoding="utf-8")
+    assert [w for w in check_study(study).warnings if w.kind == "twin"] == []
+    (study / "own.toml").write_text(text.replace("[-2.0, -395.0, 212.0]", "[-2.0, -395.0, 221.0]"), "utf-8")
+    (warning,) = [w for w in check_study(study).warnings if w.kind == "twin"]
+    assert "LLF.z 221 for 212 in the study's axle" in warning.message and "own.toml" in warning.message
+    (study / "own.toml").unlink()
+    assert "own.toml" in one_error(study).message

@@ -17,6 +17,7 @@ from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study, expected_steps
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
 from doe_kc.workflow.measure import study_measurement
+from doe_kc.workflow.twin_discovery import discovery_ground
 from doe_kc.workflow.write_correlation import AXLE
 from doe_kc.workflow.write_discovery import write_discovery
 
@@ -35,8 +36,9 @@ def discover(
     ] = None,
 ) -> None:
     """Find where model and records disagree, name the missing effect, add it, show the gap shrink."""
-    study = study_options.read()
-    records = study_measurement(study)
+    studied = study_options.read()
+    ground = discovery_ground(studied, study_measurement(studied))
+    study, records = ground.study, ground.records
     discovery = discovered(study, records, exclude=exclude or (), workers=study_options.workers)
     folder = study.out / "discover"
     written = write_discovery(study, discovery, records, folder, workers=study_options.workers)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -29,6 +29,10 @@ def sample(
     export: Annotated[
         str | None, typer.Option(help="Also export the whole store, curves included: csv or parquet.")
     ] = None,
+    curves: Annotated[
+        Literal["none", "all"],
+        typer.Option(help="What to store of new designs beside characteristics: all curves, or none."),
+    ] = "all",
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run stored failures again.")] = False,
 ) -> None:
     """Sample the variables: runs what the store does not have yet, and keeps every result."""
@@ -42,6 +46,7 @@ def sample(
             workers=study_options.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
+            keep_curves=curves == "all",
             progress=advance,
         )
     if study_options.json is not None:

@@ -25,6 +25,7 @@ Slopes = tuple[FloatArray, FloatArray]
 class Archive:
     """Designs with an answer. points: (n, d). outputs: (n, k + q). composite: the rating of such outputs.
 
+    middle, basis: (N,) and (q, N) of the curves' principal components.
     failed: (f, d) points without an answer. expansion: (k + q, d) exact slopes of the outputs at the best
     design, None without them.
     """
@@ -35,6 +36,20 @@ class Archive:
     composite: Composite
     failed: FloatArray
     expansion: FloatArray | None
+    middle: FloatArray
+    basis: FloatArray
+
+    def outputs_of(self, answer: Evaluated) -> FloatArray:
+        """(k + q,) of any answer, as `outputs`; ValueError for a failure."""
+        if answer.score is None:
+            raise ValueError("a failed design has no outputs")
+        curves = answer.scaled if self.middle.size else self.middle
+        return np.concatenate([answer.score.values, self.basis @ (curves - self.middle)])
+
+    def slopes_of(self, slopes: Slopes) -> FloatArray:
+        """(k + q, d) of slopes of the characteristics (k, d) and of the scaled curves (N, d)."""
+        curves = slopes[1][: self.middle.size]
+        return np.vstack([slopes[0], self.basis @ curves])
 
     @property
     def best(self) -> Evaluated:
@@ -59,7 +74,9 @@ def build_archive(targets: Targets, evaluated: Sequence[Evaluated], slopes: Slop
         np.hstack([values, (scaled - mean) @ basis.T]),
         Composite(targets, mean, basis),
         np.array(dead).reshape(len(dead), points.shape[1]),
-        None if slopes is None else np.vstack([slopes[0], basis @ slopes[1]]),
+        None if slopes is None else np.vstack([slopes[0], basis @ slopes[1][: mean.size]]),
+        mean,
+        basis,
     )
 
 
@@ -68,7 +85,8 @@ def _seen(solved: Sequence[Evaluated], scaled: FloatArray, slopes: Slopes | None
     if slopes is None:
         return scaled
     best = int(np.argmax([e.merit for e in solved]))
-    return np.vstack([scaled, scaled[best] + SLOPE_STRETCH * slopes[1].T])
+    curves = slopes[1][: scaled.shape[1]]  # none where an outside solver gives none and its twin does
+    return np.vstack([scaled, scaled[best] + SLOPE_STRETCH * curves.T])
 
 
 def distinct(evaluated: Sequence[Evaluated]) -> list[Evaluated]:

@@ -6,14 +6,15 @@ its statistic is b' S^-1 r over its standard deviation, N(0, 1) where model and 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.sparse import csc_array, hstack
+from numpy.typing import NDArray
+from scipy.sparse import csc_array
 
-from doe_kc.correlation.likelihood import CurveData, Likelihood
+from doe_kc.correlation.likelihood import Branches, CurveGroup, Likelihood
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
 
@@ -70,46 +71,67 @@ class Contrasts:
 
 def contrasts(likelihood: Likelihood) -> Contrasts:
     """All contrasts of the data."""
-    pairs: dict[tuple[str, str, str], list[tuple[CurveData, slice]]] = {}
-    for curve, place in likelihood.slices():
-        pairs.setdefault((curve.load_case, curve.response, curve.branches), []).append((curve, place))
-    size = likelihood.size
+    known: dict[tuple[str, str, Branches], list[_Shaped]] = {}
+    for group in likelihood.groups:
+        for curve, place, rows in zip(group.curves, group.places, _whitened_shapes(group), strict=True):
+            own = _Shaped(np.arange(place.start, place.stop), curve.side, rows)
+            known.setdefault((curve.load_case, curve.response, curve.branches), []).append(own)
     names: list[Contrast] = []
-    rows: list[csc_array] = []
-    for (case, response, branches), members in pairs.items():
-        shapes = MEAN_SHAPES if branches == "mean" else LOOP_SHAPES
-        for shape, function in shapes.items():
-            if shape == "offset" and response != TYRE_LOAD:
-                continue
+    columns: list[_Row] = []
+    for (case, response, branches), members in known.items():
+        for i, shape in enumerate(_shapes(response, branches)):
             for wheels in WHEELS:
                 names.append(Contrast(case, response, shape, wheels))
-                rows.append(_row(size, members, function, opposed=wheels != "both"))
+                signs = [-1.0 if wheels != "both" and m.side else 1.0 for m in members]
+                values = [sign * m.rows[:, i] for sign, m in zip(signs, members, strict=True)]
+                columns.append((np.concatenate([m.places for m in members]), np.concatenate(values)))
     for response in dict.fromkeys(f.response for f in likelihood.figures):
         for wheels in WHEELS:
             names.append(Contrast("static", response, "static", wheels))
-            rows.append(_static_row(likelihood, response, opposed=wheels != "both"))
-    return Contrasts(tuple(names), csc_array(hstack([csc_array((size, 0)), *rows])))
+            columns.append(_static_row(likelihood, response, opposed=wheels != "both"))
+    return Contrasts(tuple(names), _columns(likelihood.size, columns))
 
 
-def _static_row(likelihood: Likelihood, response: str, *, opposed: bool) -> csc_array:
-    row = np.zeros(likelihood.size)
-    first = sum(c.size for c in likelihood.curves)
-    for i, figure in enumerate(likelihood.figures):
-        if figure.response == response:
-            row[first + i] = (-1.0 if opposed and figure.side else 1.0) / figure.sd
-    return csc_array((row / np.linalg.norm(row))[:, None])
+@dataclass(frozen=True)
+class _Shaped:
+    """Whitened shapes of one curve."""
+
+    places: NDArray[np.int_]
+    """(n,) of its data in the residual."""
+    side: int
+    """0 left, 1 right."""
+    rows: FloatArray
+    """(n, shapes)."""
 
 
-def _row(
-    size: int,
-    members: list[tuple[CurveData, slice]],
-    function: Callable[[FloatArray], FloatArray],
-    *,
-    opposed: bool,
-) -> csc_array:
-    row = np.zeros(size)
-    for curve, place in members:
-        relative = curve.input / np.abs(curve.input).max()
-        sign = -1.0 if opposed and curve.side else 1.0
-        row[place] = sign * curve.whitened(np.asarray(function(relative), dtype=float))
-    return csc_array((row / np.linalg.norm(row))[:, None])
+def _shapes(response: str, branches: Branches) -> dict[Shape, Callable[[FloatArray], FloatArray]]:
+    shapes = MEAN_SHAPES if branches == "mean" else LOOP_SHAPES
+    return {name: f for name, f in shapes.items() if name != "offset" or response == TYRE_LOAD}
+
+
+def _whitened_shapes(group: CurveGroup) -> Iterator[FloatArray]:
+    """(n, shapes) of each curve."""
+    relative = group.first.input / np.abs(group.first.input).max()
+    for curve, inverse in zip(group.curves, group.inverses, strict=True):
+        functions = _shapes(curve.response, curve.branches).values()
+        yield inverse @ np.array([np.asarray(f(relative), dtype=float) for f in functions]).T
+
+
+_Row = tuple[NDArray[np.int_], FloatArray]
+"""Places in the residual, and values there."""
+
+
+def _static_row(likelihood: Likelihood, response: str, *, opposed: bool) -> _Row:
+    first = likelihood.size - len(likelihood.figures)
+    own = [(first + i, f) for i, f in enumerate(likelihood.figures) if f.response == response]
+    values = [(-1.0 if opposed and figure.side else 1.0) / figure.sd for _, figure in own]
+    return np.array([place for place, _ in own]), np.array(values)
+
+
+def _columns(size: int, rows: Sequence[_Row]) -> csc_array:
+    """(size, k), each row as a column of unit length."""
+    if not rows:
+        return csc_array((size, 0))
+    ends = np.cumsum([0, *(places.size for places, _ in rows)])
+    values = np.concatenate([values / np.linalg.norm(values) for _, values in rows])
+    return csc_array((values, np.concatenate([places for places, _ in rows]), ends), (size, len(rows)))

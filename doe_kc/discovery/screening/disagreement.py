@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.projection import Changes, Projection
 from doe_kc.discovery.screening.contrasts import Contrast, Contrasts
 from doe_kc.discovery.thresholds import CONTRAST_SHARE, FALSE_ALARM_CHANCE, NOISE_DRAWS, NOISE_SIZE_DOUBT
 from doe_kc.ground.typing import FloatArray
@@ -67,8 +67,8 @@ def raw_map(contrasts: Contrasts, residual: FloatArray) -> Map:
     return _map(contrasts, (contrasts.rows.T @ contrasts.rows).toarray(), contrasts.rows.T @ residual)
 
 
-def residual_map(contrasts: Contrasts, residual: FloatArray, projection: Projection) -> Map:
-    """The map of a fitted residual (M,): what re-tuning cannot absorb."""
+def residual_map(contrasts: Contrasts, residual: Changes, projection: Projection) -> Map:
+    """The map of a fitted residual: what re-tuning cannot absorb."""
     return _map(contrasts, *projection.products(contrasts.rows, residual))
 
 

@@ -109,15 +109,15 @@ def _of_law(law: str, influences: Influences, tuned: Fit) -> Iterator[tuple[Plac
     gradients = law_columns(influences, law)
     probes = {p.name: p for p in influences.probes}
     chosen = [probes[name] for name in gradients.paths]
-    columns = tuned.model.likelihood.jacobian(gradients, np.zeros((0, len(chosen))))
+    columns = _Columns.of(tuned.model.likelihood.jacobian(gradients, np.zeros((0, len(chosen)))), tuned)
     groups: dict[str, list[int]] = {}
     for i, p in enumerate(chosen):
         groups.setdefault(p.interface, []).append(i)
     for interface, members in groups.items():
         for side in ("both", "L", "R"):
-            dofs, block = _block(chosen, members, columns, side)
+            dofs, sums = _sums(chosen, members, side)
             if dofs:
-                yield _place(interface, law, side, dofs, block, tuned)
+                yield _place(interface, law, side, dofs, columns.summed(sums), tuned)
 
 
 def _of_rubber(influences: Influences, tuned: Fit) -> Iterator[tuple[Place, float]]:
@@ -133,7 +133,7 @@ def _of_rubber(influences: Influences, tuned: Fit) -> Iterator[tuple[Place, floa
         return
     columns = tuned.model.likelihood.jacobian(gradients, np.zeros((0, weights.size)))
     block = (columns @ (weights / weights.max()))[:, None]
-    yield _place(ALL_BUSHINGS, "friction", "both", ["along x, y and z"], block, tuned)
+    yield _place(ALL_BUSHINGS, "friction", "both", ["along x, y and z"], _Columns.of(block, tuned), tuned)
 
 
 def _stiffness(axle: Axle, probe: Probe) -> float:
@@ -143,19 +143,39 @@ def _stiffness(axle: Axle, probe: Probe) -> float:
     return float(np.prod([axle.values.get(name, 0.0) for name in names]))
 
 
-def _block(
-    probes: Sequence[Probe], members: Sequence[int], columns: FloatArray, side: str
-) -> tuple[list[str], FloatArray]:
-    """(dofs, (M, k)) of an interface; both sides alike are added up, what has one side only is `both`."""
+@dataclass(frozen=True)
+class _Columns:
+    """Changes of the residual by k unknowns, as far as their evidence takes them."""
+
+    before: FloatArray
+    """(k, k) inner products before re-tuning."""
+    left: FloatArray
+    """(k, k) inner products after re-tuning."""
+    along: FloatArray
+    """(k,) inner products with the residual after re-tuning."""
+
+    @staticmethod
+    def of(columns: FloatArray, tuned: Fit) -> _Columns:
+        """columns: (M, k)."""
+        own, seen = tuned.changes(columns), tuned.projection
+        return _Columns(columns.T @ columns, seen.gram_of(own), seen.inner(own, tuned.remainder)[:, 0])
+
+    def summed(self, sums: FloatArray) -> _Columns:
+        """Of sums of the unknowns' changes, (k, l) factors."""
+        return _Columns(sums.T @ self.before @ sums, sums.T @ self.left @ sums, sums.T @ self.along)
+
+
+def _sums(probes: Sequence[Probe], members: Sequence[int], side: str) -> tuple[list[str], FloatArray]:
+    """(dofs, (probes, dofs)) of an interface: factors that add both sides up or take one alone.
+
+    What has no side is `both`.
+    """
     by_dof: dict[str, FloatArray] = {}
     for i in members:
         p = probes[i]
-        if p.side in ("", side) or (side == "both" and p.side):
-            if side != "both" and not p.side:
-                continue
-            by_dof[p.dof] = by_dof.get(p.dof, 0.0) + columns[:, i]
-    empty = np.zeros((columns.shape[0], 0))
-    return list(by_dof), np.column_stack(list(by_dof.values())) if by_dof else empty
+        if p.side == side or side == "both":
+            by_dof.setdefault(p.dof, np.zeros(len(probes)))[i] = 1.0
+    return list(by_dof), np.array(list(by_dof.values())).T
 
 
 def _place(
@@ -163,31 +183,31 @@ def _place(
     law: str,
     side: str,
     dofs: Sequence[str],
-    block: FloatArray,
+    columns: _Columns,
     tuned: Fit,
 ) -> tuple[Place, float]:
     """The place with its ln evidence: ln(1 + score^2) / 2 is taken off for each degree of freedom."""
-    seen, residual = tuned.projection(block), tuned.remainder
-    before, left = np.linalg.norm(block, axis=0), np.linalg.norm(seen, axis=0)
-    use = (left > COLUMN_SHARE * before) & (left > 0.0)
+    before, left = np.diag(columns.before), np.diag(columns.left)
+    use = (left > COLUMN_SHARE**2 * before) & (left > 0.0)
     if not use.any():
         return Place(interface, law, side, (), 0.0, 0.0, 0.0), 0.0
-    unit = seen[:, use] / left[use]
-    amplitudes = _amplitudes(unit, residual, signed=law in SIGNED)
-    explained = unit @ amplitudes
-    gained = max(0.0, float(2.0 * -residual @ explained - explained @ explained))
+    length = np.sqrt(left[use])
+    gram = columns.left[np.ix_(use, use)] / np.outer(length, length)
+    slope = columns.along[use] / length
+    amplitudes = _amplitudes(gram, slope, signed=law in SIGNED)
+    gained = max(0.0, float(-2.0 * slope @ amplitudes - amplitudes @ gram @ amplitudes))
     order = np.argsort(-np.abs(amplitudes))
     names = np.array(list(dofs))[use]
     strongest = float(np.abs(amplitudes).max())
     counted = tuple(str(names[i]) for i in order if strongest > 0 and abs(amplitudes[i]) > 0.2 * strongest)
     gain = 0.5 * gained - 0.5 * len(counted) * float(np.log1p(gained))
-    explained_share = gained / max(float(residual @ residual) - residual.size, 1.0)
+    beyond_noise = tuned.misfit_left - tuned.residual.size - tuned.z.size
+    explained_share = gained / max(beyond_noise, 1.0)
     return Place(interface, law, side, counted, float(np.sqrt(gained)), min(1.0, explained_share), 0.0), gain
 
 
-def _amplitudes(unit: FloatArray, residual: FloatArray, *, signed: bool) -> FloatArray:
-    """(k,) that bring residual + unit a nearest to zero."""
-    gram, slope = unit.T @ unit, unit.T @ residual
+def _amplitudes(gram: FloatArray, slope: FloatArray, *, signed: bool) -> FloatArray:
+    """(k,) that minimize a'Ga + 2 s'a, G (k, k) and s (k,); not negative unless `signed`."""
     if signed:
         return np.asarray(-np.linalg.lstsq(gram, slope, rcond=1e-10)[0])
     # the normal equations' square root keeps the size of the problem at the degrees of freedom

@@ -8,7 +8,9 @@ its linear range, where effects that are large or have a dead band would mislead
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.projection import Changes
 from doe_kc.discovery.thresholds import (
     HOPELESS,
     NULL_SHARE,
@@ -60,11 +63,25 @@ class Screened:
     failed: str = ""
     """Why the axle with it has no equilibrium; empty where it has."""
 
-    def rewhitened(self, before: Likelihood, after: Likelihood) -> Screened:
-        """Its changes in units of other errors of the same records; what was concluded stays."""
-        change = rewhitened(self.change, before, after)
-        columns, bend = (rewhitened(rows, before, after) for rows in (self.columns, self.bend))
-        return replace(self, change=change, columns=columns, bend=bend)
+    @property
+    def change_only(self) -> Screened:
+        """Without derivatives, which are several times as large as the change."""
+        return replace(self, columns=self.columns[:0].copy(), bend=self.bend[:0].copy())
+
+
+def rewhitened_screenings(
+    screened: Sequence[Screened], before: Likelihood, after: Likelihood
+) -> list[Screened]:
+    """Their changes in units of other errors of the same records; what was concluded stays."""
+    if before is after or not screened:
+        return list(screened)
+    blocks = [np.column_stack([s.change, s.bend, s.columns]) for s in screened]
+    ends = np.cumsum([block.shape[1] for block in blocks])
+    every = np.hsplit(rewhitened(np.hstack(blocks), before, after), ends[:-1])
+    return [
+        replace(s, change=own[:, 0].copy(), bend=own[:, 1].copy(), columns=own[:, 2:].copy())
+        for s, own in zip(screened, every, strict=True)
+    ]
 
 
 def screen(fit: Fit, hypothesis: Hypothesis, shape: FloatArray | None = None) -> Screened:
@@ -110,9 +127,9 @@ def _promising_shape(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> Fl
 
 def _promise(model: EffectModel, fit: Fit, amplitudes: FloatArray) -> float:
     """Decrease of the cost along the straight line to a true solution, as far as it goes one way."""
-    along = fit.projection(model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual)
-    slope = min(0.0, float(along @ fit.remainder))
-    return slope**2 / (float(along @ along) + float(amplitudes @ amplitudes))
+    along = fit.changes(model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual)
+    slope = min(0.0, float(fit.projection.inner(along, fit.remainder)[0, 0]))
+    return slope**2 / (float(fit.projection.squares(along)[0]) + float(amplitudes @ amplitudes))
 
 
 def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
@@ -142,16 +159,12 @@ class _AmplitudeSolution:
 
     amplitudes: FloatArray
     """(m,)."""
-    columns: FloatArray
+    columns: Changes
     """(M, m) derivative of the residual to them."""
-    projected: FloatArray
-    """(M + d, m) what re-tuning leaves of the columns."""
-    change: FloatArray
-    """(M,) of the residual, from the model without the effect."""
-    reduced: FloatArray
-    """(M + d,) what re-tuning leaves of the residual."""
+    change: Changes
+    """(M, 1) of the residual, from the model without the effect."""
     cost: float
-    """Sum of squares of that and of the amplitudes."""
+    """Sum of squares of what re-tuning leaves of the residual, and of the amplitudes."""
     solved: bool = True
     """False where amplitudes and cost are those that a first step promises, which is nothing."""
 
@@ -166,11 +179,14 @@ def amplitude_solution(
     """
     place = slice(fit.z.size, fit.z.size + start.size)
     low, high = model.lower[place], model.upper[place]
-    without = float(fit.remainder @ fit.remainder)
+    without = fit.misfit_left
     best = _derived(model, fit, _solved(model, fit, start), place)
     for k in range(SCREEN_STEPS if start.size else 0):
-        hessian = best.projected.T @ best.projected + np.eye(start.size)
-        slope = best.projected.T @ best.reduced + best.amplitudes
+        hessian = fit.projection.gram_of(best.columns) + np.eye(start.size)
+        pulled = fit.projection.inner(best.columns, fit.remainder) + fit.projection.inner(
+            best.columns, best.change
+        )
+        slope = pulled[:, 0] + best.amplitudes
         step = bounded_step(hessian, slope, low - best.amplitudes, high - best.amplitudes)
         predicted = best.cost + 2.0 * float(slope @ step) + float(step @ hessian @ step)
         if k == 0 and predicted > without + 2.0 * HOPELESS and not np.array_equal(start, smaller):
@@ -206,68 +222,85 @@ def _solved(
 ) -> _AmplitudeSolution:
     """The true solution at some amplitudes, its columns those of a point that is near or still none."""
     residual = model.residual(np.concatenate([fit.z, amplitudes]))
-    reduced = fit.projection.residual(residual)
-    cost = float(reduced @ reduced + amplitudes @ amplitudes)
-    none = np.zeros((0, amplitudes.size))
-    columns, projected = (none, none) if near is None else (near.columns, near.projected)
-    return _AmplitudeSolution(amplitudes, columns, projected, residual - fit.residual, reduced, cost)
+    change = fit.changes(residual - fit.residual)
+    along = float(fit.projection.inner(change, fit.remainder)[0, 0])
+    seen = fit.misfit_left + 2.0 * along + float(fit.projection.squares(change)[0])
+    columns = change.columns(slice(0)) if near is None else near.columns
+    return _AmplitudeSolution(amplitudes, columns, change, seen + float(amplitudes @ amplitudes))
 
 
 def _derived(model: EffectModel, fit: Fit, best: _AmplitudeSolution, place: slice) -> _AmplitudeSolution:
     """The same with columns taken there. place: of the amplitudes in z."""
-    z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change
+    z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change.rows[:, 0]
     columns = model.amplitude_columns(z, residual, range(place.start, place.stop))
-    return replace(best, columns=columns, projected=fit.projection(columns))
+    return replace(best, columns=fit.changes(columns))
 
 
 def _summary(fit: Fit, hypothesis: Hypothesis, best: _AmplitudeSolution, change: FloatArray) -> Screened:
-    hessian = best.projected.T @ best.projected + np.eye(best.amplitudes.size)
-    seen, square = fit.without_traces(change), float(change @ change)
-    alone = fit.without_traces(best.columns)
-    solved = best.change if best.solved else best.columns @ best.amplitudes
-    without = float(fit.remainder @ fit.remainder)
+    columns, done = best.columns.rows, best.change.rows[:, 0]
+    hessian = fit.projection.gram_of(best.columns) + np.eye(best.amplitudes.size)
+    seen, square = float(fit.without_traces.squares(fit.changes(change))[0]), float(change @ change)
+    alone = fit.without_traces.gram_of(best.columns)
+    solved = done if best.solved else columns @ best.amplitudes
     fitted = best.cost - float(best.amplitudes @ best.amplitudes)
     return Screened(
         hypothesis,
         best.amplitudes,
         np.sqrt(np.diag(np.linalg.inv(hessian))),
-        0.5 * (without - best.cost) - 0.5 * float(np.linalg.slogdet(hessian)[1]),
-        float(np.sqrt(max(0.0, without - fitted))),
-        best.columns,
+        0.5 * (fit.misfit_left - best.cost) - 0.5 * float(np.linalg.slogdet(hessian)[1]),
+        float(np.sqrt(max(0.0, fit.misfit_left - fitted))),
+        columns,
         change,
-        solved - best.columns @ best.amplitudes,
-        float(np.linalg.norm(seen)),
-        1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
-        size_detectability(hypothesis, alone, seen),
+        solved - columns @ best.amplitudes,
+        float(np.sqrt(seen)),
+        1.0 - seen / square if square > 0.0 else 0.0,
+        size_detectability(hypothesis, alone, float(np.sqrt(seen))),
     )
 
 
-def size_detectability(hypothesis: Hypothesis, columns: FloatArray, change: FloatArray) -> FloatArray:
-    """(m,) see `Screened`. columns: (M + d, m) and change (M + d,) of the effect, re-tuning projected out."""
+def size_detectability(hypothesis: Hypothesis, gram: FloatArray, detectability: float) -> FloatArray:
+    """(m,) see `Screened`. gram: (m, m) of the effect's columns, re-tuning projected out."""
     out = np.full(len(hypothesis.sizes), np.nan)
     amounts = [i for i, s in enumerate(hypothesis.sizes) if not s.shape]
     if len(amounts) == 1:
-        out[amounts] = np.linalg.norm(change)
+        out[amounts] = detectability
     elif amounts:
-        gram = columns[:, amounts].T @ columns[:, amounts]
-        least = NULL_SHARE * max(float(np.trace(gram)), NULL_SHARE)
-        out[amounts] = 1.0 / np.sqrt(np.diag(np.linalg.inv(gram + least * np.eye(len(amounts)))))
+        own = gram[np.ix_(amounts, amounts)]
+        least = NULL_SHARE * max(float(np.trace(own)), NULL_SHARE)
+        out[amounts] = 1.0 / np.sqrt(np.diag(np.linalg.inv(own + least * np.eye(len(amounts)))))
     return out
 
 
-def score_test(fit: Fit, known: Screened) -> Screened:
+def score_tests(fit: Fit, known: Sequence[Screened]) -> list[Screened]:
     """The score test at another model with the columns known from an earlier one: no new solution.
 
-    known: its changes in the other model's errors. amplitudes and gain to first order; hypotheses without
+    known: their changes in the other model's errors. amplitudes and gain to first order; hypotheses without
     sizes keep their amplitude, there or not.
     """
-    if known.failed:
-        return known
-    seen = fit.without_traces(known.change)
-    own = known.columns if known.amplitudes.size else known.change[:, None]
-    columns = fit.projection(own)
-    hessian = columns.T @ columns + np.eye(columns.shape[1])
-    slope = columns.T @ fit.remainder
+    there = [s for s in known if not s.failed]
+    if not there:
+        return list(known)
+    own = [s.columns if s.amplitudes.size else s.change[:, None] for s in there]
+    ends = np.cumsum([0, *(columns.shape[1] for columns in own)])
+    columns = fit.changes(np.hstack(own))
+    changes = fit.changes(np.array([s.change for s in there]).T)
+    seen = np.sqrt(fit.without_traces.squares(changes))
+    slopes = fit.projection.inner(columns, fit.remainder)[:, 0]
+    gram, alone = fit.projection.gram_of(columns), fit.without_traces.gram_of(columns)
+    places = [slice(a, b) for a, b in pairwise(ends)]
+    tested = {
+        s.hypothesis.name: _tested(s, gram[p, p], alone[p, p], slopes[p], float(d))
+        for s, p, d in zip(there, places, seen, strict=True)
+    }
+    return [tested.get(s.hypothesis.name, s) for s in known]
+
+
+def _tested(
+    known: Screened, gram: FloatArray, alone: FloatArray, slope: FloatArray, detectability: float
+) -> Screened:
+    """gram, alone: (m, m) of its columns, re-tuning projected out, traces held in the second. slope: (m,) of
+    the cost along them, halved."""
+    hessian = gram + np.eye(slope.size)
     amplitudes = np.asarray(-np.linalg.solve(hessian, slope), dtype=np.float64)
     gain = 0.5 * float(-slope @ amplitudes) - 0.5 * float(np.linalg.slogdet(hessian)[1])
     square = float(known.change @ known.change)
@@ -277,7 +310,7 @@ def score_test(fit: Fit, known: Screened) -> Screened:
         sd=np.sqrt(np.diag(np.linalg.inv(hessian)))[: known.amplitudes.size],
         gain=gain,
         score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
-        detectability=float(np.linalg.norm(seen)),
-        absorbed=1.0 - float(seen @ seen) / square if square > 0.0 else 0.0,
-        size_detectability=size_detectability(known.hypothesis, fit.without_traces(own), seen),
+        detectability=detectability,
+        absorbed=1.0 - detectability**2 / square if square > 0.0 else 0.0,
+        size_detectability=size_detectability(known.hypothesis, alone, detectability),
     )

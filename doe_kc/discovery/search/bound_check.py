@@ -47,7 +47,7 @@ def bound_evidence(fit: Fit, workers: DiscoveryWorkers) -> float:
     best, most = 1.0, fit.evidence + BOUND_EVIDENCE
     for factor in BOUND_FACTORS:
         model, z = with_wider_bounds(fit, factor)
-        near = replace(fit, jacobian=fit.jacobian * _stretch(fit, model, z))
+        near = replace(fit, jacobian=fit.jacobian.scaled(_stretch(fit, model, z)))
         (wider,) = workers.fits([FitStart(model, z, near)], "wider bounds")
         if wider is None or wider.evidence < most:
             break

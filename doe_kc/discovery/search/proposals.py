@@ -66,17 +66,15 @@ class LinearSets:
         others = [s for s in screened if not s.failed]
         hypotheses = (*model.members, *(s.hypothesis for s in others))
         ends = np.cumsum([0, *(len(h.sizes) for h in hypotheses)])
-        own, none = current.jacobian[:, model.dimension :], np.zeros(current.residual.size)
+        own, none = current.jacobian.own[:, model.calibrations.stop :], np.zeros(current.residual.size)
         columns = np.hstack([own, *(s.columns for s in others)])
         bends = np.array([none for _ in model.members] + [_beyond(s) for s in others]).reshape(-1, none.size)
-        projection = current.sizes_held
-        without = projection.residual(current.residual) - projection(own @ current.amplitudes)
-        rows = np.hstack([projection(np.hstack([columns, bends.T])), without[:, None]])
+        gram = _gram(current, np.hstack([columns, bends.T]), own @ current.amplitudes)
         sizes = [s for h in hypotheses for s in h.sizes]
         return LinearSets(
             hypotheses,
             tuple(slice(a, b) for a, b in pairwise(ends)),
-            np.asarray(rows.T @ rows),
+            gram,
             np.array([-AMPLITUDE_LIMIT * s.most if s.signed or s.shape else 0.0 for s in sizes]),
             np.array([AMPLITUDE_LIMIT * s.most for s in sizes]),
             prior,
@@ -145,6 +143,17 @@ class LinearSets:
 
     def _compatible(self, members: Members) -> bool:
         return compatible_set([self.hypotheses[i] for i in members])
+
+
+def _gram(current: Fit, rows: FloatArray, effects: FloatArray) -> FloatArray:
+    """(k + 1, k + 1) inner products of changes (M, k) and of the residual without that of effects (M,)."""
+    seen, changes = current.sizes_held, current.changes(np.hstack([rows, effects[:, None]]))
+    out = seen.gram_of(changes)
+    own = out[:, -1].copy()
+    along = seen.inner(changes, current.remainder)[:, 0]
+    out[:, -1] = out[-1] = along - own
+    out[-1, -1] = float(seen.squares(current.remainder)[0]) - 2.0 * along[-1] + own[-1]
+    return out
 
 
 def _beyond(screened: Screened) -> FloatArray:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.discovery.fit import Fit, FitStart
-from doe_kc.discovery.projection import Projection
+from doe_kc.discovery.projection import Changes
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.proposals import SetProposal
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -24,7 +24,6 @@ from doe_kc.discovery.thresholds import (
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.ground.typing import FloatArray
 
 Sized = Iterable[tuple[Size, float, float]]
 """Amplitude of a size in typical ones, and its standard deviation."""
@@ -44,23 +43,22 @@ class HypothesisFit:
     """ln of those odds before the records, part of `gain`."""
 
 
-def leaders(
-    screened: Sequence[Screened], projection: Projection, least: float, *, decoy: bool = True
-) -> list[Screened]:
+def leaders(screened: Sequence[Screened], fit: Fit, least: float, *, decoy: bool = True) -> list[Screened]:
     """The best and its rivals, which would explain the same; with `decoy` one of another kind is among them.
 
-    Effects that explain something else are no rivals: they have their own step.
+    fit: the model that they were screened beside. Effects that explain something else are no rivals: they
+    have their own step.
     """
     if not screened or screened[0].gain <= least:
         return []
     best = screened[0]
     out = [best]
-    own = _explained(best, projection)
+    own = _explained(best, fit)
     for s in screened[1:]:
         if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == REFITS_MOST:
             break
         kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
-        if kind < PLACES_REFITTED and abs(float(own @ _explained(s, projection))) > RIVAL_CORRELATION:
+        if kind < PLACES_REFITTED and abs(_correlation(own, _explained(s, fit), fit)) > RIVAL_CORRELATION:
             out.append(s)
     small = (
         best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT
@@ -76,12 +74,17 @@ def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
     return [s for s in screened if not s.failed and s.absorbed >= ABSORBED_SHARE and s.detectability >= shows]
 
 
-def _explained(screened: Screened, projection: Projection) -> FloatArray:
-    """(M + d,) direction of what the effect does at its size, after re-tuning."""
+def _explained(screened: Screened, fit: Fit) -> Changes:
+    """(M, 1) what the effect does at its size."""
     change = screened.columns @ screened.amplitudes if screened.amplitudes.size else screened.change
-    seen = projection(change)
-    length = float(np.linalg.norm(seen))
-    return np.asarray(seen / length if length > 0.0 else seen)
+    return fit.changes(change)
+
+
+def _correlation(one: Changes, other: Changes, fit: Fit) -> float:
+    """Of two changes after re-tuning; 0 where nothing is left of one."""
+    seen = fit.without_traces
+    lengths = float(np.sqrt(seen.squares(one)[0] * seen.squares(other)[0]))
+    return float(seen.inner(one, other)[0, 0]) / lengths if lengths > 0.0 else 0.0
 
 
 def believable(sizes: Sized) -> bool:

@@ -9,11 +9,11 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
-from doe_kc.discovery.clutter import Clutter
 from doe_kc.discovery.fit import Fit, FitStart, chord_fit, cost_of, fit, known_columns, refit_to_errors
+from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
-from doe_kc.discovery.screening.screen import Screened, score_test, shape_of
+from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
 from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
@@ -196,9 +196,10 @@ def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
                 columns.append(TRACE_SD * column)
     if not names:
         return tuned
-    model = replace(tuned.model, clutter=Clutter(tuple(names), np.array(columns).T))
+    sides = tuned.model.nuisances or LinearNuisances(np.zeros((tuned.residual.size, 0)))
+    model = replace(tuned.model, nuisances=sides.with_traces(names, np.array(columns).T))
     z = np.concatenate([tuned.z, np.zeros(len(names))])
-    jacobian = model.with_own_nuisances(tuned.jacobian)
+    jacobian = model.jacobian(tuned.jacobian.own)
     begun = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
     return chord_fit(begun, model)
 
@@ -245,7 +246,7 @@ def tune(model: EffectModel) -> Fit:
     """The best axle without a further effect, the differences between its sides linear about it."""
     first = fit(model, model.centre)
     sides = side_differences(model.axle_at(first.z), model.space, model.likelihood)
-    sided = replace(model, sides=sides)
+    sided = replace(model, nuisances=LinearNuisances(sides))
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
     return fit(sided, start, known=known_columns(first, sided), aged=0.0)
 
@@ -271,7 +272,7 @@ def _decision(
     screened = _screened(current, known, workers)
     trials = set_refits(current, _proposed(current, screened, prior), prior, workers)
     if not any(_passes(t, current) for t in trials):
-        near = leaders(screened, current.without_traces, least / 2.0, decoy=not current.model.members)
+        near = leaders(screened, current, least / 2.0, decoy=not current.model.members)
         trials += joint_refits(current, near, prior, workers)
     if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
@@ -295,8 +296,7 @@ def _screened(current: Fit, known: Sequence[Screened], workers: DiscoveryWorkers
     """Every hypothesis that the fit can take; those that promise most on true solutions."""
     there = [s for s in known if compatible(current.model, s.hypothesis)]
     if current.model.members:  # without any, they are screened at the very same axle
-        there = [score_test(current, s) for s in there]
-        there.sort(key=lambda s: -s.gain)
+        there = sorted(score_tests(current, there), key=lambda s: -s.gain)
         again = [s for s in there[:RESCREENED_MOST] if s.gain > PROMISING]
         shapes = [shape_of(s) for s in again]
         full = {
@@ -311,7 +311,7 @@ def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list
     """Every hypothesis as it was screened last, in the errors of `current`; known: in those of the step."""
     newer = {s.hypothesis.name: s for s in decision.screened}
     errors = decision.before.model.likelihood, current.model.likelihood
-    return [newer.get(s.hypothesis.name, s).rewhitened(*errors) for s in known]
+    return rewhitened_screenings([newer.get(s.hypothesis.name, s) for s in known], *errors)
 
 
 def _proposed(current: Fit, screened: Sequence[Screened], prior: SetPrior) -> list[SetProposal]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
 from doe_kc.discovery.screening.disagreement import Map
-from doe_kc.discovery.screening.screen import Screened, score_test
+from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
@@ -36,7 +36,7 @@ class Alternatives:
     """The set without it, refitted; the errors hold the discrepancy of all others' laws, not that of its own
     nor of its rivals'."""
     screened: tuple[Screened, ...]
-    """Itself, then the library without the other members, added to `without`."""
+    """Itself, then the library without the other members, added to `without`; some without derivatives."""
     trials: tuple[HypothesisFit, ...]
     """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`."""
     temper: float
@@ -73,9 +73,10 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     withouts = [w or search.tuned for w in removals]  # no equilibrium without it: nothing in the model at all
     losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
     places = [
-        _place(search, base, without, workers, decoy=loss == max(losses))
+        _place(search, base, without, decoy=loss == max(losses))
         for base, without, loss in zip(bases, withouts, losses, strict=True)
     ]
+    places = _on_true_solutions(places, workers)
     starts = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
     refits = iter(workers.fits([start for own in starts for start in own], "refitting rivals"))
     return tuple(
@@ -93,7 +94,7 @@ class _Place:
     without: Fit
     """The set without it."""
     screened: tuple[Screened, ...]
-    """Itself, then what may take its place."""
+    """Itself, then what may take its place, without derivatives."""
     near: tuple[Screened, ...]
     """Its rivals that are worth a refit."""
 
@@ -148,18 +149,26 @@ def _from_first_step(
     return Alternatives(first.before, (itself, *others), (own, *rivals), temper)
 
 
-def _place(
-    search: EffectSearch, base: Fit, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
-) -> _Place:
+def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
     """The place of the last member of `base`, and what is worth a refit in it."""
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     own = _own(base, without, search.prior)
-    first = score_test(without, known.pop(own.hypothesis.name))
+    itself = known.pop(own.hypothesis.name)
+    others = [s for s in known.values() if _may_replace(base, s.hypothesis)]
+    first, *there = score_tests(without, [itself, *others])
     first = replace(first, gain=max(first.gain, own.gain))
-    there = [score_test(without, s) for s in known.values() if _may_replace(base, s.hypothesis)]
     there.sort(key=lambda s: -s.gain)
-    near = _near([first, *there], threshold(len(known) + 1), without, workers, decoy=decoy)
-    return _Place(base, without, (first, *there), tuple(near))
+    near = leaders([first, *there], without, threshold(len(known) + 1) / 2.0, decoy=decoy)
+    return _Place(base, without, tuple(s.change_only for s in (first, *there)), tuple(near[1:]))
+
+
+def _on_true_solutions(places: Sequence[_Place], workers: DiscoveryWorkers) -> list[_Place]:
+    """The places, the sizes of the rivals in them followed on true solutions."""
+    screened = workers.screenings_beside([(p.without, [s.hypothesis for s in p.near]) for p in places])
+    return [
+        replace(place, near=tuple(s for s in near if not s.failed))
+        for place, near in zip(places, screened, strict=True)
+    ]
 
 
 def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float) -> Alternatives:
@@ -168,15 +177,6 @@ def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, t
     rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
     own = _own(place.base, place.without, search.prior)
     return Alternatives(place.without, place.screened, (own, *rivals), temper)
-
-
-def _near(
-    screened: Sequence[Screened], least: float, without: Fit, workers: DiscoveryWorkers, *, decoy: bool
-) -> list[Screened]:
-    """Rivals of the first that are worth a refit, their sizes followed on true solutions."""
-    near = leaders(screened, without.without_traces, least / 2.0, decoy=decoy)
-    chosen = [s.hypothesis for s in near[1:]]
-    return [s for s in workers.screenings(without, chosen) if not s.failed]
 
 
 def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
@@ -202,4 +202,4 @@ def _frictional(fit: Fit) -> bool:
 def _screened(search: EffectSearch, without: Fit) -> list[Screened]:
     """Every hypothesis as it was screened last, in the errors of `without`."""
     errors = search.with_law_discrepancy.model.likelihood, without.model.likelihood
-    return [s.rewhitened(*errors) for s in search.screened]
+    return rewhitened_screenings(search.screened, *errors)

@@ -59,5 +59,6 @@ def explained(own: Alternatives, remaining: Map) -> bool:
 
 def own_contrasts(own: Alternatives) -> FloatArray:
     """(k,) what the effect makes of each contrast beyond what re-tuning could, without a sign."""
-    seen = own.without.without_traces(own.screened[0].change)[: own.without.residual.size]
-    return np.asarray(np.abs(own.without.model.contrasts.rows.T @ seen))
+    fit = own.without
+    seen = fit.without_traces.remaining(fit.changes(own.screened[0].change))[:, 0]
+    return np.asarray(np.abs(fit.model.contrasts.rows.T @ seen))

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.thresholds import (
     BENCH_ACCURACY,
@@ -69,8 +70,8 @@ class _Tuning:
     """(d, d) of parameters and nuisances after the fit."""
     precision: FloatArray
     """(p,) that a bench adds to each parameter."""
-    jacobian: FloatArray
-    """(M, d)."""
+    jacobian: Jacobian
+    """(M, d + m), parameters and nuisances first."""
 
     @staticmethod
     def of(fit: Fit) -> _Tuning:
@@ -79,7 +80,7 @@ class _Tuning:
         covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(count)))
         known = np.array([_known(v, float(u)) for v, u in zip(model.space.variables, fit.z, strict=False)])
         precision = np.maximum(known**-2.0 - model.space.prior_sd**-2.0, 0.0)
-        return _Tuning(model.space.paths, covariance, precision, fit.jacobian[:, :count])
+        return _Tuning(model.space.paths, covariance, precision, fit.jacobian)
 
 
 def _known(variable: Variable, u: float) -> float:
@@ -91,7 +92,7 @@ def _chosen(tuning: _Tuning, screened: Screened, least: float) -> ComponentTest 
     columns = _columns(screened)
     if screened.failed or EFFECTS[screened.hypothesis.effect].on_rig or not columns.size:
         return None
-    pulled = tuning.jacobian.T @ columns
+    pulled = tuning.jacobian.pulled(columns)[: tuning.covariance.shape[0]]
     moves = tuning.covariance @ pulled
     information = columns.T @ columns - pulled.T @ moves
     covariance, precision = tuning.covariance, tuning.precision

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 from scipy.special import ndtr
 
 from doe_kc.discovery.fit import Fit
@@ -66,14 +65,14 @@ def hypothesis_statuses(
     """
     everything = [s for s, _ in members] + list(screened)
     known = dict(enumerate(status for _, status in members))
-    changes = fit.tuning_projection(np.array([s.change for s in everything]).T)
-    length = np.linalg.norm(changes, axis=0)
+    changes = fit.changes(np.array([s.change for s in everything]).T)
+    length = np.sqrt(fit.tuning_projection.squares(changes))
     safe = np.where(length > 0, length, 1.0)
-    correlation = (changes / safe).T @ (changes / safe)
-    moves = _moves(fit, np.array([s.change for s in everything]).T)
+    correlation = fit.tuning_projection.gram_of(changes) / np.outer(safe, safe)
+    moves = fit.tuning_projection.moves(changes)
     out = []
     for i, s in enumerate(everything):
-        by_bounds = float(np.linalg.norm(changes[fit.residual.size :, i]))
+        by_bounds = float(np.linalg.norm(moves[:, i]))
         limits = _limits(s, by_bounds, critical)
         limits = limits if i in known else np.maximum(limits, _upper(s))
         amounts = limits[~np.isnan(limits)]
@@ -149,18 +148,12 @@ def _status(screened: Screened, detectable: float, *, resolved: bool) -> Status:
     return "excluded" if resolved else "unresolved"
 
 
-def _moves(fit: Fit, changes: FloatArray) -> FloatArray:
-    """(d, k) how the tunable parameters would follow each change, the sizes of the effects held."""
-    count = fit.model.traces.start
-    hessian, jacobian = fit.hessian[:count, :count], fit.jacobian[:, :count]
-    return np.asarray(-cho_solve(cho_factor(hessian), jacobian.T @ changes))
-
-
 def _hiding(fit: Fit, move: FloatArray, screened: Screened) -> tuple[tuple[str, float], ...]:
+    """move: (d,) by which what can be tuned follows the effect, in standard deviations of its prior."""
     if screened.absorbed < 0.5:
         return ()
     paths = fit.model.space.paths
-    relative = move[: len(paths)] / fit.model.prior_sd[: len(paths)]
+    relative = move[: len(paths)]
     order = np.argsort(-np.abs(relative))[:HIDING_LISTED]
     return tuple((paths[i], float(relative[i])) for i in order)
 

@@ -70,7 +70,7 @@ def _separation(one: Fit, other: Fit, case: LoadCase, like: str) -> float:
     free, count = model.dimension - model.parameters, model.parameters
     z = _point(model, other)
     difference = model.residual(z)
-    jacobian = np.hstack([model.tuning_columns(z, difference), model.amplitude_columns(z, difference)])
+    jacobian = model.own_columns(z, difference)
     kept = np.r_[0:count, other.model.dimension : other.z.size]
     known = other.covariance[np.ix_(kept, kept)]
     covariance = block_diag(known[:count, :count], np.eye(free), known[count:, count:])
@@ -108,4 +108,4 @@ def _valued(curve: CurveData, whitened: FloatArray) -> CurveData:
 def _alone(model: EffectModel, case: LoadCase, likelihood: Likelihood) -> EffectModel:
     """The model with nothing but one load case."""
     axle = replace(model.axle, load_cases={case.id: case})
-    return replace(model, axle=axle, likelihood=likelihood, sides=None, clutter=None, left_out=None)
+    return replace(model, axle=axle, likelihood=likelihood, nuisances=None, left_out=None)

@@ -155,14 +155,17 @@ def _detectability(fit: Fit, place: slice) -> float:
 
 def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:
     """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
-    projection = own.without.without_traces
-    first, *others = own.screened
-    direction = _unit(projection(first.change))
+    fit = own.without
+    first, *others = (s for s in own.screened if not s.failed)
+    changes = fit.changes(np.array([s.change for s in (first, *others)]).T)
+    along = fit.without_traces.inner(changes.columns(slice(1)), changes)[0]
+    length = np.sqrt(fit.without_traces.squares(changes))
     out: dict[str, float] = {}
-    for s in others:
+    for s, product, left in zip(others, along[1:], length[1:], strict=True):
         effect = s.hypothesis.effect
-        if effect != own.hypothesis.effect and not s.failed:
-            chance = wrong_name_chance(detectability, float(direction @ _unit(projection(s.change))))
+        if effect != own.hypothesis.effect:
+            correlation = float(product / (left * length[0])) if left * length[0] > 0.0 else 0.0
+            chance = wrong_name_chance(detectability, float(np.clip(correlation, -1.0, 1.0)))
             out[effect] = max(out.get(effect, 0.0), chance)
     return out
 
@@ -215,8 +218,3 @@ def _elsewhere(own: Alternatives) -> tuple[str, ...]:
     others = (t for t in rest if t.hypothesis.effect == own.hypothesis.effect)
     close = (t for t in others if (first.gain - t.gain) / own.temper < DECISIVE_EVIDENCE)
     return tuple(t.hypothesis.location for t in close if t.hypothesis.location)
-
-
-def _unit(seen: FloatArray) -> FloatArray:
-    length = float(np.linalg.norm(seen))
-    return np.asarray(seen / length if length > 1e-9 else 0.0 * seen)

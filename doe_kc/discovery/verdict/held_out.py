@@ -82,7 +82,7 @@ def held_out_score(fit: Fit) -> HeldOutScore:
     det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
     """
     predicted = ~fit.model.used
-    residual, rows = fit.residual[predicted], fit.jacobian[predicted]
+    residual, rows = fit.residual[predicted], fit.jacobian.rows(predicted)
     before = cholesky(fit.hessian, lower=True)
     after = cholesky(fit.hessian + rows.T @ rows, lower=True)
     pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)

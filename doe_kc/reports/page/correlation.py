@@ -10,8 +10,9 @@ from typing import Any
 
 from markupsafe import Markup
 
-from doe_kc.correlation.assessment import STATUS_LABELS, Assessment, assess
+from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
+from doe_kc.correlation.status import STATUS_LABELS
 from doe_kc.measurement import Measurement
 from doe_kc.reports import style
 from doe_kc.reports.correlation_characteristics import CharacteristicRow, characteristic_table
@@ -25,6 +26,7 @@ from doe_kc.reports.page.curves import curves_section
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, embedded, render, significant, table_html, write_page
 from doe_kc.reports.table import Column, PageCell
+from doe_kc.reports.twin_tables import TWIN_REMARK, twin_table
 
 BAR_WIDTH = 230
 """Units across a bar's drawing."""
@@ -140,6 +142,14 @@ def convergence_section(correlation: Correlation) -> Section:
     return Section("Convergence", render("convergence.html", data=embedded(data)), CONVERGENCE_LEAD)
 
 
+def twin_section(correlation: Correlation) -> list[Section]:
+    """Where an outside model and its twin disagree; none without a twin."""
+    agreement = correlation.twin
+    if agreement is None:
+        return []
+    return [Section("Twin", table_html(twin_table(agreement)), f"{agreement.line} {TWIN_REMARK}")]
+
+
 def correlation_sections(
     correlation: Correlation,
     measurement: Measurement | None,
@@ -147,7 +157,7 @@ def correlation_sections(
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
 ) -> list[Section]:
-    """Summary, Characteristics, Curves, Convergence, Parameters, Axle.
+    """Summary, Characteristics, Curves, Twin where an outside model has one, Convergence, Parameters, Axle.
 
     notes: further lines of the summary.
     """
@@ -156,6 +166,7 @@ def correlation_sections(
         characteristics_section(correlation),
     ]
     sections += curves_section(correlation, measurement)
+    sections += twin_section(correlation)
     return [
         *sections,
         convergence_section(correlation),

@@ -20,53 +20,65 @@ from doe_kc.surrogate_models.models.gp import FittedGaussianProcess
 from doe_kc.surrogate_models.training import Scaling
 
 LEAST_CURVATURE = 1e-12
-"""Added to the mean over all outputs before its logarithm is taken."""
+"""Added to the mean over the outputs before its logarithm is taken."""
+NUGGET, NUGGET_ROWS = 1e-4, 100
+"""Share of an output's variance that no length-scale of so few rows can tell; above that many rows it falls
+with their square, as the error does (error at 400 designs 0.0120 instead of 0.0136)."""
+FIRST_ROWS = 200
+"""Rows that the first maximisation makes do with: at 400 a third of the time for 3 % of the error."""
 
 
 @final
 @register
 @dataclass(frozen=True)
 class RelevanceProcess(SurrogateModel):
-    """Squared-exponential kernel of each output, its scales by `ard_likelihood`.
+    """Matérn kernel of each output, its scales by `ard_likelihood`.
 
-    iterations: of each output by itself. shared: of the second maximisation, with a Gaussian prior about the
-    logarithm of the mean over all outputs, of precision `belief`: what is relevant to one characteristic of
-    an axle is likelier to be so to another. nugget: share of the output's variance.
+    iterations: of each output by itself. shared: of the second maximisation, with a Gaussian prior of
+    precision `belief` about the logarithm of the mean over the outputs, weighted by their correlation with
+    it to the power `likeness`: what is relevant to one characteristic of an axle is likelier to be so to
+    another that varies with it. Twice as many where the first had not all rows.
     """
 
-    nugget: float = 1e-6
     iterations: int = 30
     shared: int = 10
-    belief: float = 0.1
+    belief: float = 0.3
+    likeness: float = 4.0
 
     id: ClassVar[str] = "gp_ard"
     label: ClassVar[str] = "Gaussian process, full likelihood"
     complexity: ClassVar[int] = 6
-    interpolates: ClassVar[bool] = True
+    interpolates: ClassVar[bool] = False
     exact_folds: ClassVar[bool] = True
     optimistic_loo: ClassVar[bool] = True
-    most: ClassVar[int | None] = 143
+    most: ClassVar[int | None] = 400
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         del seed
         centre, scaling = x.mean(axis=0), Scaling.of(y)
         sample = Sample(x - centre, scaling.standardise(y))
-        scales = self._scales(sample)
-        kernel = _kernel(scales, self.nugget)
+        nugget = NUGGET * min(1.0, NUGGET_ROWS / len(x)) ** 2
+        kernel = _kernel(self._scales(sample, nugget), nugget)
         return FittedGaussianProcess(centre, scaling, gp.condition(kernel, sample.z, sample.values), None)
 
-    def _scales(self, sample: Sample) -> Scales:
-        even = even_scales(sample.spread, sample.values.shape[1])
-        first = best_start(even, sample.z, sample.values, nugget=self.nugget)
-        alone = maximise(first, sample.z, sample.values, nugget=self.nugget, iterations=self.iterations)
-        ordered = np.sort(np.exp(alone.curvature), axis=0)  # a sum that the outputs' order does not change
-        mean = np.log(ordered.mean(axis=0) + LEAST_CURVATURE)
+    def _scales(self, sample: Sample, nugget: float) -> Scales:
+        z, values = sample.z[:FIRST_ROWS], sample.values[:FIRST_ROWS]
+        first = best_start(even_scales(sample.spread, values.shape[1]), z, values, nugget=nugget)
+        alone = maximise(first, z, values, nugget=nugget, iterations=self.iterations)
+        shared = self.shared if len(z) == len(sample.z) else 2 * self.shared
         return maximise(
-            alone, sample.z, sample.values, nugget=self.nugget, iterations=self.shared,
-            belief=Belief(mean, self.belief),
+            alone, sample.z, sample.values, nugget=nugget, iterations=shared,
+            belief=Belief(self._expected(alone, sample.values), self.belief),
         )  # fmt: skip
+
+    def _expected(self, scales: Scales, values: FloatArray) -> FloatArray:
+        """(m, d) logarithms of the weighted means; sums that the order of the outputs does not change."""
+        likeness = np.abs(np.atleast_2d(np.corrcoef(values.T))) ** self.likeness
+        parts = (likeness / likeness.sum(axis=1, keepdims=True))[:, :, None] * np.exp(scales.curvature)[None]
+        return np.asarray(np.log(np.sort(parts, axis=1).sum(axis=1) + LEAST_CURVATURE))
 
 
 def _kernel(scales: Scales, nugget: float) -> CovarianceKernel:
     curvature, bend, constant = (np.exp(s) for s in (scales.curvature, scales.bend, scales.constant))
-    return CovarianceKernel(np.zeros_like(curvature), curvature, bend, constant, np.full(len(bend), nugget))
+    zero, nuggets = np.zeros_like(curvature), np.full(len(bend), nugget)
+    return CovarianceKernel(zero, curvature, bend, constant, nuggets, matern=True)

@@ -7,6 +7,7 @@ import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.projection import changes
 from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.screening.disagreement import raw_map, residual_map
 from doe_kc.discovery.thresholds import NOISE_SIZE_DOUBT
@@ -39,7 +40,7 @@ def test_noise_passes_the_threshold_as_often_as_it_says(tuned: Fit, shapes: Cont
 
 
 def test_nothing_hidden_leaves_nothing(tuned: Fit, shapes: Contrasts) -> None:
-    assert residual_map(shapes, tuned.residual, tuned.projection).chance > 0.01
+    assert residual_map(shapes, tuned.remainder, tuned.projection).chance > 0.01
 
 
 def test_a_shape_that_tuning_cannot_make_is_found_where_it_is(tuned: Fit, shapes: Contrasts) -> None:
@@ -49,7 +50,7 @@ def test_a_shape_that_tuning_cannot_make_is_found_where_it_is(tuned: Fit, shapes
         if (c.load_case, c.response, c.shape, c.wheels) == ("steer", "camber", "loop width", "both")
     )
     shifted = tuned.residual + 12.0 * shapes.rows.toarray()[:, at]
-    found = residual_map(shapes, shifted, tuned.projection)
+    found = residual_map(shapes, changes(tuned.jacobian, shifted, is_residual=True), tuned.projection)
     assert not found.agrees
     worst, z = found.worst(1)[0]
     assert worst == shapes.names[at]
@@ -57,11 +58,11 @@ def test_a_shape_that_tuning_cannot_make_is_found_where_it_is(tuned: Fit, shapes
 
 
 def test_a_change_that_a_parameter_makes_is_not_counted(tuned: Fit, shapes: Contrasts) -> None:
-    strongest = int(np.argmax(np.linalg.norm(tuned.jacobian[:, : tuned.model.parameters], axis=0)))
-    column = tuned.jacobian[:, strongest]
+    columns = tuned.jacobian.dense[:, : tuned.model.parameters]
+    column = columns[:, int(np.argmax(np.linalg.norm(columns, axis=0)))]
     shifted = tuned.residual + 20.0 * column / np.linalg.norm(column)
     assert raw_map(shapes, shifted).largest > 8.0
-    assert residual_map(shapes, shifted, tuned.projection).agrees
+    assert residual_map(shapes, changes(tuned.jacobian, shifted, is_residual=True), tuned.projection).agrees
 
 
 def test_contrasts_of_no_data_are_none() -> None:

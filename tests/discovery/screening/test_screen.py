@@ -11,7 +11,9 @@ import pytest
 from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, fit
-from doe_kc.discovery.screening.screen import amplitude_solution, score_test, screen, shape_of
+from doe_kc.discovery.jacobian import Jacobian
+from doe_kc.discovery.projection import Projection, changes
+from doe_kc.discovery.screening.screen import amplitude_solution, score_tests, screen, shape_of
 from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR, SHAPE_STARTS, TRACE_SD
 from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
 from tests.discovery.cases import library, model
@@ -32,12 +34,15 @@ def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
 def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
     found = screen(tuned, hub)
-    again = score_test(tuned, found)
+    unseen = replace(found, failed="no equilibrium")
+    again, failed = score_tests(tuned, [found, replace(unseen, hypothesis=library("strut_friction")[0])])
+    assert failed.failed and failed.gain == found.gain
     prior = tuned.model.prior_sd
-    marginal = np.eye(tuned.residual.size) + (tuned.jacobian * prior**2) @ tuned.jacobian.T
+    jacobian = tuned.jacobian.dense
+    marginal = np.eye(tuned.residual.size) + (jacobian * prior**2) @ jacobian.T
     weighted = np.linalg.solve(marginal, found.columns)
     hessian = found.columns.T @ weighted + np.eye(2)
-    offset = tuned.residual - tuned.jacobian @ (tuned.z - tuned.model.centre)
+    offset = tuned.residual - jacobian @ (tuned.z - tuned.model.centre)
     expected = -np.linalg.solve(hessian, weighted.T @ offset)
     assert np.allclose(again.amplitudes, expected, rtol=1e-5, atol=1e-6)
 
@@ -51,14 +56,13 @@ def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned:
 
 def test_what_a_size_shows_is_what_the_other_sizes_cannot_imitate(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
-    projection = tuned.projection
     found = screen(tuned, hub)
-    columns = projection(found.columns)
+    gram = tuned.projection.gram_of(tuned.changes(found.columns))
     for own, other in ((0, 1), (1, 0)):
-        share = columns[:, own] @ columns[:, other] / (columns[:, other] @ columns[:, other])
-        rest = columns[:, own] - share * columns[:, other]
-        assert found.size_detectability[own] == pytest.approx(np.linalg.norm(rest), rel=1e-4)
-    assert (score_test(tuned, found).size_detectability == found.size_detectability).all()
+        rest = gram[own, own] - gram[own, other] ** 2 / gram[other, other]
+        assert found.size_detectability[own] == pytest.approx(np.sqrt(rest), rel=1e-4)
+    (again,) = score_tests(tuned, [found])
+    assert again.size_detectability == pytest.approx(found.size_detectability, rel=1e-9)
     assert found.size_detectability.min() < found.detectability
 
 
@@ -94,11 +98,11 @@ def test_the_next_screening_begins_at_the_last_shape() -> None:
 
 def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> None:
     (friction,) = library("strut_friction")
-    projection = tuned.projection
     clear = screen(tuned, friction)
-    followed = tuned.jacobian @ np.full(tuned.z.size, 0.3)  # what parameters do, and a trace besides
+    followed = tuned.jacobian.moved(np.full(tuned.z.size, 0.3))  # what parameters do, and a trace besides
     followed += 0.05 * np.linalg.norm(followed) * clear.change / np.linalg.norm(clear.change)
-    hidden = replace(clear, change=followed, detectability=float(np.linalg.norm(projection(followed))))
+    seen = float(np.sqrt(tuned.projection.squares(tuned.changes(followed))[0]))
+    hidden = replace(clear, change=followed, detectability=seen)
     assert hidden.detectability > 10.0
     shown, unsure = hypothesis_statuses(tuned, [clear, hidden], [], 4.0, resolved=True)
     beside_trace = 4.84 * np.hypot(1.0 / clear.detectability, TRACE_SD)
@@ -144,20 +148,16 @@ class Saturating:
         return np.array([[200.0 / (1.0 + 5.0 * float(z[0])) ** 2]])
 
 
-class Untuned:
-    """No parameter to project out."""
-
-    def __call__(self, columns: np.ndarray) -> np.ndarray:
-        return columns
-
-    def residual(self, residual: np.ndarray) -> np.ndarray:
-        return residual
-
-
 def test_a_small_effect_is_found_where_a_line_from_a_larger_one_leads_past_it() -> None:
     model: Any = Saturating(true=0.03)
+    nothing, jacobian = np.zeros(0), Jacobian(np.zeros((1, 0)))  # no parameter to project out
     found: Any = SimpleNamespace(
-        z=model.z, residual=model.residual_of, remainder=model.residual_of, projection=Untuned()
+        z=model.z,
+        residual=model.residual_of,
+        remainder=changes(jacobian, model.residual_of, is_residual=True),
+        misfit_left=float(model.residual_of @ model.residual_of),
+        changes=lambda rows: changes(jacobian, rows),
+        projection=Projection(jacobian, nothing, nothing, nothing.astype(int), np.zeros((0, 0))),
     )
     unsolved = amplitude_solution(model, found, np.array([PROBE]), np.array([PROBE]))
     assert not unsolved.solved

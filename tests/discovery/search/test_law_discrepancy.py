@@ -9,6 +9,8 @@ import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, cost_of, fit, rewhitened_fit
+from doe_kc.discovery.jacobian import Jacobian
+from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
     fit_discrepancy,
@@ -26,7 +28,7 @@ def at(car: str, member: Hypothesis, z: FloatArray) -> Fit:
     """A fit that stands where it is told to."""
     extended = model(car).extended(member)
     residual = extended.residual(z)
-    jacobian = np.zeros((residual.size, z.size))
+    jacobian = Jacobian(np.zeros((residual.size, z.size)))
     return Fit(extended, z, residual, jacobian, cost_of(extended, z, residual), 1, True)
 
 
@@ -102,11 +104,13 @@ def test_other_errors_change_the_units_of_everything() -> None:
     """Model and fit stay each other's: differences between the sides are in the new errors too."""
     (hub,) = library("hub_compliance")
     plain = model("named").extended(hub)
-    sided = replace(plain, sides=np.random.default_rng(1).standard_normal((plain.likelihood.size, 2)))
+    sides = LinearNuisances(np.random.default_rng(1).standard_normal((plain.likelihood.size, 2)))
+    sided = replace(plain, nuisances=sides)
     z = sided.centre.copy()
     z[sided.dimension - 2 :] = 0.7, -1.2, 1.0, 0.5
     residual = sided.residual(z)
-    found = Fit(sided, z, residual, np.zeros((residual.size, z.size)), cost_of(sided, z, residual), 1, True)
+    jacobian = sided.jacobian(np.zeros((residual.size, z.size - 2)))
+    found = Fit(sided, z, residual, jacobian, cost_of(sided, z, residual), 1, True)
     wide = with_discrepancy(sided, effect_signals(found), [SHARE])
     moved = rewhitened_fit(found, wide)
     np.testing.assert_allclose(wide.residual(z), moved.residual, rtol=0, atol=1e-8)

@@ -26,7 +26,7 @@ class Answers(DiscoveryWorkers):
         self.laws.append(model.members[0].law)
         found = disagreeing()
         more = z.size - found.z.size
-        jacobian = np.hstack([found.jacobian, np.zeros((found.residual.size, more))])
+        jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
         return [replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + self.cost)]
 
 

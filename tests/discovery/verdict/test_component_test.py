@@ -37,7 +37,7 @@ def rack(tuned: Fit) -> Screened:
 
 def shown(tuned: Fit, prior_sd: FloatArray, change: FloatArray) -> float:
     """Standard deviations of a change once the parameters are re-tuned within their priors."""
-    jacobian = tuned.jacobian * prior_sd
+    jacobian = tuned.jacobian.dense * prior_sd
     covariance = np.eye(change.size) + jacobian @ jacobian.T
     return float(np.sqrt(change @ np.linalg.solve(covariance, change)))
 

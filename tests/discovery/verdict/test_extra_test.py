@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.verdict.extra_test import extra_tests
 from tests.discovery.cases import discovery
 
@@ -40,6 +41,6 @@ def test_what_is_less_known_separates_less() -> None:
     """With its parameters hardly known, the other explanation follows the further load case too."""
     fits = trials("named")
     own, other = fits["hub_compliance"], next(f for n, f in fits.items() if n != "hub_compliance")
-    blurred = replace(other, jacobian=0.1 * other.jacobian)
+    blurred = replace(other, jacobian=Jacobian(0.1 * other.jacobian.dense))
     assert np.trace(blurred.covariance) > np.trace(other.covariance)
     assert extra_tests(own, blurred)[0].separation < extra_tests(own, other)[0].separation

@@ -37,13 +37,15 @@ def trial(effect: str, sizes: list[float], gain: float, apart: float = 0.0) -> H
     (hypothesis,) = [h for h in library(effect) if h.location in (None, "ROB")]
     columns = np.zeros((tuned.residual.size, len(sizes)))
     columns[range(len(sizes)), range(len(sizes))] = 100.0
-    tuning = tuned.jacobian.copy()
+    tuning = tuned.jacobian.own.copy()
     tuning[: len(sizes)] = 0.0
     model, z = tuned.model.extended(hypothesis), np.append(tuned.z, sizes)
     residual = tuned.residual + np.eye(tuned.residual.size)[0] * apart
     return HypothesisFit(
         hypothesis,
-        replace(tuned, model=model, z=z, residual=residual, jacobian=np.hstack([tuning, columns])),
+        replace(
+            tuned, model=model, z=z, residual=residual, jacobian=model.jacobian(np.hstack([tuning, columns]))
+        ),
         gain,
     )
 

@@ -9,6 +9,7 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from doe_kc.discovery.fit import chord_fit, fit
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import HELD_OUT_LIMIT
 from doe_kc.discovery.verdict.held_out import HeldOutScore, fit_without, held_out, held_out_score
@@ -42,13 +43,13 @@ def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
 
 def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     search, taken = discovery("named").search, []
-    tuning = EffectModel.tuning_columns
+    tuning = EffectModel.own_columns
 
     def counted(self: EffectModel, *at: FloatArray) -> FloatArray:
         taken.append(self.left_out)
         return tuning(self, *at)
 
-    monkeypatch.setattr(EffectModel, "tuning_columns", counted)
+    monkeypatch.setattr(EffectModel, "own_columns", counted)
     near = fit_without(search.with_effects, "lateral_opposite")
     assert not taken and near.converged
     anew = fit(near.model, search.with_effects.z)
@@ -64,14 +65,14 @@ def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch
 
 def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
     with_effects = discovery("named").search.with_effects
-    false = replace(with_effects, jacobian=-with_effects.jacobian, z=with_effects.z)
+    false = replace(with_effects, jacobian=Jacobian(-with_effects.jacobian.dense), z=with_effects.z)
     assert not chord_fit(false, replace(with_effects.model, left_out="steer")).converged
 
 
 def test_a_prediction_has_the_density_of_its_covariance() -> None:
     found = fit_without(discovery("named").search.with_effects, "lateral")
     predicted = np.flatnonzero(~found.model.used)
-    residual, rows = found.residual[predicted], found.jacobian[predicted]
+    residual, rows = found.residual[predicted], found.jacobian.rows(predicted)
     covariance = np.eye(predicted.size) + rows @ found.covariance @ rows.T
     own = held_out_score(found)
     density = multivariate_normal(np.zeros(predicted.size), covariance).logpdf(residual)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.result import Finding, Rival
 from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.screening.disagreement import Map
@@ -39,7 +40,7 @@ def of(largest: float, *, count: int = 50) -> Map:
 
 def with_rms(rms: float) -> Fit:
     rows = 5000
-    return Fit(model("none"), np.zeros(1), np.full(rows, rms), np.zeros((rows, 1)), 0.0, 1, True)
+    return Fit(model("none"), np.zeros(1), np.full(rows, rms), Jacobian(np.zeros((rows, 1))), 0.0, 1, True)
 
 
 def judged(findings=(CLEAR,), *, after=2.0, held_out=BETTER, tuned=3.0, final=1.0):  # type: ignore[no-untyped-def]

@@ -4,7 +4,7 @@ Every characteristic and curve score has its own surrogate, the rating is comput
 sample, led by a first-order step where slopes are exact, three kinds of proposals take turns, each kept while
 it gains: Gauss-Newton on the expected rating, bolder while it succeeds; expected improvement; Gauss-Newton on
 the bare predictions in a small trust region. Every candidate is confirmed by the true solver, which also
-calibrates the predicted errors.
+calibrates the predicted errors. Where an outside solver has a twin, that one leads first: `mapped_search.py`.
 References: D. R. Jones, M. Schonlau, W. J. Welch, J. Global Optim. 13, 1998; R. Astudillo, P. Frazier, ICML
 2019; D. Eriksson et al., Scalable global optimization via local Bayesian optimization, NeurIPS 2019.
 """
@@ -19,6 +19,7 @@ import numpy as np
 from doe_kc.correlation.least_squares import most_probable_step
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
+from doe_kc.correlation.methods.ego.mapped_search import MAPPED, MappedSearch
 from doe_kc.correlation.methods.ego.proposer import Proposer
 from doe_kc.correlation.methods.ego.strategy import PATIENCE_WITH_SLOPES, Strategy, VarianceCalibration
 from doe_kc.correlation.modelled.archive import Archive, Slopes, build_archive
@@ -44,17 +45,19 @@ FIRST_STEP = "first-order step"
 class Ego(SurrogateMethod):
     """State: beside the answers strategy, calibration of predicted variances and slopes at the best design.
 
-    Exact slopes are taken wherever the problem has them, unless the settings forbid it; a search that has
+    Slopes are taken wherever the problem has them, unless the settings forbid it; a search that has
     settled then ends, where others start anew elsewhere: from there slopes at the best design lead nowhere.
+    Those of a twin count until its changes turn out not to be those of the outside model.
     """
 
     id: ClassVar[str] = "ego"
     label: ClassVar[str] = "Composite efficient global optimization"
 
     def __init__(self, problem: Problem, settings: MethodSettings) -> None:
-        self._exact = problem.exact and settings.gradients is not False
-        super().__init__(problem, settings, WITH_SLOPES if self._exact else OPENING)
-        self._strategy = Strategy(restarts=0, patience=PATIENCE_WITH_SLOPES) if self._exact else Strategy()
+        self._sloped = problem.has_slopes and settings.gradients is not False
+        super().__init__(problem, settings, WITH_SLOPES if self._sloped else OPENING)
+        self._strategy = Strategy(restarts=0, patience=PATIENCE_WITH_SLOPES) if self._sloped else Strategy()
+        self._mapped = MappedSearch(problem) if self._sloped and problem.twin is not None else None
         self._settled = False
         self._calibration = VarianceCalibration()
         self._expanded: int | None = None
@@ -67,35 +70,59 @@ class Ego(SurrogateMethod):
 
     def tell(self, evaluated: Sequence[Evaluated]) -> None:
         """Answers; proposals among them teach strategy and calibration."""
-        before = max((e.merit for e in self._evaluated), default=-np.inf)
+        earlier = tuple(self._evaluated)
+        before = max((e.merit for e in earlier), default=-np.inf)
         super().tell(evaluated)
-        if not any(e.candidate.predicted for e in evaluated):
+        for answer in evaluated:
+            if self._mapped is not None and answer.candidate.origin == MAPPED:
+                self._mapped = self._mapped.after(earlier, answer)
+        if self._mapped is not None and not self._mapped.useful:
+            self._without_twin()
+        searched = [e for e in evaluated if e.candidate.predicted and e.candidate.origin != MAPPED]
+        if not searched:
             return
-        self._calibration.learn(evaluated)
+        self._calibration.learn(searched)
         after = max(e.merit for e in evaluated)
         self._strategy = self._strategy.after(after - before, before)
+
+    def _without_twin(self) -> None:
+        """The search that sees values alone, with its opening sample."""
+        self._mapped, self._sloped, self._slopes = None, False, None
+        self._strategy, self._opening, self._opened = Strategy(), OPENING, False
 
     def _opening_designs(self, count: int, seed: int) -> Sequence[Candidate]:
         """With exact slopes the first is where they lead from the baseline."""
         step = None
-        if self._exact and len(self._evaluated) == 1:
+        if self._problem.exact and self._sloped and len(self._evaluated) == 1:
             step = first_order(self._problem, self._evaluated[0])
         if step is None:
             return super()._opening_designs(count, seed)
         return [step, *super()._opening_designs(count - 1, seed)] if count > 1 else [step]
 
     def _missing(self) -> int:
-        """A few designs more at a time while too many fail."""
+        """A few designs more at a time while too many fail; none while the twin leads, unless asked for."""
+        if self._mapped is not None and self._mapped.active and self._settings.first is None:
+            return 0
         solved = sum(e.score is not None for e in self._evaluated)
         return max(EGO_DESIGNS - solved, super()._missing())
 
     def _round(self, rng: np.random.Generator) -> list[Candidate]:
-        """`batch` candidates, fewer or none where slopes are exact and lead to known designs only."""
+        """`batch` candidates, one while the twin leads; fewer or none where slopes lead to known designs."""
+        if self._mapped is not None and self._mapped.active:
+            candidate = self._mapped.candidate(self._evaluated)
+            if candidate is not None:
+                return [candidate]
+            self._mapped = self._mapped.settled(self._evaluated)
+            if not self._mapped.useful:
+                self._without_twin()
+            missing, self._opened = self._missing(), True
+            if missing > 0:
+                return list(self._opening_designs(missing, int(rng.integers(2**31))))
         proposer = self._proposer()
         taken = {e.point.tobytes() for e in self._evaluated}
         kind, out = self._strategy.kind, list[Candidate]()
         for place in range(self._settings.batch):
-            candidate = proposer.candidate(self._strategy, kind, taken, rng, anywhere=not self._exact)
+            candidate = proposer.candidate(self._strategy, kind, taken, rng, anywhere=not self._sloped)
             if candidate is None:
                 self._settled = not out
                 break
@@ -112,7 +139,7 @@ class Ego(SurrogateMethod):
         return Proposer(self._problem, archive, model, self._calibration.factor)
 
     def _archive(self) -> Archive:
-        if not self._exact:
+        if not self._sloped:
             return build_archive(self._problem.search, self._evaluated)
         best = max(self._evaluated, key=lambda e: e.merit)
         if self._expanded != best.index:

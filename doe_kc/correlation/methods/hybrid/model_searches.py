@@ -8,59 +8,21 @@ count, and few of them suffice (the interpolation of least norm), as in derivati
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
 from typing import ClassVar, final
 
 import numpy as np
 
 from doe_kc.correlation.methods.hybrid.search import CandidateSearch, SearchTrial
 from doe_kc.correlation.modelled.history import SearchHistory
+from doe_kc.correlation.modelled.linear_model import LinearModel
 from doe_kc.correlation.modelled.proposal import best_predicted, forecast
 from doe_kc.correlation.modelled.trust_region import RadiusRule, TrustBox, TrustRegion
 from doe_kc.correlation.problem import Candidate
 from doe_kc.ground.typing import FloatArray
-from doe_kc.surrogate_models.interface import Fitted, LeftOut
+from doe_kc.surrogate_models.interface import Fitted
 
 STEP_RIDGE = 1e-6
 """Share of the mean square of the steps: below what one level changes."""
-
-
-@final
-@dataclass(frozen=True)
-class LinearModel(Fitted):
-    """mean(x) = value + slope (x - centre); slope (m, d), value and variance (m,), residual (n, m)."""
-
-    centre: FloatArray
-    value: FloatArray
-    slope: FloatArray
-    spread: FloatArray
-    residual: FloatArray
-
-    @property
-    def variables(self) -> int:
-        """d."""
-        return len(self.centre)
-
-    @property
-    def outputs(self) -> int:
-        """m."""
-        return len(self.value)
-
-    def cross_validate(self) -> LeftOut:
-        """Residuals of the fit itself: the model is no more than a guide for one step."""
-        return LeftOut(self.residual, np.tile(self.spread, (len(self.residual), 1)))
-
-    def _mean(self, x: FloatArray) -> FloatArray:
-        return np.asarray(self.value + (x - self.centre) @ self.slope.T)
-
-    def _variance(self, x: FloatArray) -> FloatArray:
-        return np.tile(self.spread, (len(x), 1))
-
-    def _gradient(self, x: FloatArray) -> FloatArray:
-        return np.tile(self.slope, (len(x), 1, 1))
-
-    def _variance_gradient(self, x: FloatArray) -> FloatArray:
-        return np.zeros((len(x), self.outputs, self.variables))
 
 
 def linear_model(centre: FloatArray, x: FloatArray, y: FloatArray) -> LinearModel:

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import rewhitened
-from doe_kc.discovery.clutter import Clutter
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import screen
@@ -28,12 +27,12 @@ def cluttered(tuned: Fit) -> Fit:
 
 
 def test_traces_are_of_amounts_at_three_per_cent(tuned: Fit, cluttered: Fit) -> None:
-    clutter = cluttered.model.clutter
-    assert clutter is not None
-    assert set(clutter.names) == {"hub_compliance", "tie_rod_compliance"}
+    known = cluttered.model.nuisances
+    assert known is not None
+    assert set(known.traces) == {"hub_compliance", "tie_rod_compliance"}
     (rod,) = library("tie_rod_compliance")
     column = screen(tuned, rod).columns[:, 0]
-    own = clutter.columns[:, clutter.names.index("tie_rod_compliance")]
+    own = known.columns[:, known.count - len(known.traces) + known.traces.index("tie_rod_compliance")]
     np.testing.assert_allclose(own, TRACE_SD * column)
 
 
@@ -41,11 +40,15 @@ def test_a_member_has_no_trace_beside_its_sizes(cluttered: Fit) -> None:
     (hub,) = library("hub_compliance")
     extended = cluttered.model.extended(hub)
     assert extended.dimension == cluttered.model.dimension
-    linear, clutter = extended.linear, cluttered.model.clutter
-    assert linear is not None and clutter is not None
-    traces = linear[:, -len(clutter.names) :]
-    for name, column in zip(clutter.names, traces.T, strict=True):
+    known = extended.nuisances
+    assert known is cluttered.model.nuisances and known is not None
+    jacobian = extended.jacobian(np.zeros((extended.likelihood.size, extended.calibrations.stop + 2)))
+    for name, column in zip(known.traces, jacobian.dense[:, extended.traces].T, strict=True):
         assert bool(np.any(column)) is (name != "hub_compliance")
+    unknown = np.concatenate([cluttered.z, [0.0, 0.0]])
+    traced = unknown.copy()
+    traced[extended.traces] += [name == "hub_compliance" for name in known.traces]
+    np.testing.assert_array_equal(extended.residual(traced), extended.residual(unknown))
 
 
 def test_sizes_have_the_variance_of_what_is_left_out(tuned: Fit) -> None:
@@ -53,24 +56,25 @@ def test_sizes_have_the_variance_of_what_is_left_out(tuned: Fit) -> None:
     (hub,) = library("hub_compliance")
     (rod,) = library("tie_rod_compliance")
     column = screen(tuned, rod).columns[:, 0]
-    clutter = Clutter(("tie_rod_compliance",), TRACE_SD * column[:, None])
-    wide: EffectModel = replace(tuned.model, clutter=clutter).extended(hub)
+    assert tuned.model.nuisances is not None
+    traced = tuned.model.nuisances.with_traces(["tie_rod_compliance"], TRACE_SD * column[:, None])
+    wide: EffectModel = replace(tuned.model, nuisances=traced).extended(hub)
     z = np.concatenate([tuned.z, [0.0], [0.5, 0.5]])
     sizes = np.random.default_rng(3).standard_normal((tuned.residual.size, 2))
-    jacobian = np.hstack([wide.with_own_nuisances(tuned.jacobian), sizes])
+    jacobian = wide.jacobian(np.hstack([tuned.jacobian.own, sizes]))
     fit = Fit(wide, z, tuned.residual, jacobian, 0.0, 1, True)
     errors = np.eye(tuned.residual.size) + TRACE_SD**2 * np.outer(column, column)
-    seen = np.hstack([tuned.jacobian, sizes])
+    seen = np.hstack([tuned.jacobian.dense, sizes])
     prior = np.concatenate([tuned.model.prior_sd, np.ones(2)])
     expected = np.linalg.inv(seen.T @ np.linalg.solve(errors, seen) + np.diag(prior**-2.0))
     np.testing.assert_allclose(fit.covariance[-2:, -2:], expected[-2:, -2:], rtol=1e-6)
 
 
 def test_other_errors_change_the_units_of_traces(cluttered: Fit) -> None:
-    model, clutter = cluttered.model, cluttered.model.clutter
+    model, known = cluttered.model, cluttered.model.nuisances
     curves = tuple(replace(c, root=2.0 * c.root) for c in model.likelihood.curves)
     wide = model.with_likelihood(replace(model.likelihood, curves=curves))
-    assert clutter is not None and wide.clutter is not None
-    expected = rewhitened(clutter.columns, model.likelihood, wide.likelihood)
-    np.testing.assert_allclose(wide.clutter.columns, expected)
-    np.testing.assert_allclose(wide.clutter.columns[:10], 0.5 * clutter.columns[:10])
+    assert known is not None and wide.nuisances is not None
+    expected = rewhitened(known.columns, model.likelihood, wide.likelihood)
+    np.testing.assert_allclose(wide.nuisances.columns, expected)
+    np.testing.assert_allclose(wide.nuisances.columns[:10], 0.5 * known.columns[:10])

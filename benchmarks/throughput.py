@@ -1,0 +1,119 @@
+"""CPU time of a suite and of exact sensitivities for every axle type, and of designs in a campaign.
+
+Minima and ratios: they hold on a machine that does other things too.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+from _common import machine, publish
+
+from doe_kc.axle import Axle, design_parameters
+from doe_kc.axle.parameters import settable_paths
+from doe_kc.axle_file import read_axle
+from doe_kc.campaign.runner import Campaign
+from doe_kc.effects import apply_effect
+from doe_kc.examples import EXAMPLE_TYPES, example_folder
+from doe_kc.sampling import sample
+from doe_kc.solver.sensitivity import sensitivities
+from doe_kc.solver.suite import solve
+from doe_kc.true_solver.own import AxleSolver
+from doe_kc.variables import VariableOptions, build_space
+
+REPEATS = 9
+DESIGNS = 200
+CAMPAIGN_TYPES = ("mcpherson_front", "five_link_rear")
+FRICTION = ("steering_friction", "strut_friction")
+MOST_SUITES = 12.0
+
+
+def least_ms(run: Callable[[], object], repeats: int = REPEATS) -> float:
+    """Smallest CPU time of this process, ms, after one run that compiles."""
+    run()
+    times = []
+    for _ in range(repeats):
+        started = time.process_time()
+        run()
+        times.append(1e3 * (time.process_time() - started))
+    return min(times)
+
+
+def sensitivity_row(name: str, axle: Axle) -> str:
+    solution, every = solve(axle), settable_paths(axle)
+    own = [p.path for p in design_parameters(axle)]
+    suite = least_ms(partial(solve, axle))
+    all_ms, own_ms = (least_ms(partial(sensitivities, axle, solution, p), 5) for p in (every, own))
+    cells = [
+        *(name, str(solution.equilibria), f"{suite:.1f}"),
+        *(str(len(every)), f"{all_ms:.0f}", f"{all_ms / suite:.1f}"),
+        *(str(len(own)), f"{own_ms:.0f}", f"{own_ms / suite:.1f}"),
+    ]
+    return f"| {' | '.join(cells)} |"
+
+
+def cpu_seconds() -> float:
+    """Of this process and of those that have ended."""
+    t = os.times()
+    return t.user + t.system + t.children_user + t.children_system
+
+
+def campaign_row(name: str, axle: Axle, *, keep_curves: bool) -> str:
+    space = build_space(axle, VariableOptions(levels="continuous"), "benchmark")
+    designs = list(sample(space, DESIGNS, seed=3, method="sobol").rows())
+    rows = []
+    for _ in range(3):
+        with tempfile.TemporaryDirectory() as folder:
+            path, before, started = Path(folder) / "store", cpu_seconds(), time.perf_counter()
+            with Campaign(AxleSolver(axle), path, workers=2, keep_curves=keep_curves) as campaign:
+                campaign.evaluate(designs, "benchmark", curves=False)
+            wall = time.perf_counter() - started
+            size = path.stat().st_size / DESIGNS / 1e3
+            rows.append((1e3 * (cpu_seconds() - before) / DESIGNS, 1e3 * wall / DESIGNS, size))
+    used, wall, size = min(rows)
+    kept = "all" if keep_curves else "none"
+    return f"| {name} | {kept} | {used:.2f} | {wall:.2f} | {size:.1f} |"
+
+
+def main() -> None:
+    axles = {t: read_axle(example_folder(t) / "axle.toml") for t in EXAMPLE_TYPES}
+    rubbing = axles["mcpherson_front"]
+    for effect in FRICTION:
+        rubbing = apply_effect(rubbing, effect, {}, source="benchmark")
+    soft = apply_effect(rubbing, "rubber_hysteresis", {}, source="benchmark")
+    further = {"mcpherson_front, two frictions": rubbing, "the same, rubber with hysteresis": soft}
+    sensitivity = [sensitivity_row(name, axle) for name, axle in (axles | further).items()]
+    campaigns = [
+        campaign_row(name, axles[name], keep_curves=keep) for name in CAMPAIGN_TYPES for keep in (True, False)
+    ]
+    publish(
+        "throughput",
+        [
+            "# Throughput",
+            "",
+            f"Compiled kernels, all load cases of each type's example, least CPU time of {REPEATS} runs. "
+            f"{machine()}.",
+            "",
+            f"Exact sensitivities of all outputs in all equilibria (wanted: at most {MOST_SUITES:g} suites):",
+            "",
+            "| axle | equilibria | suite, ms | all parameters | ms | suites | of the design | ms | suites |",
+            "|---|---|---|---|---|---|---|---|---|",
+            *sensitivity,
+            "",
+            f"Campaigns of {DESIGNS} designs over the default bounds, two processes: solved, reduced, "
+            "checked and stored, least of three:",
+            "",
+            "| axle | curves stored | CPU ms a design | wall ms a design | kB a design |",
+            "|---|---|---|---|---|",
+            *campaigns,
+        ],
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,66 @@
+"""Nuisances whose columns are the same at every point: differences between the sides, and clutter.
+
+Clutter are traces of every effect that is not in the model, further Gaussian unknowns of a fit. Every car has
+a little of each. Without them what they do to the records would pass for another effect, or shift the sizes
+of those in the model. With the slab prior of a member's sizes this is a spike and slab (T. J. Mitchell,
+J. J. Beauchamp, Journal of the American Statistical Association 83, 1988): the errors of all sets of effects
+are the same but for the members themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class LinearNuisances:
+    """Their columns about the re-tuned axle, the same arrays for all models of the same errors."""
+
+    columns: FloatArray
+    """(M, l) change of the residual by each, per its standard deviation; differences between the sides first,
+    then traces."""
+    traces: tuple[str, ...] = ()
+    """Name of the hypothesis of each of the last columns, which are traces."""
+    _last: dict[bytes, FloatArray] = field(default_factory=dict, init=False, compare=False, repr=False)
+    """Amounts last asked for -> their change: screenings vary nothing but the sizes of an effect."""
+
+    @property
+    def count(self) -> int:
+        """l, the number of columns."""
+        return int(self.columns.shape[1])
+
+    @cached_property
+    def gram(self) -> FloatArray:
+        """(l, l) inner products of the columns."""
+        return np.asarray(self.columns.T @ self.columns)
+
+    def moved(self, amounts: FloatArray) -> FloatArray:
+        """(M,) change of the residual by amounts (l,), in standard deviations."""
+        key = amounts.tobytes()
+        if key not in self._last:
+            self._last.clear()
+            self._last[key] = np.asarray(self.columns @ amounts)
+        return self._last[key]
+
+    def weights(self, members: Sequence[Hypothesis]) -> FloatArray:
+        """(l,) 1 for a column that counts, 0 for the trace of an effect in the model."""
+        names = {h.name for h in members}
+        out = np.ones(self.count)
+        out[self.count - len(self.traces) :] = [name not in names for name in self.traces]
+        return out
+
+    def with_traces(self, names: Sequence[str], columns: FloatArray) -> LinearNuisances:
+        """The same and further traces (M, k)."""
+        return LinearNuisances(np.hstack([self.columns, columns]), (*self.traces, *names))
+
+    def rewhitened(self, before: Likelihood, after: Likelihood) -> LinearNuisances:
+        """The same in units of other errors of the same records."""
+        return replace(self, columns=rewhitened(self.columns, before, after))

@@ -1,0 +1,24 @@
+"""Memory of large arrays given back to the system as soon as they are freed."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from contextlib import suppress
+
+LARGE_ARRAY = 1 << 20
+"""Bytes from which an array has pages of its own."""
+MMAP_THRESHOLD = -3
+"""M_MMAP_THRESHOLD of glibc's `mallopt`."""
+
+
+def return_large_arrays() -> None:
+    """Ask the C library for pages of their own for arrays of LARGE_ARRAY bytes or more, from here on.
+
+    glibc raises its threshold to the largest array that was ever freed, up to 32 MB, and then keeps holes
+    between smaller ones: measured on a discovery of five effects, 500 MB instead of 300. Elsewhere than on
+    Linux with glibc nothing is asked for. Worker processes that are forked afterwards have it too.
+    """
+    if sys.platform == "linux":
+        with suppress(AttributeError, OSError):
+            ctypes.CDLL(None).mallopt(MMAP_THRESHOLD, LARGE_ARRAY)

@@ -1,0 +1,46 @@
+"""Whether the twin of an outside model has the numbers that the study's axle file has."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from doe_kc.study import Study
+
+SAME = 1e-6
+"""Relative difference up to which two nominal values are one, written with other digits."""
+TWIN_NAMES = 4
+"""Numbers that a sentence names."""
+
+
+def twin_differences(study: Study) -> Iterator[str]:
+    """A sentence on numbers of the twin that are missing or others in the study's axle file, which is what is
+    known of the outside model.
+
+    A variable is set to the same value in both models; what is none keeps the difference. No sentence for
+    a twin that is the study's own axle.
+    """
+    if study.twin is None or study.twin_path == study.axle_path:
+        return
+    ours, twin = study.axle.values, study.twin.values
+    lacking = _named([n for n in ours if n not in twin])
+    other = [n for n in ours if n in twin and abs(twin[n] - ours[n]) > SAME * max(abs(twin[n]), abs(ours[n]))]
+    place = f"{study.source}: solver.twin {study.twin_path.name}"
+    if lacking:
+        yield f"{place}: lacks {_listed(lacking)}, which the study's axle has; expected the same axle."
+    if other:
+        pairs = {_plain(n): f"{_plain(n)} {twin[n]:g} for {ours[n]:g}" for n in other}
+        yield f"{place}: {_listed(list(pairs.values()))} in the study's axle; mend the file that is wrong."
+
+
+def _plain(name: str) -> str:
+    """The name without its side."""
+    return name.split("@")[0]
+
+
+def _named(names: list[str]) -> list[str]:
+    return list(dict.fromkeys(_plain(n) for n in names))
+
+
+def _listed(words: list[str]) -> str:
+    more = f" and {len(words) - TWIN_NAMES} more" if len(words) > TWIN_NAMES else ""
+    return ", ".join(words[:TWIN_NAMES]) + more
