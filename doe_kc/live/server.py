@@ -20,7 +20,7 @@ from doe_kc.live import keep, views
 from doe_kc.live import messages as says
 from doe_kc.live.advice import Advised
 from doe_kc.live.page_files import SERVED, asset
-from doe_kc.live.session import Changes, Session, SolveRequest
+from doe_kc.live.session import Session, SolveRequest, Update
 from doe_kc.live.worker import LiveWorker
 
 log = logging.getLogger("doe_kc")
@@ -138,14 +138,14 @@ class LiveServer:
             return
         self._told(tab, self.session.handle(message), message)
 
-    def _told(self, tab: Tab, changes: Changes, message: says.Message) -> None:
+    def _told(self, tab: Tab, changes: Update, message: says.Message) -> None:
         if changes.advice:
             self.worker.put(partial(self._advise, tab, changes.advice))
         if changes.keep:
             self.worker.put(partial(self._keep, tab, changes.keep))
         self._spread(changes)
 
-    def _spread(self, changes: Changes) -> None:
+    def _spread(self, changes: Update) -> None:
         """Tell all tabs, and have solved what has to be."""
         if changes.sliders:
             self._introduce(self.tabs)

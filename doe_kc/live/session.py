@@ -30,7 +30,7 @@ class SolveRequest:
 
 
 @dataclass(frozen=True)
-class Changes:
+class Update:
     """What a message did. solve: the answer is no longer that of the state. sliders: they are others now.
     state: locks, bounds, snapshots or the like. advice: to be asked for. keep: to be written or read.
     """
@@ -97,7 +97,7 @@ class Session:
         set_now = self.state.values
         return {v.path: set_now.get(v.path, v.start) for v in self.model.space.variables}
 
-    def handle(self, message: says.Message) -> Changes:
+    def handle(self, message: says.Message) -> Update:
         """Do what a message asks; InputError, and nothing done, for what cannot be."""
         match message:
             case says.Move():
@@ -123,11 +123,11 @@ class Session:
             case says.UndoStep(kind=kind):
                 return self._step(message.seq, back=kind == "undo")
             case says.Ask(kind=kind):
-                return Changes(state=False, advice=kind)
+                return Update(state=False, advice=kind)
             case says.Keep(kind=kind):
-                return Changes(state=False, keep=kind)
+                return Update(state=False, keep=kind)
             case says.Look():
-                return Changes(state=False)
+                return Update(state=False)
 
     def _known(self, path: str) -> None:
         paths = self.model.space.paths
@@ -140,7 +140,7 @@ class Session:
         if ident not in names:
             raise InputError(f"{ident}: has no target here, so it cannot be held.{nearest(ident, names)}")
 
-    def _move(self, message: says.Move) -> Changes:
+    def _move(self, message: says.Move) -> Update:
         self._known(message.path)
         variable = next(v for v in self.space.variables if v.path == message.path)
         if not variable.lower <= message.value <= variable.upper:
@@ -153,33 +153,33 @@ class Session:
         if message.last:
             self._history.finish_gesture()
         self.seq = max(self.seq, message.seq)
-        return Changes(solve=True, state=message.last)
+        return Update(solve=True, state=message.last)
 
-    def _changed(self, state: LiveState, seq: int) -> Changes:
+    def _changed(self, state: LiveState, seq: int) -> Update:
         """A step of its own that has to be solved."""
         sliders = state.effects != self.state.effects
         self._history.change(state)
         self.seq = max(self.seq, seq)
         if sliders:
             self._remodel()
-        return Changes(solve=True, sliders=sliders)
+        return Update(solve=True, sliders=sliders)
 
-    def _set(self, state: LiveState) -> Changes:
+    def _set(self, state: LiveState) -> Update:
         self._history.change(state)
-        return Changes()
+        return Update()
 
     def _remodel(self) -> None:
         with self._lock:
             self.model = self.base.with_effects(self.state.effects)
 
-    def _locked(self, message: says.Lock) -> Changes:
+    def _locked(self, message: says.Lock) -> Update:
         for path in message.paths:
             self._known(path)
         paths = frozenset(message.paths or self.model.space.paths)
         locked = self.state.locked | paths if message.on else self.state.locked - paths
         return self._set(replace(self.state, locked=locked))
 
-    def _bounds(self, message: says.BoundsChange) -> Changes:
+    def _bounds(self, message: says.BoundsChange) -> Update:
         self._known(message.path)
         variable = next(v for v in self.model.space.variables if v.path == message.path)
         where = f"bounds of {message.path}"
@@ -195,14 +195,14 @@ class Session:
         bounds = {**self.state.bounds, message.path: (message.lower, message.upper)}
         return self._set(replace(self.state, bounds=bounds))
 
-    def _switch(self, message: says.SwitchEffect) -> Changes:
+    def _switch(self, message: says.SwitchEffect) -> Update:
         effects = {k: v for k, v in self.state.effects.items() if k != message.name}
         if message.sizes is not None:
             effects[message.name] = dict(message.sizes)
         effective_axle(self.base.axle, effects)
         return self._changed(replace(self.state, effects=effects), message.seq)
 
-    def _snapshot(self, name: str) -> Changes:
+    def _snapshot(self, name: str) -> Update:
         if self.failure:
             raise InputError(f"the present design has no answer to keep: {self.failure}")
         if not self.settled:
@@ -211,7 +211,7 @@ class Session:
         kept = Snapshot(words, self.state.values, self.state.effects, self.present)
         return self._set(self.state.with_snapshot(kept))
 
-    def _placed(self, message: says.PlacedSnapshot) -> Changes:
+    def _placed(self, message: says.PlacedSnapshot) -> Update:
         snapshots = self.state.snapshots
         if message.place >= len(snapshots):
             raise InputError(f"snapshot {message.place + 1}: there are {len(snapshots)}.")
@@ -222,7 +222,7 @@ class Session:
         state = replace(self.state, values=chosen.values, effects=chosen.effects)
         return self._changed(state, message.seq)
 
-    def _step(self, seq: int, *, back: bool) -> Changes:
+    def _step(self, seq: int, *, back: bool) -> Update:
         before = self.state
         moved = self._history.undo() if back else self._history.redo()
         self.seq = max(self.seq, seq)
@@ -230,13 +230,13 @@ class Session:
         if sliders:
             self._remodel()
         # solved in any case: the page waits for an answer to its number
-        return Changes(solve=True, sliders=sliders, state=moved)
+        return Update(solve=True, sliders=sliders, state=moved)
 
-    def adopt(self, values: Mapping[str, float], seq: int = 0) -> Changes:
+    def adopt(self, values: Mapping[str, float], seq: int = 0) -> Update:
         """Go to values that were advised, as one step."""
         return self._changed(self.state.moved(values), seq)
 
-    def replaced(self, state: LiveState, seq: int = 0) -> Changes:
+    def replaced(self, state: LiveState, seq: int = 0) -> Update:
         """Go to a state that was saved, as one step; InputError when it is none of this axle."""
         effective_axle(self.base.axle, state.effects)
         return self._changed(state, seq)

@@ -13,17 +13,17 @@ from doe_kc.axle import with_values
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.ground.errors import InputError
 from doe_kc.live.messages import LONGEST_MESSAGE, read_message
-from doe_kc.live.session import Changes, Session
+from doe_kc.live.session import Session, Update
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from tests.live.cases import EXAMPLES, session
 
 
-def say(live: Session, **message: Any) -> Changes:
+def say(live: Session, **message: Any) -> Update:
     return live.handle(read_message(json.dumps(message)))
 
 
-def move(live: Session, path: str, value: float, *, last: bool = True) -> Changes:
+def move(live: Session, path: str, value: float, *, last: bool = True) -> Update:
     return say(live, kind="move", seq=live.seq + 1, path=path, value=value, last=last)
 
 
