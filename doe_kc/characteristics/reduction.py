@@ -108,11 +108,7 @@ def _slopes(entries: Sequence[Characteristic], curves: CurveSet, window: float |
         return out
     inside = fit_window(case, window)
     x = abscissa(entries[0], case, curves.half_track)[inside]
-    dx = x - x.mean()
-    weights = dx / (dx @ dx)
-    y = np.array([case.mean[e.response][LEFT_WHEEL] for e in known])[:, inside]
-    slopes = (y - y.mean(axis=1, keepdims=True)) @ weights
-    return out | {e.id: e.scale * float(b) for e, b in zip(known, slopes, strict=True)}
+    return out | {e.id: e.scale * slope(x, case.mean[e.response][LEFT_WHEEL][inside]) for e in known}
 
 
 def reduction_gradient(

@@ -239,7 +239,7 @@ def test_an_outside_solver_gives_the_same_correlation(tmp_path: Path) -> None:
         "call = [sys.executable, '-m', 'doe_kc', 'simulate', axle, *settings, '--out', sys.argv[2]]\n"
         "sys.exit(subprocess.run(call, stdout=subprocess.DEVNULL).returncode)\n"
     )
-    solver = f"[solver]\ncommand = {json.dumps(command)}\n"
+    solver = f"[solver]\ncommand = {json.dumps(command)}\ntwin = false\n"
     study = study_in(tmp_path, budget=4, extra=solver)
     found = document_of(study, "--workers", 2)
     own = document_of(study_in(tmp_path / "own", budget=4, extra="gradients = false\n"))

@@ -32,8 +32,10 @@ def every_operation() -> ca.Function:
     truth += [ca.logic_not(a < b), ca.if_else(a < b, c, d), ca.if_else(a - 0.5, e, 2.0)]
     one = [f(a * 0.9) for f in (ca.sqrt, ca.exp, ca.log, ca.sin, ca.cos, ca.tan, ca.asin, ca.acos, ca.atan)]
     one += [f(b - 0.5) for f in (ca.sinh, ca.cosh, ca.tanh, ca.fabs, ca.sign, ca.erf, square)]
+    one += [f(b - 0.5) for f in (ca.asinh, ca.atanh, ca.log1p, ca.expm1)] + [ca.acosh(1.0 + a)]
     one += [ca.floor(5.0 * a), ca.ceil(5.0 * b), -a, 1.0 / b, a + a]
     two = [a + b, a - b, a * b, a / b, a**b, b**3.5, ca.atan2(a, b), ca.fmin(a, b), ca.fmax(a, b)]
+    two += [ca.hypot(a, b), ca.remainder(3.0 * a, b)]
     two += [ca.copysign(a, b - 0.5), ca.fmod(3.0 * a, b), a * 1e-300, b - float("inf")]
     return ca.Function("every", [x, y], [ca.vertcat(*truth, *one, *two), y * a])
 
