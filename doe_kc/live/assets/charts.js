@@ -3,6 +3,10 @@
 const COLOURS = { nominal: "#e69f00", present: "#0072b2", snapshots: ["#009e73", "#cc79a7", "#8c5a2b"], measured: "#444444" };
 const LINE = 1.6, THIN = 0.8;
 
+function tickTexts(ticks, unit, at) {
+  return ticks.map((v, i) => String(+v.toPrecision(6)).replace("-", "−") + (i === at ? ` ${unit}` : ""));
+}
+
 class CurveChart {
   // page: {model, layout, present, references, side, approximate}; place: {loadCase, response}.
   constructor(page, place, changed) {
@@ -117,8 +121,9 @@ class CurveChart {
       width: Math.max(80, Math.floor(width)), height: Math.max(70, Math.floor(height)),
       padding: [6, 16, 0, 0],
       scales: { x: { time: false, range: () => this.zoom || this.span() }, y: { range: () => this.limits() } },
-      axes: [{ ...axis, size: 22, space: 44, values: (u, ticks) => ticks.map((v) => String(+v.toPrecision(6)).replace("-", "−")) },
-        { ...axis, size: 46, space: 24, values: (u, ticks) => ticks.map((v) => String(+v.toPrecision(6)).replace("-", "−")) }],
+      // the unit stands at the last number up, and across at the last but one, which no edge cuts off
+      axes: [{ ...axis, size: 22, space: 44, values: (u, ticks) => tickTexts(ticks, this.loadCase.unit, ticks.length - 2) },
+        { ...axis, size: 58, space: 24, values: (u, ticks) => tickTexts(ticks, this.response.unit, ticks.length - 1) }],
       series: this.series(),
       cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
       select: { show: true },
