@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.discovery.scoring import Score
 from benchmarks.discovery.statistics import Share, brier, calibration_error, reliability, share
-from benchmarks.discovery.suites import SUITES
+from benchmarks.discovery.suites import ALL_SUITES
 from benchmarks.discovery.truth import DELETED
 
 Measure = Callable[[Score], bool]
@@ -53,7 +53,7 @@ WRONG_NAMES = "<= 5 %"
 def groups(found: Sequence[Score]) -> dict[str, list[Score]]:
     """Suite -> its cases, and the diagnosable ones of suites that have both kinds."""
     out: dict[str, list[Score]] = {}
-    for suite in sorted({s.suite for s in found}, key=list(SUITES).index):
+    for suite in sorted({s.suite for s in found}, key=list(ALL_SUITES).index):
         own = [s for s in found if s.suite == suite]
         out[suite] = own
         clear = [s for s in own if s.diagnosable]

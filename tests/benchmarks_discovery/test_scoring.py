@@ -15,7 +15,8 @@ from benchmarks.discovery.detectability import wrong_name
 from benchmarks.discovery.report import Run, write
 from benchmarks.discovery.scoring import Predicted, Score, score
 from benchmarks.discovery.statistics import brier, calibration_error, reliability, wilson
-from benchmarks.discovery.table import followup_lines
+from benchmarks.discovery.suites import ALL_SUITES
+from benchmarks.discovery.table import followup_lines, groups
 from benchmarks.discovery.truth import TrueEffect, Truth
 
 RUN = Run("python x", "example", 1, "abc", "a machine")
@@ -214,3 +215,9 @@ def test_chance_of_a_wrong_name() -> None:
     """10.4 standard deviations tell apart two effects that correlate by 0.9, 99 times in 100."""
     assert wrong_name(10.42, 0.9) == pytest.approx(0.01, abs=5e-4)
     assert wrong_name(5.0, 1.0) == pytest.approx(0.5)
+
+
+def test_every_suite_has_its_place_in_the_table() -> None:
+    truths = [_truth(f"case_{i}", suite, "hub_compliance") for i, suite in enumerate(ALL_SUITES)]
+    found = [score(t, read_answer(pretend.perfect(t))) for t in reversed(truths)]
+    assert [s for s in groups(found) if s in ALL_SUITES] == list(ALL_SUITES)
