@@ -11,6 +11,8 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from doe_kc.solver.library import CompileError
+
 PIECE = 300
 """Statements a piece: from 200 to 500 neither compiling nor running changes by more than a tenth."""
 PIECES_A_FILE = 40
@@ -81,7 +83,7 @@ class _Statement:
 def c_sources(function: ca.Function) -> dict[str, str]:
     """C sources by file name of a function of dense or sparse arguments, nonzeros column by column.
 
-    Of the interface that `casadi.external` loads. ValueError for an operation that `EXPRESSIONS` lacks.
+    Of the interface that `casadi.external` loads. CompileError for an operation that `EXPRESSIONS` lacks.
     """
     texts, room = _piece_texts(_pieces(_statements(function)))
     name, inputs, outputs = function.name(), range(function.n_in()), range(function.n_out())
@@ -128,7 +130,7 @@ def _statements(function: ca.Function) -> dict[int, _Statement]:
             out[k] = _Statement(EXPRESSIONS[code], tuple(values[i] for i in operands))
             values[places[0]] = k
         else:
-            raise ValueError(f"operation {code} of {function.name()} has no C expression in EXPRESSIONS")
+            raise CompileError(f"operation {code} of {function.name()} has no C expression in EXPRESSIONS")
     return out
 
 
