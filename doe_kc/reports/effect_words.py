@@ -54,12 +54,18 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
 
 
 def size_name(size: Size, location: str | None = None) -> str:
-    """`stiffness in camber`, `LLR, X`; without the location, which is said already."""
+    """`stiffness in camber`, `LLR, X`, `shares, 5`; without the location, which is said already."""
     if size.index is not None and size.key == location:
-        return AXIS_LETTERS[size.index]
+        return _component(size)
     suffix = "_" + size.unit.replace("/", "_")
     name = SIZE_WORDS.get(size.key, size.key.removesuffix(suffix).replace("_", " "))
-    return name if size.index is None else f"{name}, {AXIS_LETTERS[size.index]}"
+    return name if size.index is None else f"{name}, {_component(size)}"
+
+
+def _component(size: Size) -> str:
+    """Axis of a bushing's number; of another list's number its place."""
+    assert size.index is not None
+    return AXIS_LETTERS[size.index] if size.key.isupper() else str(size.index + 1)
 
 
 def sure_words(discovery: Discovery, finding: Finding) -> str:

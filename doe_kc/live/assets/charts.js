@@ -1,7 +1,7 @@
 "use strict";
 // One chart a curve: measured with its band behind, nominal, snapshots and the present axle as uPlot series.
 const COLOURS = { nominal: "#e69f00", present: "#0072b2", snapshots: ["#009e73", "#cc79a7", "#8c5a2b"], measured: "#444444" };
-const LINE = 1.6, THIN = 0.8;
+const LINE = 1.6, THIN = 0.8, DASH = [7, 4];
 
 function tickTexts(ticks, unit, at) {
   return ticks.map((v, i) => String(+v.toPrecision(6)).replace("-", "−") + (i === at ? ` ${unit}` : ""));
@@ -102,11 +102,10 @@ class CurveChart {
   }
 
   series() {
-    const dash = this.page.approximate ? [7, 4] : undefined;
     const all = [{}];
-    const looks = [[COLOURS.nominal, undefined, LINE], ...COLOURS.snapshots.map((c) => [c, undefined, LINE]), [COLOURS.present, dash, LINE + 0.4]];
-    for (const [stroke, pattern, width] of looks) {
-      for (const side of [0, 1]) all.push({ stroke, dash: pattern, width: side === 0 || this.page.side === "R" ? width : THIN, points: { show: false }, spanGaps: false });
+    const looks = [[COLOURS.nominal, LINE], ...COLOURS.snapshots.map((c) => [c, LINE]), [COLOURS.present, LINE + 0.4]];
+    for (const [stroke, width] of looks) {
+      for (const side of [0, 1]) all.push({ stroke, width: side === 0 || this.page.side === "R" ? width : THIN, points: { show: false }, spanGaps: false });
     }
     return all;
   }
@@ -138,6 +137,8 @@ class CurveChart {
         }],
       },
     }, this.rows, this.plotBox);
+    this.setDashes();
+    this.plot.redraw(false);
     this.plot.over.addEventListener("dblclick", () => { this.zoom = null; this.paint(); });
     this.plot.over.setAttribute("aria-hidden", "true");
     this.readOut(this.plot);
@@ -152,8 +153,18 @@ class CurveChart {
   paint() {
     if (!this.plot) return;
     this.rows = this.data();
+    this.setDashes();
     this.plot.setData(this.rows, true);
     this.readOut(this.plot);
+  }
+
+  // Dashed is what the true model did not give: of an outside solver the surrogate's.
+  setDashes() {
+    const { references, present } = this.page;
+    [references[0], references[1], references[2], references[3], present].forEach((frame, i) => {
+      const surrogate = (i === 4 && this.page.approximate) || (frame && frame.text.true === false);
+      for (const side of [0, 1]) this.plot.series[1 + 2 * i + side].dash = surrogate ? DASH : undefined;
+    });
   }
 
   drawMeasured(u) {
