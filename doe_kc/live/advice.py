@@ -178,7 +178,7 @@ def _told(
     leaning = sum(bool(s.note) for _, s in rows)
     sentence = (
         f"The gap falls from {number(first.gap)} to {number(answer.gap)} standard deviations, "
-        "confirmed by the true model"
+        + ("confirmed by the true model" if answer.true else "by the surrogate; the outside solver is asked now")
     )
     if leaning:
         sentence += f"; {leaning} of {len(rows)} sliders end at a bound: widen it if the part allows"

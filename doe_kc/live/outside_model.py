@@ -10,6 +10,7 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.campaign.store import Store, read_store
+from doe_kc.campaign.store_file import check_solver
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.correlation.linearization import Linearization, linearize
 from doe_kc.correlation.twin import Twin
@@ -28,6 +29,7 @@ from doe_kc.solver.result import Solution
 from doe_kc.study import Study
 from doe_kc.surrogate_models.designs import place
 from doe_kc.surrogate_models.study import VALIDATION_DESIGNS
+from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import Space
 
@@ -140,7 +142,7 @@ def outside_model(study: Study, space: Space) -> OutsideModel:
 
 def _too_few(study: Study, count: int, needed: int) -> str:
     wanted = max(2 * VALIDATION_DESIGNS, study.space.dimension)
-    beside = "beside its twin at least 1" if needed == ENOUGH_DESIGNS else f"at least {needed}"
+    beside = "at least 1 beside its twin" if needed == ENOUGH_DESIGNS else f"at least {needed}"
     return (
         f"{study.store}: holds {count} designs of the study's variables; a live page of an outside solver "
         f"needs {beside} and does well with {wanted}; run doe-kc sample {study.source} --n {wanted} first."
@@ -151,7 +153,14 @@ def _opened(study: Study) -> Store:
     if not study.store.is_file():
         needed = VALIDATION_DESIGNS if study.twin is None else ENOUGH_DESIGNS
         raise InputError(_too_few(study, 0, needed))
-    return read_store(study.store)
+    solver = solver_for(study.axle, study.solver, study.windows, study.folder)
+    store = read_store(study.store)
+    try:
+        check_solver(store.meta, solver.fingerprint(), solver.describe(), str(study.store))
+    except InputError:
+        store.close()
+        raise
+    return store
 
 
 def _form(outcome: Outcome) -> AnswerVector:
