@@ -117,6 +117,7 @@ class TaskProcess:
                 last = news
         self._process.wait()
         self._process.stdout.close()
+        self.cancel()  # closes its input
         self._ended()
         code = self._process.returncode
         ending = TaskFailure(reason=f"the process of {self.request.task} was ended from outside ({code}).")

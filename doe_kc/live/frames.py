@@ -60,9 +60,7 @@ def drawn_curves(curves: CurveSet) -> FloatArray:
     parts = []
     for half in (False, True):
         for case in curves.cases.values():
-            branches, nothing = case.half_width if half else case.mean, None
-            for response in RESPONSE_UNITS:
-                if response not in branches and nothing is None:
-                    nothing = np.full(2 * case.input.size, np.nan)
-                parts.append(branches[response].ravel() if response in branches else nothing)
+            branches = case.half_width if half else case.mean
+            nothing = np.full((2, case.input.size), np.nan)
+            parts += [branches.get(response, nothing).ravel() for response in RESPONSE_UNITS]
     return np.concatenate(parts)

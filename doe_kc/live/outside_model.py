@@ -101,8 +101,9 @@ class OutsideModel:
         words = f"Dashed: {what}."
         if np.isfinite(error.worst):
             words += (
-                f" Left out, a stored design's worst curve was missed by {number(100.0 * error.median, 2)} % "
-                f"of its range in the middle, {number(100.0 * error.worst, 2)} % at most."
+                f" Stored designs that it was not fitted to: worst curve off by "
+                f"{number(100.0 * error.median, 2)} % of its range in the median, "
+                f"{number(100.0 * error.worst, 2)} % at most."
             )
         return f"{words} Solid: the outside solver, which answers when a slider is let go."
 

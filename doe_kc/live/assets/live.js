@@ -5,7 +5,7 @@ const CHARTS = 8, TOP = 10;
 const live = {
   model: null, layout: null, answers: null, state: null, present: null, references: [], influence: null,
   side: "L", approximate: false, seq: 0, sent: 0, painted: -1, shown: -1, shownAt: 0, arrivedAt: 0, order: [], rows: new Map(), charts: [], axle: null,
-  dragging: null, point: "", source: null, paints: 0, work: null,
+  dragging: null, point: "", source: null, paints: 0, work: null, rowsSeen: null,
 };
 
 function make(tag, attributes = {}, ...children) {
@@ -116,9 +116,9 @@ function paint() {
   if (live.shape) {
     live.axle.setShape(live.shape);
     const c = live.model.cases.find((k) => k.id === live.shape.text.load_case);
-    $("axle-input").textContent = `${short(live.shape.text.input, 3)} ${c ? c.unit : ""}`;
+    put($("axle-input"), `${short(live.shape.text.input, 3)} ${c ? c.unit : ""}`);
     const arrows = live.axle.arrows ? `; arrows: moved points ×${ARROW_FACTOR}` : "";
-    $("arrow-note").textContent = `drawn ×${live.axle.factor}${arrows}`;
+    put($("arrow-note"), `drawn ×${live.axle.factor}${arrows}`);
     live.shape = null;
   }
   if (!live.present || !live.built) return;
@@ -128,7 +128,7 @@ function paint() {
   paintSliders();
   const failure = live.present.text.failure;
   $("failure").hidden = !failure;
-  $("failure").textContent = failure ? `No answer: ${failure}. The last good design is shown.` : "";
+  put($("failure"), failure ? `No answer: ${failure}. The last good design is shown.` : "");
   live.painted = live.present.seq;
   live.paints += 1;
   document.body.dataset.seq = live.painted;
@@ -138,12 +138,12 @@ function paint() {
 
 function paintTotals() {
   const totals = live.answers.totals(live.present.exact);
-  $("gap").textContent = short(totals.gap, 4);
-  $("rating").textContent = short(totals.rating, 4);
-  $("seconds").textContent = Number.isFinite(totals.seconds) ? `${(1000 * totals.seconds).toFixed(0)} ms` : "–";
+  put($("gap"), short(totals.gap, 4));
+  put($("rating"), short(totals.rating, 4));
+  put($("seconds"), Number.isFinite(totals.seconds) ? `${(1000 * totals.seconds).toFixed(0)} ms` : "–");
   const values = live.answers.characteristics(live.present.exact), rated = live.model.characteristics.filter((c) => c.target !== null);
   const inside = rated.filter((c) => { const v = values[live.model.characteristics.indexOf(c)]; return v >= c.low && v <= c.high; });
-  $("inside").textContent = rated.length ? `${inside.length} of ${rated.length}` : "–";
+  put($("inside"), rated.length ? `${inside.length} of ${rated.length}` : "–");
 }
 
 // ---------------------------------------------------------------- sliders
@@ -420,6 +420,11 @@ function buildCharacteristics() {
   const body = document.querySelector("#characteristics tbody");
   body.replaceChildren();
   live.cells = [];
+  if (live.rowsSeen) live.rowsSeen.disconnect();
+  live.rowsSeen = new IntersectionObserver((changes) => {
+    for (const { target, isIntersecting } of changes) target.seen = isIntersecting;
+    wantPaint();
+  }, { root: body.closest(".scroll"), rootMargin: "60px" });
   let before = "";
   const order = live.model.characteristics.map((c, i) => [c, i]);
   const rank = (c) => c.load_case === "static" ? -1 : live.model.cases.findIndex((k) => k.id === c.load_case);
@@ -442,6 +447,7 @@ function buildCharacteristics() {
     row.addEventListener("click", () => { $("selected").value = String(1 + i); arrange(); markChosen(); });
     body.append(row);
     live.cells.push({ c, i, row, cells });
+    live.rowsSeen.observe(row);
   });
 }
 
@@ -449,17 +455,19 @@ function markChosen() {
   for (const { row, i } of live.cells) row.classList.toggle("chosen", $("selected").value === String(1 + i));
 }
 
-function paintCharacteristics() {
+// Rows out of sight are painted when they come into it: each one costs the browser a layout.
+function paintCharacteristics(all = false) {
   const values = live.answers.characteristics(live.present.exact), terms = live.answers.terms(live.present.exact);
   const last = live.references.at(-1) || live.references[0], before = last && last.exact.length ? live.answers.characteristics(referenceExact(last)) : null;
   for (const { c, i, row, cells } of live.cells) {
+    if (!all && row.seen === false) continue;
     const v = values[i], z = c.target === null ? NaN : (v - c.target) / c.sd;
-    cells[1].textContent = short(v, 3);
-    cells[2].textContent = Number.isFinite(z) ? (z > 0 ? "+" : "") + short(z, 2) : "";
-    cells[3].textContent = Number.isFinite(terms[i]) ? short(terms[i], 3) : "";
+    put(cells[1], short(v, 3));
+    put(cells[2], Number.isFinite(z) ? (z > 0 ? "+" : "") + short(z, 2) : "");
+    put(cells[3], Number.isFinite(terms[i]) ? short(terms[i], 3) : "");
     const change = before ? v - before[i] : NaN;
     const told = Number.isFinite(change) && Math.abs(change) > 5e-4 * Math.max(Math.abs(v), 0.01);
-    cells[4].textContent = told ? (change > 0 ? "+" : "") + short(change, 2) : "";
+    put(cells[4], told ? (change > 0 ? "+" : "") + short(change, 2) : "");
     const inside = c.target !== null && v >= c.low && v <= c.high;
     row.classList.toggle("inside", inside);
     row.classList.toggle("outside", c.target !== null && !inside);
@@ -574,6 +582,7 @@ function wire() {
   });
 }
 
+window.addEventListener("beforeprint", () => { if (live.present && live.built) paintCharacteristics(true); });
 live.axle = new AxleView($("axle"), (point) => { live.point = point; $("search").value = ""; showSliders(); });
 wire();
 live.source = window.embeddedSource ? window.embeddedSource() : socketSource();
