@@ -50,6 +50,7 @@ FAILS_ABOVE = 2.0
 
 def outside_study(folder: Path, *, designs: int, twin: bool = True) -> Study:
     """Its files in a folder, and so many designs in its store, the first the start."""
+    folder.mkdir(exist_ok=True)
     axle = (EXAMPLES / "front_axle" / "axle.toml").read_text("utf-8")
     (folder / "axle.toml").write_text(axle, encoding="utf-8")
     (folder / "car.toml").write_text(axle + EFFECT, encoding="utf-8")

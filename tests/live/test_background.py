@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from doe_kc.axle.model import Axle
 from doe_kc.campaign.store import read_store
 from doe_kc.ground.errors import InputError
 from doe_kc.live import background
@@ -21,20 +22,32 @@ from doe_kc.live.model import live_model
 from doe_kc.live.session import Session, Update
 from doe_kc.live.tasks import News, TaskFailure, TaskProgress, TaskRequest, TaskResult, task_request
 from doe_kc.study import Study, read_study
-from doe_kc.workflow.adopt import adopt
+from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.measure import study_records
-from tests.discovery.cases import discovery
 from tests.live.cases import EXAMPLES, RIG
 
 STUDY = """
 schema = "doe_kc.study/1"
 axle = "{axle}"
 measurement = "{records}"
-variables = {{ use = ["LLF.z", "RIB.z", "ROB.z", "spring.rate", "static.*"] }}
-correlation = {{ method = "gauss_newton", objective = "thesis", budget = 4, set_first = [] }}
+variables = {{ use = ["*"] }}
+correlation = {{ method = "gauss_newton", budget = 4 }}
 """
 PATIENCE = 120.0
+HUB = {"camber_Nm_deg": 5000.0, "toe_Nm_deg": 9000.0}
+PRELOAD = {"LLR[0]": 0.0, "LLR[1]": 200.0, "LLR[2]": 0.0}
+FRICTION = {"force_N": 80.0, "presliding_mm": 0.2}
+
+
+def adoption_of(axle: Axle) -> Adoption:
+    """Two effects, one by another law than its own, and a fault of the measurement."""
+    effects = (
+        AdoptedEffect("hub_compliance", None, HUB, uncertain=False),
+        AdoptedEffect("strut_friction", None, {**FRICTION, "law": "iwan"}, uncertain=False),
+        AdoptedEffect("rig_channel_gain", "toe", {"toe": 1.05}, uncertain=False),
+    )
+    return Adoption(axle, effects, {"LLF.z": 212.5}, frozenset())
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +120,7 @@ def test_locked_sliders_bounds_and_effects_hold(live: Session, study: Study) -> 
     say(live, kind="lock", paths=["ROB.z", "LLF.z"], on=True)
     edge = start["RIB.z"] + 0.25
     say(live, kind="bounds", path="RIB.z", lower=start["RIB.z"] - 0.25, upper=edge)
-    say(live, kind="effect", name="hub_compliance", sizes={"camber_Nm_deg": 4000.0, "toe_Nm_deg": 8000.0})
+    say(live, kind="effect", name="bushing_preload LLR", sizes=PRELOAD)
     request = _request_of(live)
     told: list[tuple[str, int, int]] = []
     result = background.correlated_result(study, request, lambda *news: told.append(news))
@@ -116,7 +129,7 @@ def test_locked_sliders_bounds_and_effects_hold(live: Session, study: Study) -> 
     assert told and told[-1][2] == 4
     live.result = result
     say(live, kind="adopt")
-    assert live.state.effects["hub_compliance"] == {"camber_Nm_deg": 4000.0, "toe_Nm_deg": 8000.0}
+    assert live.state.effects == {"bushing_preload LLR": PRELOAD}
     live.compilation.wait()
 
 
@@ -136,20 +149,21 @@ def test_a_discovery_is_adopted_with_its_effects(
 
     def canned(asked: Study, _records: object, **options: Any) -> object:
         seen.update(options, axle=asked.axle)
-        return discovery("named")
+        return None
 
     monkeypatch.setattr(background, "discover_study", canned)
+    monkeypatch.setattr(background, "discovery_lines", lambda _: ["Two effects."])
+    monkeypatch.setattr(background, "adopt", lambda *_: adoption_of(study.axle))
     request = task_request(study, "discover", exclude=("strut_friction",))
     result = background.discovered_result(study, request, lambda *_: None)
     assert seen["exclude"] == ["strut_friction"] and seen["axle"] is study.axle
-    assert result.adoptable and list(result.effects) == ["hub_compliance"]
-    (effect,) = adopt(study, discovery("named")).effects
+    assert result.adoptable and "measuring channel" in result.lines[-1]  # a fault of the measurement
+    assert result.effects == {"hub_compliance": HUB, "strut_friction, iwan": FRICTION}
     live.result = result
     before = live.state
     assert say(live, kind="adopt").sliders
-    sizes = live.state.effects["hub_compliance"]
-    assert sizes == effect.options and set(sizes) == {"camber_Nm_deg", "toe_Nm_deg"}
-    assert live.model.axle.effects["hub_compliance"] == sizes
+    assert live.model.axle.effects == {"hub_compliance": HUB, "strut_friction": {**FRICTION, "law": "iwan"}}
+    assert live.values()["LLF.z"] == 212.5
     say(live, kind="undo")
     assert live.state is before
     live.compilation.wait()
