@@ -119,7 +119,7 @@ def _of_file(ident: str, table: Mapping[str, Any]) -> EffectSwitch:
         key = str(place[0])
         unit = units.get(key, fallback)
         index = place[1] if len(place) == 2 and isinstance(place[1], int) else None
-        label = size_name(Size(key, 1.0, unit, index=index))
+        label = size_name(Size(key, 1.0, unit, "amount" if key.isupper() else "shape", index))
         if len(place) > 1 and index is None:
             label = str(place[-1])
         name = key + "".join(f"[{part}]" for part in place[1:])
