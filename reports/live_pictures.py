@@ -74,8 +74,8 @@ def main() -> None:
                 page.send("Page.navigate", url=served.address)
                 page.wait("document.body && document.body.dataset.seq && live.influence")
                 take(page, name)
-        outside_study(folder / "outside", designs=14)
-        with serving(folder, "--port", "18690", study=folder / "outside") as served:
+        outside = outside_study(folder / "outside", designs=14)
+        with serving(outside.out, "--port", "18690", study=outside.folder) as served:
             page.send("Page.navigate", url=served.address)
             page.wait("document.body && document.body.dataset.seq && live.influence")
             page.run(DRAGGED)
