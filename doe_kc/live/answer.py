@@ -100,7 +100,7 @@ def answer_from(
 
 
 def _answer(
-    model: LiveModel, values: Mapping[str, float], compilation: Compilation, confirmed: Outcome | None
+    model: LiveModel, values: Mapping[str, float], compilation: Compilation, outside_outcome: Outcome | None
 ) -> LiveAnswer | str:
     started = time.perf_counter()
     point = model.space.unit({v.path: values.get(v.path, v.start) for v in model.space.variables})
@@ -111,7 +111,7 @@ def _answer(
         return str(error)
     solution = solve(axle, throw=False, compiled=compilation.use_now(axle.topology))
     outside = model.outside
-    if solution.failure is not None and outside is not None and (confirmed or outside.twin is None):
+    if solution.failure is not None and outside is not None and (outside_outcome or outside.twin is None):
         axle, solution = model.axle, solve(model.axle, throw=False)  # nothing but a drawing depends on it
     if solution.failure is not None:
         return str(solution.failure)
@@ -119,7 +119,7 @@ def _answer(
     base = None
     if outside is not None:
         base = None if outside.twin is None else own
-        outcome = confirmed or outside.outcome(point, half_track_of(outside, everything), base)
+        outcome = outside_outcome or outside.outcome(point, half_track_of(outside, everything), base)
     if outcome.failed or outcome.curves is None:
         return outcome.reason
     residual = np.zeros(0)
@@ -139,8 +139,8 @@ def _answer(
         characteristics=outcome.characteristics,
         residual=residual,
         rating=rating,
-        seconds=time.perf_counter() - started if confirmed is None else confirmed.seconds,
-        true=outside is None or confirmed is not None,
+        seconds=time.perf_counter() - started if outside_outcome is None else outside_outcome.seconds,
+        true=outside is None or outside_outcome is not None,
     )
 
 
