@@ -10,7 +10,7 @@ from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
-class Agreement:
+class MatrixAgreement:
     """All (m,), one entry a column; nan where a column has fewer than two cells or does not vary.
 
     magnitude: correlation coefficient of the magnitudes. signed: that of the signed entries, times `sign`.
@@ -28,7 +28,9 @@ class Agreement:
         return float(np.nanmean(self.magnitude)), float(np.nanmean(self.signed))
 
 
-def agreement(own: FloatArray, measured: FloatArray, counted: np.ndarray, *, any_sign: bool) -> Agreement:
+def agreement(
+    own: FloatArray, measured: FloatArray, counted: np.ndarray, *, any_sign: bool
+) -> MatrixAgreement:
     """Of (p, m) matrices over the cells counted (p, m) that both have.
 
     any_sign: whether an overall sign of a column is free, as between load cases of other conventions.
@@ -38,7 +40,7 @@ def agreement(own: FloatArray, measured: FloatArray, counted: np.ndarray, *, any
     signed = np.array([correlation(a, b) for a, b in pairs])
     sign = np.where(any_sign & (signed < 0), -1, 1)
     magnitude = np.array([correlation(np.abs(a), np.abs(b)) for a, b in pairs])
-    return Agreement(magnitude, signed * sign, sign, both.sum(axis=0))
+    return MatrixAgreement(magnitude, signed * sign, sign, both.sum(axis=0))
 
 
 def correlation(a: FloatArray, b: FloatArray) -> float:

@@ -16,7 +16,7 @@ from doe_kc.campaign.processes import Processes, available_cores
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
-from doe_kc.identification.agreement import Agreement, agreement
+from doe_kc.identification.agreement import MatrixAgreement, agreement
 from doe_kc.identification.matrix_model import MatrixModel
 from doe_kc.identification.measured_matrix import MeasuredMatrix
 from doe_kc.identification.projected_fit import MatrixFit, projected_fit
@@ -37,7 +37,7 @@ DRAWS = 20
 """Starts drawn for one that has an equilibrium."""
 AT_BOUND = 1e-6
 """Prior standard deviations from a bound."""
-NAMED = 4
+DIRECTION_UNKNOWNS = 4
 """Unknowns that a direction is described by."""
 Watch = Callable[[str, int, int], None]
 """Told what is under way, steps done, of how many."""
@@ -77,12 +77,12 @@ class Identification:
         return self.unknowns.axle_at(self.best.z)
 
     @cached_property
-    def agreement(self) -> Agreement:
+    def agreement(self) -> MatrixAgreement:
         """With the measured matrix, over the cells that were fitted."""
         return agreement(self.own, self.measured.values, self.measured.counted, any_sign=self.model.any_sign)
 
     @cached_property
-    def agreement_before(self) -> Agreement:
+    def agreement_before(self) -> MatrixAgreement:
         """The same of the axle at the start."""
         m = self.measured
         return agreement(self.before, m.values, m.counted, any_sign=self.model.any_sign)
@@ -158,7 +158,7 @@ class Identification:
         return pd.DataFrame(rows, columns=["information", "sd_ratio", "unknowns"], index=index)
 
     def _words(self, direction: FloatArray) -> str:
-        order = np.argsort(-np.abs(direction), kind="stable")[:NAMED]
+        order = np.argsort(-np.abs(direction), kind="stable")[:DIRECTION_UNKNOWNS]
         lead = np.sign(direction[order[0]])
         return ", ".join(f"{self.unknowns.paths[i]} {lead * direction[i]:+.2f}" for i in order)
 

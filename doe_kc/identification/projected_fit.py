@@ -23,7 +23,7 @@ LARGEST_DAMPING = 1e9
 """Steps are then a billionth of the slope: what does not gain there is rounding."""
 FIT_TOLERANCE = 1e-3
 """Share of the cost that a step must promise or have gained to go on."""
-FIT_STEPS = 60
+MOST_FIT_STEPS = 60
 """At most; fits of the published matrix take 10 to 25."""
 CHUNKS_A_WORKER = 3
 """Of a Jacobian's columns: the last one to end leaves little waiting."""
@@ -77,7 +77,7 @@ def projected_fit(
         return None
     damping, steps = FIRST_DAMPING, 0
     jacobian = _jacobian(model, now, executor, workers)
-    while steps < FIT_STEPS:
+    while steps < MOST_FIT_STEPS:
         following = next(_better(model, now, jacobian, damping), None)
         if following is None:
             break
@@ -87,7 +87,7 @@ def projected_fit(
         step_done(now.cost)
         if gained <= FIT_TOLERANCE * now.cost:
             break
-    return MatrixFit(now.z, now.residual, jacobian, now.sign, now.cost, steps, steps < FIT_STEPS)
+    return MatrixFit(now.z, now.residual, jacobian, now.sign, now.cost, steps, steps < MOST_FIT_STEPS)
 
 
 def _better(

@@ -10,7 +10,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameter_kinds import COORDINATES, kind_of, must_be_positive
+from doe_kc.axle.parameter_kinds import COORDINATES, kind_of, must_be_positive, not_below_zero
 from doe_kc.axle.parameters import (
     ParameterMap,
     design_parameters,
@@ -27,8 +27,9 @@ SIZE_SD = 2.5
 """Prior standard deviation of a stiffness or other size, as a ratio: between 1/2.5 and 2.5 times."""
 BOUND_SDS = 2.5
 """Prior standard deviations from the start to either bound: 25 mm, a tenth to ten times."""
-Free = Sequence[str] | Mapping[str, float]
-"""Paths or globs; with a prior standard deviation each: mm of a coordinate, a ratio above 1 of a size."""
+Free = Sequence[str] | Mapping[str, float] | Mapping[str, float | None]
+"""Paths or globs; with a prior standard deviation each: mm of a coordinate, a ratio above 1 of a size, None
+for the default."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +85,7 @@ def unknowns(axle: Axle, free: Free | None, source: str) -> Unknowns:
     if not priors:
         raise InputError(f"{source}: free names no parameter; name paths or globs such as LLF.* or llr.F?.")
     paths = tuple(priors)
-    sized = np.array([_is_size(path) for path in paths])
+    sized = np.array([_is_size(axle, path) for path in paths])
     start = np.array([parameter_value(axle, path, source=source) for path in paths])
     sd = [_checked_sd(path, priors[path], size, source) for path, size in zip(paths, sized, strict=True)]
     return Unknowns(axle, paths, start, np.array(sd), sized)
@@ -101,11 +102,11 @@ def _priors(axle: Axle, free: Free, source: str) -> dict[str, float | None]:
         raise InputError(f"{source}: free is one text, {free!r}; expected a list of paths or globs.")
     settable = [p for p in settable_paths(axle) if is_active(axle, p)]
     declared = {p.path for p in design_parameters(axle)}
-    known = [p for p in settable if _is_coordinate(p) or (p in declared and _is_size(p))]
+    known = [p for p in settable if _is_coordinate(p) or (p in declared and _is_size(axle, p))]
     pairs = free.items() if isinstance(free, Mapping) else ((glob, None) for glob in free)
     out: dict[str, float | None] = {}
     for glob, sd in pairs:
-        alone = glob in settable and (_is_coordinate(glob) or _is_size(glob))
+        alone = glob in settable and (_is_coordinate(glob) or _is_size(axle, glob))
         matches = [glob] if alone else [p for p in known if fnmatchcase(p, glob)]
         if not matches:
             raise InputError(
@@ -120,8 +121,11 @@ def _is_coordinate(path: str) -> bool:
     return path.partition(".")[2] in COORDINATES
 
 
-def _is_size(path: str) -> bool:
-    return must_be_positive(path)
+def _is_size(axle: Axle, path: str) -> bool:
+    """Whether ratios change it: what must be positive, and a flexibility or rate that is above zero."""
+    if must_be_positive(path):
+        return True
+    return not_below_zero(path) and ".cubic." not in path and parameter_value(axle, path) > 0.0
 
 
 def _checked_sd(path: str, sd: float | None, size: bool, source: str) -> float:
