@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from appendix_c_axle_text import AS_PRINTED, BEST, RIGID, markdown
+from appendix_c_axle_text import AS_PRINTED, BEST, ON_GROUND, RIGID, markdown
 from appendix_c_checks import (
     IDENTIFIED,
     LOST_DIGITS,
@@ -23,6 +23,7 @@ from appendix_c_checks import (
     counted,
     identified_matrix,
     in_published_units,
+    percent,
     published,
     x_reversed,
 )
@@ -32,6 +33,7 @@ from matplotlib.patches import Rectangle
 
 import doe_kc as kc
 from doe_kc.axle_file.write import write_axle
+from doe_kc.reports.influence_figures import ANNOTATE
 from doe_kc.reports.style import PALETTE, save
 
 HERE = Path(__file__).parent
@@ -62,7 +64,13 @@ def start_axle(*, strut: bool = True) -> kc.Axle:
 
 
 def fit(
-    matrix: pd.DataFrame, extra: Mask = (), *, starts: int = 1, strut: bool = True, workers: int | None = None
+    matrix: pd.DataFrame,
+    extra: Mask = (),
+    *,
+    starts: int = 1,
+    strut: bool = True,
+    wheel_radius_held: bool = True,
+    workers: int | None = None,
 ) -> kc.IdentificationResult:
     """Spring, tyre and anti-roll bar held: a matrix of directions knows no scale of force."""
     free = (*FREE, *OF_THE_STRUT) if strut else FREE
@@ -73,6 +81,7 @@ def fit(
         [*mask(), *extra],
         starts=starts,
         noise=NOISE,
+        wheel_radius_held=wheel_radius_held,
         workers=workers,
     )
 
@@ -132,7 +141,6 @@ def withheld_cells(matrix: pd.DataFrame, workers: int | None) -> pd.DataFrame:
 def side_by_side(matrix: pd.DataFrame, own: pd.DataFrame) -> Figure:
     """Published, identified and difference with one colour scale; masked cells framed, slip rows starred."""
     fig, axes = figure(1, 3, size=(23.4, 11.7), share_x=False)
-    cells = counted(matrix)
     parts = (
         ("Published (thesis, Appendix C), rows of x reversed", matrix),
         ("Identified axle", own),
@@ -148,12 +156,15 @@ def side_by_side(matrix: pd.DataFrame, own: pd.DataFrame) -> Figure:
         for row, column in LOST_DIGITS:
             place = frame.columns.get_loc(column), frame.index.get_loc(row)
             ax.add_patch(Rectangle(place, 1, 1, fill=False, ec=PALETTE["black"], lw=1.2))
+            value = frame.loc[row, column]
+            if abs(value) < ANNOTATE:
+                middle = (place[0] + 0.5, place[1] + 0.5)
+                ax.annotate(percent(value), middle, fontsize=5.5, ha="center", va="center")
         cases = [c.split(".")[0] for c in frame.columns]
         for k in range(1, len(cases)):
             if cases[k] != cases[k - 1]:
                 ax.axvline(k, color="black", lw=0.9)
         ax.axhline(sum(r[0].isupper() for r in frame.index), color="black", lw=0.9)
-    assert not cells.to_numpy().all()
     fig.suptitle(
         "Influence in percent of each published column's largest entry "
         "(* copying slip, frame: a digit seems lost; neither was fitted)"
@@ -174,6 +185,8 @@ def fit_all(workers: int | None) -> None:
     lines = [means(BEST, matrix, identified(best, matrix))]
     rigid = fit(matrix, strut=False, workers=workers)
     lines.append(means(RIGID, matrix, identified(rigid, matrix)))
+    on_ground = fit(matrix, wheel_radius_held=False, workers=workers)
+    lines.append(means(ON_GROUND, matrix, identified(on_ground, matrix)))
     as_printed = fit(printed, workers=workers)
     lines.append(means(AS_PRINTED, printed, identified(as_printed, printed)))
     for name, columns in withheld_parts(matrix).items():

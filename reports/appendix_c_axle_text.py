@@ -12,8 +12,10 @@ from appendix_c_checks import (
     STRONG,
     compare,
     counted,
+    entry_sd,
     identified_matrix,
     in_published_units,
+    percent,
     published,
     rounding_ceiling,
     x_reversed,
@@ -21,7 +23,7 @@ from appendix_c_checks import (
 
 from doe_kc.axle.model import STRUT_BENDING
 
-BEST, RIGID, AS_PRINTED = "all columns", "rigid strut", "signs as printed"
+BEST, RIGID, ON_GROUND, AS_PRINTED = "all columns", "rigid strut", "ground stays", "signs as printed"
 """Rows of the table of fits."""
 SEEN = ["magnitude_seen", "signed_seen"]
 SHOWN_DIRECTIONS, SHOWN_CELLS = 12, 12
@@ -43,6 +45,7 @@ reports/appendix_c_axle.py`; the axle is [data/appendix_c_axle.toml](data/append
 | identified axle, all 57 rows, x reversed | {all} | {all_signed} |
 | identified axle, all 57 rows as printed | {all_printed} | {all_printed_signed} |
 | fitted with a rigid strut | {rigid} | {rigid_signed} |
+| fitted with the ground staying when the wheel centre moves | {on_ground} | {on_ground_signed} |
 | fitted to the signs as printed | {as_printed} | {as_printed_signed} |
 
 ![side by side](appendix_c_axle.png)
@@ -58,10 +61,10 @@ The largest move of a hardpoint is {largest:.0f} mm ({largest_name}). {bound}
 {values}
 
 `appendix_c_axle_parameters.csv` has all of them. They are those of *an* axle with this matrix, not of the
-car: of {unknowns} directions of the unknowns the matrix says more than the prior about {informed}, and
-about {tenfold} ten times as much. It knows how compliances compare and where the arms point; the mounts
-of the sub-frame as points, torsion stiffnesses and most vertical stiffnesses stay where the prior puts
-them. Stiffnesses are known beside the spring and the tyre, which are held.
+car: along {informed} of {unknowns} directions of the unknowns the matrix says more than the prior, along
+{tenfold} ten times as much. It knows how compliances compare and where the arms point; the mounts of the
+sub-frame as points, torsion stiffnesses and most vertical stiffnesses stay where the prior puts them.
+Stiffnesses are known beside the spring and the tyre, which are held.
 
 | direction | information | sd after over before | mostly |
 |---|---|---|---|
@@ -101,7 +104,15 @@ Cells that lost a digit, seen by no fit, in percent of the column's largest prin
 bushing the wheel centre would yield more to a force in its own direction. That compliance is f' K⁻¹ f,
 and stiffness added to K can only lower it, whatever the axle. What is left is a static load on the
 bushing: another stiffness settles elsewhere. An influence matrix does not tell such loads; the identified
-axle has {llf:+.1f} % where {printed_llf:+.0f} % is printed.
+axle has {llf} % where {printed_llf} % is printed.
+
+**`WLC z`.** In this package the ground stays when the wheel centre moves, and the wheel's radius grows.
+In the thesis's model the radius stays and the contact point moves along, and with it the lateral force:
+its row is that (`wheel_radius_held`), and the identified axle's with the ground where it is, is not:
+
+| column | printed | sd of rounding | ground stays | radius stays |
+|---|---|---|---|---|
+{wheel_centre}
 """
 
 
@@ -125,6 +136,7 @@ def markdown(folder: Path) -> str:
         "all": compare(own, matrix).means,
         "all_printed": compare(own, printed).means,
         "rigid": tuple(fits.loc[RIGID, SEEN]),
+        "on_ground": tuple(fits.loc[ON_GROUND, SEEN]),
         "as_printed": tuple(fits.loc[AS_PRINTED, SEEN]),
     }
     figures = {
@@ -171,13 +183,29 @@ def _cells(cells: pd.DataFrame, matrix: pd.DataFrame, scaled: pd.DataFrame) -> s
         median=error.median(),
         ninety=error.quantile(0.9),
         lost="\n".join(
-            f"| `{row}` in `{column}` | {matrix.loc[row, column]:+.0f} | {scaled.loc[row, column]:+.0f} |"
+            f"| `{row}` in `{column}` | {percent(matrix.loc[row, column])} "
+            f"| {percent(scaled.loc[row, column])} |"
             for row, column in LOST_DIGITS
         ),
         worst="\n".join(_worst(matrix, scaled)),
-        llf=scaled.loc["llf Fz", "drive.wc_longitudinal_disp"],
-        printed_llf=matrix.loc["llf Fz", "drive.wc_longitudinal_disp"],
+        llf=percent(scaled.loc["llf Fz", "drive.wc_longitudinal_disp"]),
+        printed_llf=percent(matrix.loc["llf Fz", "drive.wc_longitudinal_disp"]),
+        wheel_centre="\n".join(_wheel_centre(matrix, scaled)),
     )
+
+
+def _wheel_centre(matrix: pd.DataFrame, scaled: pd.DataFrame) -> Iterator[str]:
+    """Row WLC z of the lateral columns: as printed, with the ground where it is, and moving along."""
+    row = "WLC z"
+    on_ground = identified_matrix(matrix.index, wheel_radius_held=False)
+    along = identified_matrix(matrix.index)
+    for column in [c for c in matrix if str(c).startswith("lateral")]:
+        scale = scaled.loc["LWB z", column] / along.loc["LWB z", column]
+        peaks = along.loc["LWB z", column] / on_ground.loc["LWB z", column]
+        values = (matrix, on_ground * scale * peaks, scaled)
+        printed, still, held = (percent(frame.loc[row, column]) for frame in values)
+        lost = " (a digit lost)" if (row, column) in LOST_DIGITS else ""
+        yield f"| `{column}` | {printed}{lost} | {entry_sd(column):.0f} | {still} | {held} |"
 
 
 def _worst(matrix: pd.DataFrame, scaled: pd.DataFrame) -> Iterator[str]:
@@ -188,8 +216,8 @@ def _worst(matrix: pd.DataFrame, scaled: pd.DataFrame) -> Iterator[str]:
     order = weight.stack().sort_values(ascending=False, kind="stable").index[:SHOWN_CELLS]
     for row, column in order:
         yield (
-            f"| `{row}` in `{column}` | {matrix.loc[row, column]:+.0f} | {scaled.loc[row, column]:+.0f} "
-            f"| {100.0 * share.loc[row, column]:.0f} % |"
+            f"| `{row}` in `{column}` | {percent(matrix.loc[row, column])} "
+            f"| {percent(scaled.loc[row, column])} | {100.0 * share.loc[row, column]:.0f} % |"
         )
 
 

@@ -70,16 +70,16 @@ def counted(matrix: pd.DataFrame) -> pd.DataFrame:
     return out
 
 
-def exact_matrix(axle: Axle, rows: pd.Index) -> pd.DataFrame:
+def exact_matrix(axle: Axle, rows: pd.Index, *, wheel_radius_held: bool = True) -> pd.DataFrame:
     """Exact matrix of an axle for the rows of Appendix C, percent of each column's largest entry."""
-    columns = appendix_c()
-    values = influence_matrix(in_windows(axle), [r.replace(" ", ".") for r in rows], columns)
+    columns, paths = appendix_c(), [r.replace(" ", ".") for r in rows]
+    values = influence_matrix(in_windows(axle), paths, columns, wheel_radius_held=wheel_radius_held)
     return pd.DataFrame(percent_of_column(values), index=rows, columns=[c.id for c in columns])
 
 
-def identified_matrix(rows: pd.Index) -> pd.DataFrame:
+def identified_matrix(rows: pd.Index, *, wheel_radius_held: bool = True) -> pd.DataFrame:
     """That of the stored axle."""
-    return exact_matrix(read_axle(IDENTIFIED), rows)
+    return exact_matrix(read_axle(IDENTIFIED), rows, wheel_radius_held=wheel_radius_held)
 
 
 def compare(own: pd.DataFrame, other: pd.DataFrame, cells: pd.DataFrame | None = None) -> MatrixAgreement:
@@ -94,6 +94,11 @@ def equal_signs(own: pd.DataFrame, other: pd.DataFrame, cells: pd.DataFrame) -> 
     strong = cells & (own.abs() >= STRONG) & (other.abs() >= STRONG)
     same = np.sign(own) == np.sign(other) * sign
     return int((same & strong).to_numpy().sum()), int(strong.to_numpy().sum())
+
+
+def percent(value: float) -> str:
+    """With its sign, none at zero."""
+    return "0" if round(value) == 0 else f"{value:+.0f}"
 
 
 def in_published_units(own: pd.DataFrame, other: pd.DataFrame, cells: pd.DataFrame) -> pd.DataFrame:

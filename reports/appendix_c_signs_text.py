@@ -17,6 +17,7 @@ from appendix_c_checks import (
     group_sums,
     in_published_units,
     off_grid,
+    percent,
     step,
     with_one_digit_more,
     x_reversed,
@@ -44,14 +45,13 @@ What the published matrix says by itself, and what the [axle identified from it]
   reversed, mean of the 21 columns; it falls in {fallen}.
 - The sums below say nothing of it: reversing all rows of an axis reverses its sum.
 
-**A shift of the whole suspension does nothing** to kinematics, and next to nothing to compliances (along
-z the force at the ground gains 1 mm of lever). The nine hardpoints of a group x, y or z are all of them
-but the mounts of the sub-frame, the spring's upper seat and the drop link, so their rows sum to zero but
-for rounding: each entry of a coarse column is the difference of two rounded outputs, 0.41 last digits sd.
-Of the {sums} sums, these are more than {sds:g} sd off:
+**A shift of the whole suspension does nothing.** The nine hardpoints of a group x, y or z are all points
+of it but the mounts of the sub-frame, the spring's upper seat, the drop link and the strut's clamp, so
+that their rows sum to nearly zero but for rounding: each entry of a coarse column is the difference of
+two rounded outputs, 0.41 last digits sd. Of the {sums} sums, these are more than {sds:g} sd off:
 
-| column | axis | sum, percent | sd of rounding | with the digits below | the example's own sum |
-|---|---|---|---|---|---|
+| column | axis | sum, percent | sd of rounding | with the digits below | example | identified axle |
+|---|---|---|---|---|---|---|
 {sum_rows}
 
 **{lost} cells have lost a digit.** A coarse column takes only multiples of its last digit. {off} entries in
@@ -92,8 +92,10 @@ def signs_and_digits(published: pd.DataFrame, example: pd.DataFrame, identified:
         if (count := int((signed["turned"] < signed["as"] - 5e-4).sum())) and before - after > 5e-4
     ]
     restored = _restored(published, fitted)
-    after = {(s.column, s.axis): s.total for s in group_sums(restored)}
-    own = {(s.column, s.axis): s.total for s in group_sums(example)}
+    others = [
+        {(s.column, s.axis): s.total for s in group_sums(matrix)}
+        for matrix in (restored, example, identified)
+    ]
     sums = list(group_sums(published))
     off = off_grid(published.drop(index=["upb Tz", "sff Tz", "sfr Tz"]))
     return SECTION.format(
@@ -115,7 +117,7 @@ def signs_and_digits(published: pd.DataFrame, example: pd.DataFrame, identified:
         fallen=", ".join(fallen) or "none",
         sums=len(sums),
         sds=SUM_SDS,
-        sum_rows="\n".join(_sum_row(s, after, own) for s in sums if s.beyond),
+        sum_rows="\n".join(_sum_row(s, others) for s in sums if s.beyond),
         lost=LOST_WORDS[len(LOST_DIGITS)],
         coarse=LOST_WORDS[len(LAST_DIGITS)].lower(),
         off=len(off),
@@ -138,9 +140,9 @@ def _nearest(value: float, column: str, predicted: float) -> int:
     return min(with_one_digit_more(value, column), key=lambda n: abs(n - abs(predicted)))
 
 
-def _sum_row(s: GroupSum, after: dict[tuple[str, str], float], own: dict[tuple[str, str], float]) -> str:
-    key = (s.column, s.axis)
-    return f"| `{s.column}` | {s.axis} | {s.total:+.0f} | {s.sd:.0f} | {after[key]:+.0f} | {own[key]:+.0f} |"
+def _sum_row(s: GroupSum, others: list[dict[tuple[str, str], float]]) -> str:
+    numbers = [percent(other[s.column, s.axis]) for other in others]
+    return f"| `{s.column}` | {s.axis} | {s.total:+.0f} | {s.sd:.0f} | {' | '.join(numbers)} |"
 
 
 def _also(off: list[tuple[str, str]]) -> str:

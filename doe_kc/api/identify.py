@@ -114,6 +114,7 @@ def identify(
     seed: int = 0,
     noise: float = CELL_NOISE,
     any_sign: bool = True,
+    wheel_radius_held: bool = False,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> IdentificationResult:
@@ -128,8 +129,10 @@ def identify(
     standard deviation each: mm (10 by default), or a ratio of a size (2.5). Bounds are 2.5 of them away.
     mask: cells that are left out and predicted, pairs of globs of parameter and characteristic. noise:
     standard deviation of a cell, a share of its column's length (root of the sum of squares). any_sign:
-    whether each column is known but for its sign, as under another convention of the load case. starts: fits
-    from `axle` and from points about it; seed: of these. workers: processes, one per core by default.
+    whether each column is known but for its sign, as under another convention of the load case.
+    wheel_radius_held: whether WLC.z moves the contact point along with the wheel centre, as in ADAMS/Car,
+    instead of the ground staying where it is, as here. starts: fits from `axle` and from points about it;
+    seed: of these. workers: processes, one per core by default.
 
     Minimizes |u - v|^2 / noise^2 + |z|^2 of unit columns u (own) and v (measured) and the unknowns z in prior
     standard deviations, by Levenberg-Marquardt within bounds on exact sensitivities.
@@ -150,7 +153,7 @@ def identify(
         as_axle(axle),
         free,
         mask,
-        IdentifyOptions(starts, seed, noise, any_sign),
+        IdentifyOptions(starts, seed, noise, any_sign, wheel_radius_held),
         source=str(matrix) if of_file else "identify",
         workers=workers,
         watch=progress or (lambda *_: None),

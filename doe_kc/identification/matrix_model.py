@@ -12,7 +12,7 @@ import numpy as np
 from doe_kc.axle.geometry import check_geometry
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import kind_of
-from doe_kc.axle.parameters import parameter_value
+from doe_kc.axle.parameters import parameter_value, settable_paths
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
@@ -24,6 +24,7 @@ from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.result import NotConverged
 from doe_kc.solver.suite import SEEDS, solve
 
+WHEEL_HEIGHT = "WLC.z"
 DIFFERENCE_STEP = 1e-3
 """Prior standard deviations; the exact matrix is smooth to 1e-8, so that a column of the Jacobian is good to
 1e-5 of its size."""
@@ -33,13 +34,14 @@ DIFFERENCE_STEP = 1e-3
 class MatrixModel:
     """noise: standard deviation of a cell, a share of the length of its column.
 
-    any_sign: whether the overall sign of a column is free.
+    any_sign: whether the overall sign of a column is free. wheel_radius_held: see `influence_matrix`.
     """
 
     unknowns: Unknowns
     measured: MeasuredMatrix
     noise: float
     any_sign: bool
+    wheel_radius_held: bool = False
 
     @cached_property
     def _axle(self) -> Axle:
@@ -60,11 +62,10 @@ class MatrixModel:
 
         NotConverged where it has no equilibrium, InputError where it is no axle.
         """
-        return self._of(replace(self._axle, values=self.unknowns.axle_at(z).values))
-
-    def _of(self, axle: Axle) -> FloatArray:
+        axle = replace(self._axle, values=self.unknowns.axle_at(z).values)
+        paths = [p.path for p in self.measured.parameters]
         return influence_matrix(
-            axle, [p.path for p in self.measured.parameters], self.measured.characteristics
+            axle, paths, self.measured.characteristics, wheel_radius_held=self.wheel_radius_held
         )
 
     def residual(self, z: FloatArray, sign: FloatArray | None = None) -> tuple[FloatArray, FloatArray] | None:
@@ -112,13 +113,32 @@ class MatrixModel:
 
 
 def influence_matrix(
-    axle: Axle, paths: Sequence[str], characteristics: Sequence[Characteristic]
+    axle: Axle,
+    paths: Sequence[str],
+    characteristics: Sequence[Characteristic],
+    *,
+    wheel_radius_held: bool = False,
 ) -> FloatArray:
     """(p, m) exact derivatives times the steps of the parameters (1 mm, a tenth of a stiffness), unit of the
-    characteristic. NotConverged where the axle has no equilibrium."""
+    characteristic. NotConverged where the axle has no equilibrium.
+
+    wheel_radius_held: WLC.z moves the contact point along with the wheel centre, as in models whose tyre has
+    a radius of its own; else the ground stays, and the radius grows. A shift of axle and ground together
+    changes nothing, so that this row is that of all other points moved down.
+    """
+    lowered = _points_beside_the_wheel(axle) if wheel_radius_held and WHEEL_HEIGHT in paths else []
     cases = list(dict.fromkeys(c.load_case for c in characteristics if c.load_case in axle.load_cases))
-    gradients = characteristic_gradients(axle, solve(axle, cases), paths, characteristics)
-    return np.asarray(gradients.T * np.array([[_step(axle, path)] for path in paths]))
+    gradients = characteristic_gradients(axle, solve(axle, cases), [*paths, *lowered], characteristics).T
+    matrix = gradients[: len(paths)] * np.array([[_step(axle, path)] for path in paths])
+    if lowered:
+        matrix[list(paths).index(WHEEL_HEIGHT)] = -gradients[len(paths) :].sum(axis=0)
+    return np.asarray(matrix)
+
+
+def _points_beside_the_wheel(axle: Axle) -> list[str]:
+    """Heights that together are all points but the wheel centre; those that follow another move with it."""
+    still = {*axle.follow, WHEEL_HEIGHT.partition(".")[0]}
+    return [p for p in settable_paths(axle) if p.endswith(".z") and p.partition(".")[0] not in still]
 
 
 def _step(axle: Axle, path: str) -> float:

@@ -35,12 +35,13 @@ MATRIX_VIEWS: tuple[MatrixView, ...] = ("measured", "identified", "difference")
 @dataclass(frozen=True)
 class IdentifyOptions:
     """noise: standard deviation of a cell, a share of the length of its column. any_sign: whether each column
-    may have the opposite sign throughout."""
+    may have the opposite sign throughout. wheel_radius_held: whether WLC.z moves the contact point along."""
 
     starts: int = IDENTIFICATION_STARTS
     seed: int = 0
     noise: float = CELL_NOISE
     any_sign: bool = True
+    wheel_radius_held: bool = False
 
     def check(self) -> None:
         """InputError for a number out of its range."""
@@ -72,7 +73,13 @@ def identify_axle(
     """The axle that has a matrix; InputError for what is wrong with the table, the mask or the unknowns."""
     options.check()
     measured = measured_matrix(frame, axle, mask, source)
-    model = MatrixModel(unknowns(axle, free, "identify"), measured, options.noise, options.any_sign)
+    model = MatrixModel(
+        unknowns(axle, free, "identify"),
+        measured,
+        options.noise,
+        options.any_sign,
+        options.wheel_radius_held,
+    )
     return identification(model, starts=options.starts, seed=options.seed, workers=workers, watch=watch)
 
 
@@ -133,7 +140,8 @@ def identification_lines(result: Identification) -> list[str]:
 
 
 def draw_identification(ax: Axes, result: Identification, view: MatrixView, *, scale: bool = True) -> None:
-    """One of the three heat maps, each column in percent of the largest measured entry that was fitted."""
+    """One of the three heat maps, each column in percent of the largest measured entry that was fitted; in
+    the difference cells that were not fitted are grey."""
     import numpy as np
 
     from doe_kc.reports.matrix_plot import draw_matrix_plot
@@ -141,7 +149,8 @@ def draw_identification(ax: Axes, result: Identification, view: MatrixView, *, s
     m, own = result.measured, result.in_measured_units
     fitted = np.where(m.counted, np.abs(np.nan_to_num(m.values)), 0.0).max(axis=0)
     peak = np.where(fitted > 0, fitted, np.nanmax(np.abs(own), axis=0))
-    values = {"measured": m.values, "identified": own, "difference": own - m.values}[view]
+    seen = np.where(m.counted & m.fitted_columns, own - m.values, np.nan)
+    values = {"measured": m.values, "identified": own, "difference": seen}[view]
     titles = {
         "measured": "Measured",
         "identified": "Identified axle",

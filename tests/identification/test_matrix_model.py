@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from doe_kc.axle.parameters import design_parameters
-from doe_kc.characteristics import appendix_c
+from doe_kc.characteristics import appendix_c, reduce_all
 from doe_kc.effects import apply_effect
 from doe_kc.identification.matrix_model import in_windows, influence_matrix
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.parameter_influence.study import exact_changes
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
 from tests.identification.cases import ROWS, car_matrix, model
 from tests.reference import nominal
 
@@ -42,6 +44,30 @@ def test_a_factors_step_is_a_tenth_of_its_value() -> None:
     np.testing.assert_allclose(
         m.matrix(np.array([0.0, 0.0, 1.0, 0.0]))[ROWS.index("llr.Fx")], own[0], rtol=1e-9, atol=1e-12
     )
+
+
+def test_a_wheel_of_its_own_radius_takes_the_contact_point_along() -> None:
+    """Against central differences of 0.1 mm: every point but the wheel centre lower, ground and wheel as they
+    were."""
+    axle, columns = in_windows(nominal()), appendix_c()
+    rows = ["LWB.z", "WLC.z"]
+    held = influence_matrix(axle, rows, columns, wheel_radius_held=True)
+    plain = influence_matrix(axle, rows, columns)
+    np.testing.assert_allclose(held[0], plain[0], rtol=1e-12)
+    heights = [n for n in axle.values if n.partition("@")[0].endswith(".z") and not n.startswith("WLC")]
+    ends = []
+    for lower in (0.1, -0.1):
+        values = reduce_all(curve_set(solve(axle.changed({n: axle.values[n] - lower for n in heights}))))
+        ends.append(np.array([values[c.id] for c in columns]))
+    slope = (ends[0] - ends[1]) / 0.2
+    assert (np.abs(held[1] - slope) <= 1e-3 * np.abs(slope) + 1e-4 * np.abs(plain).max(axis=0)).all()
+    kinematic = [c.load_case in ("vertical", "roll", "steer") for c in columns]
+    peaks = np.abs(plain).max(axis=0)[
+        kinematic
+    ]  # the body rolls about the ground, so that height counts a bit
+    assert (np.abs(held[1] - plain[1])[kinematic] <= 3e-3 * peaks).all()
+    lateral = [c.id for c in columns].index("lateral.camber_change")
+    assert abs(held[1][lateral]) > 5.0 * abs(plain[1][lateral])
 
 
 def test_columns_are_the_slopes_of_the_residual() -> None:

@@ -78,13 +78,17 @@ def identify(
     own_signs: Annotated[
         bool, typer.Option("--own-signs", help="The columns have the signs of docs/conventions.md.")
     ] = False,
+    wheel_radius_held: Annotated[
+        bool,
+        typer.Option("--wheel-radius-held", help="WLC.z moves the contact point along, as in ADAMS/Car."),
+    ] = False,
     out: Annotated[Path | None, typer.Option(help="Folder for axle, tables and picture.")] = None,
     json: JsonOption = None,
     pictures: Annotated[PictureChoice, typer.Option(help="Format of the picture.")] = PictureChoice.PNG,
     workers: WorkersOption = None,
 ) -> None:
     """Find the axle that has an influence matrix, such as a supplier's."""
-    options = IdentifyOptions(starts, seed, noise, any_sign=not own_signs)
+    options = IdentifyOptions(starts, seed, noise, not own_signs, wheel_radius_held)
     wanted, cells = free_parameters(free or []), masked_cells(mask or [])
     frame, model = read_matrix(matrix), read_axle(axle)
     with described_bar("identifying", starts * USUAL_STEPS) as watch:
