@@ -181,7 +181,7 @@ def fit_all(workers: int | None) -> None:
     write_axle(best.axle, EXAMPLE, IDENTIFIED, note="identified from Appendix C of the thesis")
     best.to_frame().to_csv(HERE / "appendix_c_axle.csv", float_format="%.4f")
     for name in ("parameters", "directions", "starts"):
-        getattr(best, name).to_csv(HERE / f"appendix_c_axle_{name}.csv", float_format="%.5g")
+        getattr(best, name).to_csv(HERE / f"appendix_c_axle_{name}.csv", float_format="%.6g")
     lines = [means(BEST, matrix, identified(best, matrix))]
     rigid = fit(matrix, strut=False, workers=workers)
     lines.append(means(RIGID, matrix, identified(rigid, matrix)))

@@ -106,9 +106,10 @@ and stiffness added to K can only lower it, whatever the axle. What is left is a
 bushing: another stiffness settles elsewhere. An influence matrix does not tell such loads; the identified
 axle has {llf} % where {printed_llf} % is printed.
 
-**`WLC z`.** In this package the ground stays when the wheel centre moves, and the wheel's radius grows.
-In the thesis's model the radius stays and the contact point moves along, and with it the lateral force:
-its row is that (`wheel_radius_held`), and the identified axle's with the ground where it is, is not:
+**`WLC z`.** In this package the ground stays when the wheel centre moves, and the wheel's radius grows. The
+printed row is that of a model in which the radius stays and the contact point, with the lateral force on it,
+moves along, as a wheel-centre point of ADAMS/Car would; so it is fitted (`wheel_radius_held`). The identified
+axle's own row says nothing of lateral camber and toe:
 
 | column | printed | sd of rounding | ground stays | radius stays |
 |---|---|---|---|---|
