@@ -108,8 +108,8 @@ axle has {llf} % where {printed_llf} % is printed.
 
 **`WLC z`.** In this package the ground stays when the wheel centre moves, and the wheel's radius grows. The
 printed row is that of a model in which the radius stays and the contact point, with the lateral force on it,
-moves along, as a wheel-centre point of ADAMS/Car would; so it is fitted (`wheel_radius_held`). The identified
-axle's own row says nothing of lateral camber and toe:
+moves along, as a wheel-centre point of ADAMS/Car would; so it is fitted (`wheel_radius_held`). With the
+ground where it is the same axle's row is zero in lateral camber and toe:
 
 | column | printed | sd of rounding | ground stays | radius stays |
 |---|---|---|---|---|
@@ -155,7 +155,7 @@ def markdown(folder: Path) -> str:
         largest_name=moves.idxmax(),
         bound=_bound_words(values),
         values="\n".join(_value_row(str(name), row) for name, row in _shown(values).iterrows()),
-        informed=int((tables["directions"]["information"] > 1.0).sum()),
+        informed=int((tables["directions"]["information"] >= 1.0).sum()),
         tenfold=int((tables["directions"]["sd_ratio"] < 0.1).sum()),
         directions="\n".join(
             f"| {r.direction} | {r.information:.1f} | {r.sd_ratio:.2f} | {r.unknowns} |"

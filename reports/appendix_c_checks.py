@@ -46,7 +46,7 @@ SUM_SDS = 3.5
 DIFFERENCE_SD = np.sqrt(1.0 / 6.0)
 """Last digits: the difference of two numbers rounded independently."""
 PERCENT_SD = np.sqrt(1.0 / 12.0)
-CEILING_DRAWS = 400
+CEILING_DRAWS = 100
 
 
 def published() -> pd.DataFrame:
@@ -179,7 +179,7 @@ def rounding_ceiling(own: pd.DataFrame, cells: pd.DataFrame, seed: int = 0) -> t
     """Mean correlation (magnitudes, signed) of a matrix with itself, its outputs rounded as the published.
 
     A change is the difference of two outputs with so many digits, one above and one below the same nominal
-    output, whose place between two digits is not known: mean over 400 draws of it.
+    output, whose place between two digits is not known: mean over 100 draws of it.
     """
     rng = np.random.default_rng(seed)
     means = [
