@@ -176,5 +176,5 @@ def size_words(discovery: Discovery, finding: Finding) -> str:
 
 
 def told_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
-    """Those that a reader can use: without the sliders of a free law, which say how and mean nothing alone."""
+    """Those that a reader can use: without the sliders of a free law, which mean nothing one by one."""
     return (s for s in found_sizes(discovery, finding) if not (s.size.shape and s.size.index is not None))
