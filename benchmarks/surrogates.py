@@ -135,7 +135,8 @@ def coverage_table(known: Truth) -> list[str]:
         q2 = [float((1 - np.square(h.residual).sum(axis=0) / total).mean()) for h in (held, refitted)]
         error = np.abs(known.test[1] - fitted.predict(known.test[0]))
         sd = NOMINAL_WIDTH * np.sqrt(fitted.variance(known.test[0]))
-        factors = (np.ones(y.shape[1]), calibration_factors(held), calibration_factors(refitted))
+        ones, many = np.ones(y.shape[1]), len(x)
+        factors = (ones, calibration_factors(held, many), calibration_factors(refitted, 10))
         covered = " | ".join(f"{(error <= sd * np.sqrt(f)).mean():.3f}" for f in factors)
         test = quality_on(fitted, *known.test).q2.mean()
         lines.append(f"| {n} | {covered} | {q2[0]:.4f} | {q2[1]:.4f} | {test:.4f} |")

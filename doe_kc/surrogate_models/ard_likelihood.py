@@ -166,7 +166,11 @@ def negative_log_likelihood(
     """Of the logarithms (m, d + 2) and values (n, m). order: 0 for the value alone, 1 for the gradient, 2 for
     the determinant's part too; zeros for the others, and where a covariance cannot be factorised."""
     n, m = values.shape
-    curvature, bend, constant = np.exp(logarithms[:, :-2]), np.exp(logarithms[:, -2]), np.exp(logarithms[:, -1])
+    curvature, bend, constant = (
+        np.exp(logarithms[:, :-2]),
+        np.exp(logarithms[:, -2]),
+        np.exp(logarithms[:, -1]),
+    )
     square = curvature @ pairs.squares.T
     pulls = np.zeros((min(order, 2), *square.shape))
     solved, diagonals, traces = np.zeros((m, 2, n)), np.zeros((m, n)), np.zeros(m)

@@ -78,6 +78,18 @@ def bend(kernel: CovarianceKernel, z: FloatArray, other: FloatArray) -> Bend:
     return Bend(value, -value, full - damping)
 
 
+def bend_value(
+    kernel: CovarianceKernel, inner: FloatArray, square: FloatArray, other_square: FloatArray
+) -> FloatArray:
+    """E (p, n) of one output from the inner products under V: of points with rows (p, n), of points with
+    themselves (p, 1), of rows with themselves (n,)."""
+    both = square + other_square
+    if kernel.matern:
+        return matern(np.maximum(both - 2.0 * inner, 0.0))[0]
+    full = np.exp(np.minimum(inner - 0.5 * both, 0.0))
+    return full - np.exp(-0.5 * both) * (1.0 + inner) if kernel.pinned else full
+
+
 def matern(square: FloatArray) -> tuple[FloatArray, FloatArray]:
     """E of squared distances q in length-scales, and dE/dq = -5/6 (1 + s) exp(-s)."""
     distance = np.sqrt(5.0 * square)

@@ -11,12 +11,20 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models import posterior as gp
-from doe_kc.surrogate_models.ard_likelihood import Belief, Pairs, Scales, best_start, even_scales, fixed_point, maximise
+from doe_kc.surrogate_models.ard_likelihood import (
+    Belief,
+    Pairs,
+    Scales,
+    best_start,
+    even_scales,
+    fixed_point,
+    maximise,
+)
 from doe_kc.surrogate_models.interface import Fitted, SurrogateModel
 from doe_kc.surrogate_models.kernel import CovarianceKernel
 from doe_kc.surrogate_models.learning import Sample
 from doe_kc.surrogate_models.models._base import register
-from doe_kc.surrogate_models.models.gp import FittedGaussianProcess
+from doe_kc.surrogate_models.models.gp import MOST_ROWS, FittedGaussianProcess
 from doe_kc.surrogate_models.training import Scaling
 
 LEAST_CURVATURE = 1e-12
@@ -34,10 +42,11 @@ FIRST_ROWS = 200
 class RelevanceProcess(SurrogateModel):
     """Matérn kernel of each output, its scales by `ard_likelihood`.
 
-    steps: of the fixed point that it starts with. evaluations: of the likelihood of each output by itself. shared: of the second maximisation, with a Gaussian prior of
-    precision `belief` about the logarithm of the mean over the outputs, weighted by their correlation with
-    it to the power `likeness`: what is relevant to one characteristic of an axle is likelier to be so to
-    another that varies with it. Twice as many where the first had not all rows.
+    steps: of the fixed point that it starts with. evaluations: of the likelihood of each output by itself.
+    shared: of the second maximisation, with a Gaussian prior of precision `belief` about the logarithm of the
+    mean over the outputs, weighted by their correlation with it to the power `likeness`: what is relevant to
+    one characteristic of an axle is likelier to be so to another that varies with it. Twice as many where
+    the first had not all rows.
     """
 
     steps: int = 8
@@ -52,7 +61,10 @@ class RelevanceProcess(SurrogateModel):
     interpolates: ClassVar[bool] = False
     exact_folds: ClassVar[bool] = True
     optimistic_loo: ClassVar[bool] = True
-    most: ClassVar[int | None] = 400
+
+    def worthwhile(self, rows: int, variables: int) -> bool:
+        """Up to `MOST_ROWS`."""
+        return self.fewest(variables) <= rows <= MOST_ROWS
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         del seed
