@@ -89,7 +89,8 @@ def main() -> None:
             error, share, ideal = (np.array(parts) for parts in zip(*found, strict=True))
             within, best = ((np.abs(s - NOMINAL) <= GOAL).mean() for s in (share, ideal))
             lines.append(
-                f"| {name} | {test.shape[1]} | {n} | {len(seeds)} | {error.mean():.4f} | {share.mean():.3f} | "
+                f"| {name} | {test.shape[1]} | {n} | {len(seeds)} | {error.mean():.4f} | "
+                f"{share.mean():.3f} | "
                 f"{within:.2f} | {share.min():.2f} | {np.mean(held):.2f} | {best:.2f} | {ideal.min():.2f} | "
                 f"{np.mean(seconds):.1f} |"
             )
@@ -105,9 +106,9 @@ def main() -> None:
             "over the characteristics of sqrt(1 - Q2) there. Within: share of the characteristics with a "
             "coverage of 0.95 ± 0.03; lowest: of a single one of any set. Limits hold: share whose coverage "
             "is between the limits printed beside it. Independent errors: the same where the scale of each "
-            "interval comes from as many of the separate designs as there are designs, which nobody has: no "
-            "way of counting left-out errors can do better. Seconds of a processor, cross-validation "
-            f"included. Intervals are widened by {widths} for their scale's uncertainty. One thread, niced, "
+            "interval comes from as many of the separate designs as there are designs, which nobody has: "
+            "what errors that share nothing with the model could do. Seconds of a processor, "
+            f"cross-validation included. Intervals are widened by {widths} for their scale's uncertainty. One thread, niced, "
             f"much other work on the machine. {machine()}.",
             "",
             *lines,

@@ -16,7 +16,7 @@ from scipy.linalg import lapack
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.batch_descent import minimise
-from doe_kc.surrogate_models.kernel import matern
+from doe_kc.surrogate_models.kernel import COVARIANCE_BLOCK, matern
 
 FIRST_BEND, FIRST_CONSTANT = 100.0, 1.0
 """Variances b and c that the maximisation starts from, of standardised outputs."""
@@ -29,8 +29,6 @@ DRAWN = 0.3
 """Belief of a fixed-point step in the mean over the outputs, in outputs."""
 LARGEST_CHANGE, LEAST_HALF = 1.5, 1e-12
 """Of a logarithm in such a step; of the halves before their logarithms are taken."""
-BLOCK = 40_000
-"""Entries that are worked on at once: what stays in a core's own memory."""
 NOT_POSITIVE = 1e25
 """Stands for the negative log likelihood where the covariance cannot be factorised."""
 
@@ -150,7 +148,7 @@ def maximise(
 
 
 @dataclass(frozen=True)
-class Likelihood:
+class LikelihoodDerivatives:
     """Negative, of m outputs, without its constant. value: (m,). gradient: (m, d + 2) over ln V, ln b, ln c.
     determinant: (m, d + 2) the log determinant's part of it, the rest being the fit's.
     """
@@ -162,7 +160,7 @@ class Likelihood:
 
 def negative_log_likelihood(
     logarithms: FloatArray, pairs: Pairs, values: FloatArray, nugget: float, *, order: int = 1
-) -> Likelihood:
+) -> LikelihoodDerivatives:
     """Of the logarithms (m, d + 2) and values (n, m). order: 0 for the value alone, 1 for the gradient, 2 for
     the determinant's part too; zeros for the others, and where a covariance cannot be factorised."""
     n, m = values.shape
@@ -175,7 +173,7 @@ def negative_log_likelihood(
     pulls = np.zeros((min(order, 2), *square.shape))
     solved, diagonals, traces = np.zeros((m, 2, n)), np.zeros((m, n)), np.zeros(m)
     right = np.ones((n, 2), order="F")
-    several = max(1, BLOCK // square.shape[1])
+    several = max(1, COVARIANCE_BLOCK // square.shape[1])
     for first in range(0, m, several):
         block = slice(first, first + several)
         total, by_square = matern(square[block])
@@ -201,7 +199,7 @@ def negative_log_likelihood(
             rest = lapack.dsfrk(n, 1, -1.0, alpha, 1.0, inverse, uplo="L", overwrite_c=1)
             np.multiply(rest, slope, out=pulls[0, j])
     alpha, ones = solved[:, 0], solved[:, 1]
-    factorised = (diagonals > 0.0).all(axis=1)
+    factorised = np.all(diagonals > 0.0, axis=1)
     fit = (values.T * alpha).sum(axis=1)
     half_log = np.log(np.where(factorised[:, None], diagonals, 1.0)).sum(axis=1)
     value = np.where(factorised, 0.5 * fit + half_log, NOT_POSITIVE)
@@ -214,4 +212,4 @@ def negative_log_likelihood(
     for part, pull, other in zip(parts, pulls, (by_determinant - by_fit, by_determinant), strict=False):
         part[:] = np.column_stack([(pull @ pairs.squares) * curvature, other])
         part[~factorised] = 0.0
-    return Likelihood(value, *parts)
+    return LikelihoodDerivatives(value, *parts)

@@ -18,7 +18,7 @@ DEPENDENCE = 1.86
 """Standard errors of the factor over what n independent errors would have, as left-out errors share most of
 their designs."""
 MODEL_ERROR = 0.135
-"""Standard error of an interval's logarithm that no number of left-out errors lessens: they are those of other
+"""Standard error of an interval's logarithm that no number of left-out errors lessens: they are of other
 models than the one in use. Both from `gp_ard`, 36 sets of designs of three axle types: 0.23, 0.19 and
 0.165 at 50, 100 and 200 designs, where n independent errors would have 0.10, 0.07 and 0.05."""
 

@@ -16,6 +16,9 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 
+COVARIANCE_BLOCK = 40_000
+"""Covariances that are worked on at once: what stays in a core's own memory."""
+
 
 @dataclass(frozen=True)
 class CovarianceKernel:

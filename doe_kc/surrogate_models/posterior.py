@@ -13,6 +13,7 @@ import numpy as np
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.cholesky import inverse_roots
 from doe_kc.surrogate_models.kernel import (
+    COVARIANCE_BLOCK,
     Bend,
     CovarianceKernel,
     bend,
@@ -21,9 +22,6 @@ from doe_kc.surrogate_models.kernel import (
     covariance,
     training_covariance,
 )
-
-BLOCK = 40_000
-"""Covariances that are worked on at once."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +85,7 @@ def mean_alone(p: ProcessPosterior, z: FloatArray) -> FloatArray:
     k = p.kernel
     level = k.constant * p.alpha.sum(axis=1)
     out = np.asarray(z @ p.slope.T + level)
-    several = max(1, BLOCK // len(p.z))
+    several = max(1, COVARIANCE_BLOCK // len(p.z))
     for j, (curvature, variance, alpha) in enumerate(zip(k.curvature, k.bend, p.alpha, strict=True)):
         weighted = (p.z * curvature).T
         itself, other = (z * z) @ curvature, (p.z * p.z) @ curvature

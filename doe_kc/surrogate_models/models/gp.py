@@ -20,8 +20,10 @@ DEFAULT = Learning()
 ROWS_A_VARIABLE = 3
 """Rows from which it may be better than `gp_ard`: 6 variables, error 0.005 instead of 0.007 at 60 designs; of
 72 to 116 variables, 50 and 100 designs, it was chosen for one characteristic of twenty, without gain."""
-MOST_ROWS = 400
-"""Rows up to which `gp_ard` is tried by default."""
+RELEVANCE_ROWS = 400
+"""Rows up to which `gp_ard` is tried by default: ten seconds of a processor a fit there."""
+MANY_POINTS = 50
+"""Points from which outputs one by one are faster than all abreast, which overflow a core's own memory."""
 ROUND_OFF_SHARE = 1e-6
 """Share of an output's spread below which what an expansion leaves is round-off."""
 
@@ -72,7 +74,7 @@ class GaussianProcess(SurrogateModel):
 
     def worthwhile(self, rows: int, variables: int) -> bool:
         """From `ROWS_A_VARIABLE` on, and above what `gp_ard` is tried for."""
-        return rows >= ROWS_A_VARIABLE * variables or rows > MOST_ROWS
+        return rows >= ROWS_A_VARIABLE * variables or rows > RELEVANCE_ROWS
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> FittedGaussianProcess:
         del seed
@@ -158,7 +160,9 @@ class FittedGaussianProcess(Fitted):
         )
 
     def _mean(self, x: FloatArray) -> FloatArray:
-        return self._known(x) + self.scaling.scale * gp.mean_alone(self.posterior, x - self.centre)
+        p = self.posterior
+        mean = gp.mean(p, self._cross(x)) if len(x) < MANY_POINTS else gp.mean_alone(p, x - self.centre)
+        return self._known(x) + self.scaling.scale * mean
 
     def _variance(self, x: FloatArray) -> FloatArray:
         p, c = self.posterior, self._cross(x)

@@ -24,7 +24,7 @@ from doe_kc.surrogate_models.interface import Fitted, SurrogateModel
 from doe_kc.surrogate_models.kernel import CovarianceKernel
 from doe_kc.surrogate_models.learning import Sample
 from doe_kc.surrogate_models.models._base import register
-from doe_kc.surrogate_models.models.gp import MOST_ROWS, FittedGaussianProcess
+from doe_kc.surrogate_models.models.gp import RELEVANCE_ROWS, FittedGaussianProcess
 from doe_kc.surrogate_models.training import Scaling
 
 LEAST_CURVATURE = 1e-12
@@ -63,8 +63,8 @@ class RelevanceProcess(SurrogateModel):
     optimistic_loo: ClassVar[bool] = True
 
     def worthwhile(self, rows: int, variables: int) -> bool:
-        """Up to `MOST_ROWS`."""
-        return self.fewest(variables) <= rows <= MOST_ROWS
+        """Up to `RELEVANCE_ROWS`."""
+        return self.fewest(variables) <= rows <= RELEVANCE_ROWS
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         del seed
