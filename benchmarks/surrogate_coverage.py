@@ -108,8 +108,8 @@ def main() -> None:
             "is between the limits printed beside it. Independent errors: the same where the scale of each "
             "interval comes from as many of the separate designs as there are designs, which nobody has: "
             "what errors that share nothing with the model could do. Seconds of a processor, "
-            f"cross-validation included. Intervals are widened by {widths} for their scale's uncertainty. One thread, niced, "
-            f"much other work on the machine. {machine()}.",
+            f"cross-validation included. Intervals are widened by {widths} for their scale's uncertainty. "
+            f"One thread, niced, much other work on the machine. {machine()}.",
             "",
             *lines,
         ],
