@@ -12,9 +12,9 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 
-MEMORY = 10
+DESCENT_MEMORY = 10
 """Pairs of steps that a direction is made of."""
-SUFFICIENT = 1e-4
+ARMIJO_SHARE = 1e-4
 """Share of the decrease that the slope promises from which a step is taken."""
 SHORTEST, LONGEST_CUT = 0.1, 0.5
 """Between which a refused step is shortened."""
@@ -46,7 +46,7 @@ def minimise(
 @dataclass
 class _Descent:
     """Of m problems: where they are, (m, d) point, gradient, direction, (m,) value, step, resting; steps and
-    differences (MEMORY, m, d) of earlier gradients, the newest first, with inverse products (MEMORY, m), 0
+    differences (k, m, d) of the k earlier gradients, the newest first, with inverse products (k, m), 0
     where there is none."""
 
     point: FloatArray
@@ -63,7 +63,7 @@ class _Descent:
     def at(cls, point: FloatArray, value: FloatArray, gradient: FloatArray) -> _Descent:
         """The first step is one unit long at most."""
         size = np.linalg.norm(gradient, axis=1)
-        memory = np.zeros((MEMORY, *point.shape))
+        memory = np.zeros((DESCENT_MEMORY, *point.shape))
         return cls(
             point.copy(), value, gradient, -gradient, 1.0 / np.maximum(size, 1.0), size == 0.0,
             memory, memory.copy(), np.zeros(memory.shape[:2]),
@@ -74,7 +74,7 @@ class _Descent:
         steps."""
         moved = trial - self.point[active]
         promised = (self.gradient[active] * moved).sum(axis=1)
-        low = value <= self.value[active] + SUFFICIENT * promised
+        low = value <= self.value[active] + ARMIJO_SHARE * promised
         refused = active[~low]
         # the minimum of the parabola through value and slope here and the value there
         rise = value[~low] - self.value[refused] - promised[~low]
