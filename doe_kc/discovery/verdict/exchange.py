@@ -1,0 +1,57 @@
+"""Exchanges: the last set against sets with a rival in the place of one effect, until none is more probable.
+
+To first order an effect that is large, or that parameters at their bounds imitate, can look worse than
+another that makes nearly the same deviations. Joint refits tell, and the last set's rivals have those.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.search.law_discrepancy import marginal
+from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.search.search import EffectSearch, search_from
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS
+from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Hypothesis
+
+
+def exchanged(
+    search: EffectSearch, library: Sequence[Hypothesis], workers: DiscoveryWorkers
+) -> tuple[EffectSearch, tuple[Alternatives, ...]]:
+    """The search, gone on from sets with a rival in one effect's place as long as those are more probable.
+
+    With the alternatives of every member of its last set. It ends, since the probability of the last set, its
+    errors its own, grows with each exchange.
+    """
+    compared = alternatives(search, temper(search), workers)
+    while (better := better_rival(compared)) is not None:
+        rival, gain = better
+        other = search_from(search, rival, gain, library, workers)
+        if _log_posterior(other) <= _log_posterior(search):
+            break
+        search, compared = other, alternatives(other, temper(other), workers)
+    return search, compared
+
+
+def temper(search: EffectSearch) -> float:
+    """T >= 1, by which ln evidence about the last set is divided: the mean square of its residual map."""
+    return max(1.0, search.with_law_discrepancy.residual_map.mean_square)
+
+
+def better_rival(compared: Sequence[Alternatives]) -> tuple[HypothesisFit, float] | None:
+    """The rival with the largest posterior odds against the effect in whose place it is, and ln of them.
+
+    None where no odds reach those at which an effect is accepted.
+    """
+    odds = [(t, t.gain - one.trials[0].gain, one.temper) for one in compared for t in one.trials[1:]]
+    enough = [(t, gain) for t, gain, temper in odds if gain / temper > ACCEPTED_ODDS]
+    return max(enough, key=lambda item: item[1], default=None)
+
+
+def _log_posterior(search: EffectSearch) -> float:
+    """ln of the last set's probability, relative to a constant that all sets and errors share."""
+    last: Fit = search.with_law_discrepancy
+    return marginal(last) + search.prior.log(last.model.members)
