@@ -165,9 +165,9 @@ effect 2, 3 and 10 gave the same verdict and sizes at the same time within a ten
 RIVAL_CORRELATION = 0.3
 """-, |correlation| of what two effects explain, from which they are rivals. Below, both would be needed."""
 REFIT_SHARE = 0.2
-"""-, share of the best screened gain below which a hypothesis is not refitted. In its refit it
-would have to win five times as much: on a car with one effect 0.5 and 0.05 gave the same verdict and
-sizes."""
+"""-, share of what the best explains, by screened gain and by squared correlation, below which a hypothesis
+is not refitted. In its refit it would have to win five times as much: on a car with one effect 0.5 and 0.05
+gave the same verdict and sizes."""
 PLACES_REFITTED = 2
 """-, places of the same effect that are refitted at most. So that one effect does not fill the list."""
 ABSORBED_SHARE = 0.95
@@ -195,8 +195,8 @@ PROPOSAL_GAIN = 50.0
 """ln posterior odds to first order, that each effect of several added at once must bring. Ten standard
 deviations: what is weaker waits for better derivatives."""
 LAW_WINDOW = 10.0
-"""ln evidence, that the more flexible of two laws may be behind while noise does not explain what remains.
-Occam's window (Madigan, Raftery 1994): effects are then looked for beside the open law."""
+"""ln evidence, with what effects promise beside it, by which another law may be behind while noise does not
+explain what remains. Occam's window (Madigan, Raftery 1994): effects are then looked for beside that law."""
 EFFECTS_MOST = 6
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six."""
 MOST_STEPS = 12

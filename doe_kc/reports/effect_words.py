@@ -54,12 +54,15 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
 
 
 def size_name(size: Size, location: str | None = None) -> str:
-    """`stiffness in camber`, `LLR, X`; without the location, which is said already."""
+    """`stiffness in camber`, `LLR, X`, `shares 1` of a law's sliders; without the location, which is said
+    already."""
     if size.index is not None and size.key == location:
         return AXIS_LETTERS[size.index]
     suffix = "_" + size.unit.replace("/", "_")
     name = SIZE_WORDS.get(size.key, size.key.removesuffix(suffix).replace("_", " "))
-    return name if size.index is None else f"{name}, {AXIS_LETTERS[size.index]}"
+    if size.index is None:
+        return name
+    return f"{name} {size.index + 1}" if size.shape else f"{name}, {AXIS_LETTERS[size.index]}"
 
 
 def sure_words(discovery: Discovery, finding: Finding) -> str:
