@@ -123,7 +123,8 @@ class EffectSearch:
     steps: tuple[Step, ...]
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
     first: Decision
-    """The first step whole: all that the verdict on a single effect takes."""
+    """The first step whole, or after an exchange of effects the first one since: where it began without any
+    effect, all that the verdict on a single effect takes."""
     screened: tuple[Screened, ...]
     """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
     with_law_discrepancy: Fit
@@ -147,33 +148,35 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
     tuned = tune(model)
     workers.watch("re-tuning", 1)
     screened = workers.screenings(tuned, library)
-    state = _SearchState(tuned, (), None, with_clutter(tuned, screened), tuple(screened), {}, {}, prior)
+    state = _SearchState(tuned, (), with_clutter(tuned, screened), tuple(screened), {}, {}, prior)
     return _continued(state, library, workers)
 
 
 def search_from(
     before: EffectSearch,
-    other: HypothesisFit,
+    start: FitStart,
     gain: float,
     library: Sequence[Hypothesis],
     workers: DiscoveryWorkers,
 ) -> EffectSearch:
-    """The search, gone on from another set than its last one.
+    """The search, gone on from another set than its last one; the same where that has no equilibrium.
 
-    other: a refit with an effect in the place of one of the last set; gain: ln of its posterior odds against
-    that set.
+    start: of a fit of that set to the records' own errors, its new effect the last member. gain: ln of its
+    posterior odds against the last set.
     """
-    last, own = before.with_law_discrepancy, before.tuned.model
-    temper = max(1.0, other.fit.residual_map.mean_square)
-    candidate = HypothesisGain(other.hypothesis, gain, True)
-    step = Step(last.model.members, before.with_effects.rms, (candidate,), temper, (other.hypothesis,))
-    errors, prior = last.model.likelihood, before.prior
-    there = rewhitened_screenings(before.screened, errors, other.fit.model.likelihood)
-    taken, _ = _with_laws(other.fit, step.added, own.axle, there, prior, workers, loops_known=False)
-    following, shares, without_own = _settled(taken, errors, own, {}, prior, workers)
-    screened = tuple(rewhitened_screenings(before.screened, errors, following.model.likelihood))
+    (other,) = workers.fits([start], "exchanging effects")
+    if other is None:
+        return before
+    last, own, prior = before.with_law_discrepancy, before.tuned.model, before.prior
+    screened = rewhitened_screenings(before.screened, last.model.likelihood, own.likelihood)
+    rival, temper = other.model.members[-1], max(1.0, other.residual_map.mean_square)
+    candidates = (HypothesisGain(rival, gain, True),)
+    step = Step(last.model.members, before.with_effects.rms, candidates, temper, (rival,))
+    taken, _ = _with_laws(other, step.added, own.axle, screened, prior, workers, loops_known=False)
+    following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
+    screened = rewhitened_screenings(screened, own.likelihood, following.model.likelihood)
     steps = (*before.steps, step)
-    state = _SearchState(before.tuned, steps, before.first, following, screened, shares, without_own, prior)
+    state = _SearchState(before.tuned, steps, following, tuple(screened), shares, without_own, prior)
     return _continued(state, library, workers)
 
 
@@ -184,7 +187,6 @@ class _SearchState:
     tuned: Fit
     """See `EffectSearch`, as those below of the same names."""
     steps: tuple[Step, ...]
-    first: Decision | None
     current: Fit
     """The set that it goes on from."""
     screened: tuple[Screened, ...]
@@ -197,7 +199,8 @@ class _SearchState:
 def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
     """The search from there to its end."""
     model, prior, current = state.tuned.model, state.prior, state.current
-    steps, first, loops_known = list(state.steps), state.first, False
+    first: Decision | None = None
+    steps, loops_known = list(state.steps), False
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
     while True:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import FitStart
 from doe_kc.discovery.search.law_discrepancy import marginal
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch, search_from
@@ -28,8 +28,10 @@ def exchanged(
     """
     compared = alternatives(search, temper(search), workers)
     while (better := better_rival(compared)) is not None:
-        rival, gain = better
-        other = search_from(search, rival, gain, library, workers)
+        own, rival, gain = better
+        last = search.with_effects
+        model = last.model.without(own).extended(rival.hypothesis)
+        other = search_from(search, FitStart(model, rival.fit.z, last), gain, library, workers)
         if _log_posterior(other) <= _log_posterior(search):
             break
         search, compared = other, alternatives(other, temper(other), workers)
@@ -41,17 +43,21 @@ def temper(search: EffectSearch) -> float:
     return max(1.0, search.with_law_discrepancy.residual_map.mean_square)
 
 
-def better_rival(compared: Sequence[Alternatives]) -> tuple[HypothesisFit, float] | None:
-    """The rival with the largest posterior odds against the effect in whose place it is, and ln of them.
+def better_rival(compared: Sequence[Alternatives]) -> tuple[Hypothesis, HypothesisFit, float] | None:
+    """An effect, the rival with the largest posterior odds against it in its place, and ln of those odds.
 
     None where no odds reach those at which an effect is accepted.
     """
-    odds = [(t, t.gain - one.trials[0].gain, one.temper) for one in compared for t in one.trials[1:]]
-    enough = [(t, gain) for t, gain, temper in odds if gain / temper > ACCEPTED_ODDS]
-    return max(enough, key=lambda item: item[1], default=None)
+    rivals = [
+        (one.hypothesis, t, t.gain - one.trials[0].gain)
+        for one in compared
+        for t in one.trials[1:]
+        if (t.gain - one.trials[0].gain) / one.temper > ACCEPTED_ODDS
+    ]
+    return max(rivals, key=lambda rival: rival[2], default=None)
 
 
 def _log_posterior(search: EffectSearch) -> float:
     """ln of the last set's probability, relative to a constant that all sets and errors share."""
-    last: Fit = search.with_law_discrepancy
+    last = search.with_law_discrepancy
     return marginal(last) + search.prior.log(last.model.members)

@@ -58,4 +58,4 @@ def test_a_rival_needs_the_odds_of_an_effect_that_is_accepted(right: EffectSearc
     assert better_rival([with_gains(one, 4.0, -3.0)]) is None
     assert better_rival([with_gains(one, 9.0, temper=2.0)]) is None
     better = better_rival([with_gains(one, 5.0), with_gains(one, 4.0, 8.0)])
-    assert better is not None and better[1] == pytest.approx(8.0)
+    assert better is not None and better[2] == pytest.approx(8.0)
