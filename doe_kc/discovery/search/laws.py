@@ -7,8 +7,6 @@ explains it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-
 import numpy as np
 
 from doe_kc.discovery.fit import Fit, FitStart
@@ -19,19 +17,19 @@ from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 
-Promise = Callable[[Fit], float]
-"""ln posterior odds that further effects promise beside a fit, to first order."""
-
 
 def open_laws(member: Hypothesis) -> list[Hypothesis]:
     """The member by laws with numbers of their own beyond those that it has, fewest first."""
-    more = [v for v in _laws(member) if len(v.sizes) > len(member.sizes)]
+    variants = EFFECTS[member.effect].variants(_default(member))
+    more = [v for v in variants if len(v.sizes) > len(member.sizes)]
     return sorted(more, key=lambda v: len(v.sizes))
 
 
-def _laws(member: Hypothesis) -> tuple[Hypothesis, ...]:
-    """The member by every law of its effect, the default one first."""
-    return EFFECTS[member.effect].variants(_default(member))
+def other_laws(member: Hypothesis) -> list[Hypothesis]:
+    """The member by every other law of at most one number more than the default one has."""
+    default = _default(member)
+    variants = EFFECTS[member.effect].variants(default)
+    return [v for v in variants if v.law != member.law and len(v.sizes) <= len(default.sizes) + 1]
 
 
 def _default(member: Hypothesis) -> Hypothesis:
@@ -40,43 +38,36 @@ def _default(member: Hypothesis) -> Hypothesis:
     return next((h for h in known if h.name == member.name), member)
 
 
-def with_open_laws(current: Fit, workers: DiscoveryWorkers, promise: Promise) -> Fit:
-    """The fit with laws that have one number more at most, as it is where noise explains what remains.
+def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
+    """The fit with laws that have one number more each, as it is where noise explains what remains.
 
-    A law is worth what it explains together with the effects that it asks for: a missing effect bends it.
-    They go on even with a little less evidence.
+    They go on even with a little less evidence: an effect that is still missing may ask for them.
     """
     for member in current.model.members:
-        most = len(_default(member).sizes) + 1
-        laws = [v for v in _laws(member) if len(v.sizes) <= most and v.law != member.law]
-        current = _opened(current, member, laws, LAW_WINDOW, workers, promise)
+        for law in open_laws(member)[:1] if not member.law else ():
+            if len(law.sizes) == len(_default(member).sizes) + 1:
+                current = _opened(current, member, law, LAW_WINDOW, workers)
     return current
 
 
 def with_free_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with the laws of most numbers that gain evidence, where nothing else explains what remains."""
     for member in current.model.members:
-        current = _opened(current, member, open_laws(member)[-1:], 0.0, workers, lambda _: 0.0)
+        for law in open_laws(member)[-1:]:
+            current = _opened(current, member, law, 0.0, workers)
     return current
 
 
 def _opened(
-    current: Fit,
-    member: Hypothesis,
-    laws: Sequence[Hypothesis],
-    window: float,
-    workers: DiscoveryWorkers,
-    promise: Promise,
+    current: Fit, member: Hypothesis, law: Hypothesis, window: float, workers: DiscoveryWorkers
 ) -> Fit:
-    if not laws or current.residual_map.chance >= NOISE_CHANCE:
+    if current.residual_map.chance >= NOISE_CHANCE:
         return current
-    starts = [FitStart(*with_law(current, member, law), current) for law in laws]
-    refits = [f for f in workers.fits(starts, "opening laws") if f is not None]
-    if not refits:
+    model, z = with_law(current, member, law)
+    (refit,) = workers.fits([FitStart(model, z, current)], "opening laws")
+    if refit is None or refit.evidence < current.evidence - window:
         return current
-    worth = [f.evidence + promise(f) for f in refits]
-    best = int(np.argmax(worth))
-    return refits[best] if worth[best] >= current.evidence + promise(current) - window else current
+    return refit
 
 
 def with_law(current: Fit, member: Hypothesis, law: Hypothesis) -> tuple[EffectModel, FloatArray]:

@@ -15,7 +15,12 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
-from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
+from doe_kc.discovery.search.law_discrepancy import (
+    fit_discrepancy,
+    is_friction,
+    marginal,
+    without_own_discrepancy,
+)
 from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -138,6 +143,12 @@ class EffectSearch:
     prior: SetPrior
     """Probabilities of sets before the records."""
 
+    @property
+    def log_posterior(self) -> float:
+        """ln of the last set's probability, relative to a constant that all sets and errors share."""
+        last = self.with_law_discrepancy
+        return marginal(last) + self.prior.log(last.model.members)
+
 
 def search(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
     """Tune, then add, exchange and take out effects as long as the evidence asks for it.
@@ -155,28 +166,28 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
 def search_from(
     before: EffectSearch,
     start: FitStart,
+    changed: Hypothesis,
     gain: float,
     library: Sequence[Hypothesis],
     workers: DiscoveryWorkers,
 ) -> EffectSearch:
     """The search, gone on from another set than its last one; the same where that has no equilibrium.
 
-    start: of a fit of that set to the records' own errors, its new effect the last member. gain: ln of its
-    posterior odds against the last set.
+    start: of a fit of that set to the records' own errors. changed: its member that the last set does not
+    have, or not by that law. gain: ln of its posterior odds against the last set.
     """
     (other,) = workers.fits([start], "exchanging effects")
     if other is None:
         return before
     last, own, prior = before.with_law_discrepancy, before.tuned.model, before.prior
-    screened = rewhitened_screenings(before.screened, last.model.likelihood, own.likelihood)
-    rival, temper = other.model.members[-1], max(1.0, other.residual_map.mean_square)
-    candidates = (HypothesisGain(rival, gain, True),)
-    step = Step(last.model.members, before.with_effects.rms, candidates, temper, (rival,))
-    taken, _ = _with_laws(other, step.added, own.axle, screened, prior, workers, loops_known=False)
+    candidates, temper = (HypothesisGain(changed, gain, True),), max(1.0, other.residual_map.mean_square)
+    step = Step(last.model.members, before.with_effects.rms, candidates, temper, (changed,))
+    taken, _ = _with_laws(other, step.added, own.axle, workers, loops_known=False)
     following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
-    screened = rewhitened_screenings(screened, own.likelihood, following.model.likelihood)
+    errors = last.model.likelihood, following.model.likelihood
+    screened = tuple(rewhitened_screenings(before.screened, *errors))
     steps = (*before.steps, step)
-    state = _SearchState(before.tuned, steps, following, tuple(screened), shares, without_own, prior)
+    state = _SearchState(before.tuned, steps, following, screened, shares, without_own, prior)
     return _continued(state, library, workers)
 
 
@@ -213,9 +224,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         before = current.model.likelihood
         if decision.accepted:
             taken, added = decision.trials[0].fit, steps[-1].added
-            current, loops_known = _with_laws(
-                taken, added, model.axle, decision.screened, prior, workers, loops_known=loops_known
-            )
+            current, loops_known = _with_laws(taken, added, model.axle, workers, loops_known=loops_known)
         else:
             following = with_free_laws(current, workers)
             if following is current:
@@ -231,25 +240,13 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
 
 
 def _with_laws(
-    taken: Fit,
-    added: Sequence[Hypothesis],
-    own: Axle,
-    screened: Sequence[Screened],
-    prior: SetPrior,
-    workers: DiscoveryWorkers,
-    *,
-    loops_known: bool,
+    taken: Fit, added: Sequence[Hypothesis], own: Axle, workers: DiscoveryWorkers, *, loops_known: bool
 ) -> tuple[Fit, bool]:
     """A set that was taken, with the loops and the laws that the records ask for, and whether the loops are
-    settled. own: the axle as given. screened: in the errors of the set."""
+    settled. own: the axle as given."""
     if not loops_known and any(is_friction(taken, h) for h in added):
         taken, loops_known = with_conditioning(taken, own, workers)
-
-    def promise(fit: Fit) -> float:
-        there = [s for s in screened if compatible(fit.model, s.hypothesis)]
-        return max([0.0, *(p.gain for p in LinearSets.of(fit, there, prior).proposals()[:1])])
-
-    return with_open_laws(taken, workers, promise), loops_known
+    return with_open_laws(taken, workers), loops_known
 
 
 def _settled(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from doe_kc.discovery.fit import FitStart
-from doe_kc.discovery.search.law_discrepancy import marginal
+from doe_kc.discovery.search.law_exchange import with_exchanged_laws
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch, search_from
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
@@ -21,20 +21,23 @@ from doe_kc.effects.hypothesis import Hypothesis
 def exchanged(
     search: EffectSearch, library: Sequence[Hypothesis], workers: DiscoveryWorkers
 ) -> tuple[EffectSearch, tuple[Alternatives, ...]]:
-    """The search, gone on from sets with a rival in one effect's place as long as those are more probable.
+    """The search, gone on from sets with another law or a rival in one effect's place as long as those are
+    more probable.
 
     With the alternatives of every member of its last set. It ends, since the probability of the last set, its
     errors its own, grows with each exchange.
     """
+    search = with_exchanged_laws(search, library, workers)
     compared = alternatives(search, temper(search), workers)
     while (better := better_rival(compared)) is not None:
         own, rival, gain = better
         last = search.with_effects
-        model = last.model.without(own).extended(rival.hypothesis)
-        other = search_from(search, FitStart(model, rival.fit.z, last), gain, library, workers)
-        if _log_posterior(other) <= _log_posterior(search):
+        start = FitStart(last.model.without(own).extended(rival.hypothesis), rival.fit.z, last)
+        other = search_from(search, start, rival.hypothesis, gain, library, workers)
+        if other.log_posterior <= search.log_posterior:
             break
-        search, compared = other, alternatives(other, temper(other), workers)
+        search = with_exchanged_laws(other, library, workers)
+        compared = alternatives(search, temper(search), workers)
     return search, compared
 
 
@@ -55,9 +58,3 @@ def better_rival(compared: Sequence[Alternatives]) -> tuple[Hypothesis, Hypothes
         if (t.gain - one.trials[0].gain) / one.temper > ACCEPTED_ODDS
     ]
     return max(rivals, key=lambda rival: rival[2], default=None)
-
-
-def _log_posterior(search: EffectSearch) -> float:
-    """ln of the last set's probability, relative to a constant that all sets and errors share."""
-    last = search.with_law_discrepancy
-    return marginal(last) + search.prior.log(last.model.members)

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit, FitStart
-from doe_kc.discovery.search.laws import open_laws, with_free_laws, with_law, with_open_laws
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.laws import open_laws, other_laws, with_free_laws, with_law, with_open_laws
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
 
@@ -23,18 +25,13 @@ class Answers(DiscoveryWorkers):
 
     def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
         self.laws += [s.model.members[0].law for s in starts]
-        return [self._fit(s) for s in starts]
+        return [self._fit(s.model, s.z) for s in starts]
 
-    def _fit(self, start: FitStart) -> Fit:
+    def _fit(self, model: EffectModel, z: FloatArray) -> Fit:
         found = disagreeing()
-        more = np.zeros((found.residual.size, start.z.size - found.z.size))
-        jacobian = start.model.jacobian(np.hstack([found.jacobian.own, more]))
-        return replace(found, model=start.model, z=start.z, jacobian=jacobian, cost=found.cost + self.cost)
-
-
-def nothing(fit: Fit) -> float:
-    """No further effect promises anything."""
-    return 0.0
+        more = z.size - found.z.size
+        jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
+        return replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + self.cost)
 
 
 def agreeing() -> Fit:
@@ -60,29 +57,23 @@ def test_a_law_has_its_default_numbers_and_its_own_at_typical() -> None:
     assert not open_laws(library("hub_compliance")[0])
 
 
+def test_other_laws_are_those_of_one_number_more_at_most() -> None:
+    (friction,) = agreeing().model.members
+    assert [law.law for law in other_laws(friction)] == ["iwan", "duhem", "lognormal"]
+    assert [law.law for law in other_laws(open_laws(friction)[0])] == ["", "iwan", "lognormal"]
+    assert not other_laws(library("hub_compliance")[0])
+
+
 def test_where_noise_explains_what_remains_no_law_is_asked_for() -> None:
     asked = Answers(-100.0)
-    assert with_open_laws(agreeing(), asked, nothing) is not None
+    assert with_open_laws(agreeing(), asked) is not None
     assert asked.laws == []
 
 
 @pytest.mark.parametrize(("cost", "opened"), [(-50.0, True), (10.0, True), (60.0, False)])
 def test_the_open_law_goes_on_unless_its_evidence_is_clearly_less(cost: float, opened: bool) -> None:
-    asked = Answers(cost)
-    found = with_open_laws(disagreeing(), asked, nothing)
-    assert asked.laws == ["iwan", "duhem", "lognormal"]
+    found = with_open_laws(disagreeing(), Answers(cost))
     assert bool(found.model.members[0].law) is opened
-
-
-@pytest.mark.parametrize("law", ["iwan", "lognormal"])
-def test_a_law_counts_with_the_effects_that_it_asks_for(law: str) -> None:
-    """A missing effect bends the law that is fitted without it."""
-
-    def promise(fit: Fit) -> float:
-        return 100.0 if fit.model.members[0].law == law else 5.0
-
-    assert with_open_laws(disagreeing(), Answers(150.0), promise).model.members[0].law == law
-    assert with_open_laws(disagreeing(), Answers(250.0), promise).model.members[0].law == ""
 
 
 @pytest.mark.parametrize(("cost", "opened"), [(-50.0, True), (10.0, False)])
