@@ -195,8 +195,8 @@ PROPOSAL_GAIN = 50.0
 """ln posterior odds to first order, that each effect of several added at once must bring. Ten standard
 deviations: what is weaker waits for better derivatives."""
 LAW_WINDOW = 10.0
-"""ln evidence, with what effects promise beside it, by which another law may be behind while noise does not
-explain what remains. Occam's window (Madigan, Raftery 1994): effects are then looked for beside that law."""
+"""ln evidence, that the more flexible of two laws may be behind while noise does not explain what remains.
+Occam's window (Madigan, Raftery 1994): effects are then looked for beside the open law."""
 EFFECTS_MOST = 6
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six."""
 MOST_STEPS = 12

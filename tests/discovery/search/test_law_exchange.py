@@ -1,4 +1,4 @@
-"""Another law of a friction at the end of a search: weighed with what it asks for, kept where it leads further."""
+"""Another law of a friction at the end of a search: weighed with what it asks for, kept where that helps."""
 
 from __future__ import annotations
 
