@@ -6,10 +6,8 @@ from itertools import pairwise
 
 import pytest
 
-from doe_kc.effects import EFFECTS
 from doe_kc.reports.effect_words import effect_words, effect_words_table, size_name
-from doe_kc.reports.gap_steps import gap_steps
-from doe_kc.reports.gap_steps_figure import gap_steps_figure
+from doe_kc.reports.gap_steps import gap_steps, gap_steps_figure
 from tests.discovery.cases import discovery
 
 
@@ -53,11 +51,3 @@ def test_sizes_have_names_without_units() -> None:
         size_name(s) for car in ("named", "two") for f in discovery(car).findings for s in f.hypothesis.sizes
     }
     assert not [name for name in sizes if "_" in name]
-
-
-def test_sliders_of_a_law_are_counted_and_axes_are_letters() -> None:
-    friction, preload = (EFFECTS[e] for e in ("strut_friction", "bushing_preload"))
-    backbone = friction.variants(friction.hypotheses()[0])[-1]
-    assert [size_name(s) for s in backbone.sizes][-2:] == ["shares 6", "shares 7"]
-    first = preload.hypotheses()[0]
-    assert [size_name(s, first.location) for s in first.sizes] == ["X", "Y", "Z"]
