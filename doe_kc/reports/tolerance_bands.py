@@ -28,8 +28,8 @@ BAND_FILLS = ("#CFE6F5", "#8FC4E8")
 def band_sheet(
     band: CurveBand, cars: Sequence[MeasuredCar], looks: Sequence[Line2D | Patch], *, study: str
 ) -> Sheet:
-    """A row a response: the left wheel's curve, and both wheels' distance from the unchanged axle, where a band
-    too narrow beside the curve is seen. looks: of the cars, in their order."""
+    """A row a response: the left wheel's curve, and both wheels' distance from the unchanged axle, where a
+    band too narrow beside the curve is seen. looks: of the cars, in their order."""
     present = list(band.percentiles)
     page, panels = sheet(len(present), 3, size=A4, width_ratios=(1.0, 1.0, 1.0), margins=BAND_MARGINS)
     colors = [str(look.get_color()) for look in looks if isinstance(look, Line2D)]
@@ -46,9 +46,9 @@ def band_sheet(
         panel.y.set_locator(ticks(5))
     for panel in panels[-1]:
         panel.set_labels(without_remark(input_label(band.load_case, band.input_unit)), None)
-    panels[0][0].set_title("Left wheel")
+    panels[0][0].set_title("Left")
     for side in (0, 1):
-        panels[0][1 + side].set_title(f"{SIDE_WORDS[SIDES[side]].capitalize()}, minus the unchanged axle")
+        panels[0][1 + side].set_title(f"{SIDE_WORDS[SIDES[side]].capitalize()}, change")
     page.set_heading(f"{case_label(band.load_case)}, curves of the cars: {study}", 0.985)
     handles: list[Line2D | Patch] = [
         Patch(color=BAND_FILLS[0], label="95 % of the cars"),

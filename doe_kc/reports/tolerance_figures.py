@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -30,6 +31,7 @@ OUTSIDE_FILL = "#FBDDB3"
 MEASURED_COLOURS = tuple(COLOUR_CYCLE[i] for i in (1, 2, 4, 3))
 """Of the measured cars, in turn."""
 FIRST_COLOUR, TOTAL_COLOUR = PALETTE["sky"], PALETTE["blue"]
+INTERVAL_FILL = "#E4E8EC"
 MOST_CONTRIBUTORS = 8
 MOST_TIGHTENED = 30
 SHOWN_OUT = 4.5
@@ -187,7 +189,7 @@ def _contribution(panel: Panel, tolerance: Tolerance, k: int) -> None:
         panel.bars(places + 0.2, 0.0, total[chosen], 0.36, [TOTAL_COLOUR] * chosen.size)
     for y, i in zip(places, chosen, strict=True):
         end = max(first[i], total[i], 0.0)
-        panel.text(end, float(y), f"{total[i]:.0f}", shift=(2.5, 0.0), size=5.5, along="center")
+        panel.text(end, float(y), f"{max(0.0, total[i]):.0f}", shift=(2.5, 0.0), size=5.5, along="center")
     panel.vline(0.0, color=PALETTE["black"], lw=0.6)
     panel.x.set_limits(min(-4.0, 1.1 * float(min(first.min(), total.min()))), 112.0)
     panel.x.set_ticks([0, 25, 50, 75, 100], ["0", "25", "50", "75", "100"])
@@ -199,38 +201,48 @@ def _contribution(panel: Panel, tolerance: Tolerance, k: int) -> None:
 
 
 def tightening_bars(tolerance: Tolerance, *, study: str) -> Sheet:
-    """Cars outside any requirement now, and with the scatter of one parameter halved or doubled."""
+    """Cars outside any requirement, and requirements that a car misses, with the scatter of one parameter
+    halved or doubled."""
     ranked = ranked_tightenings(tolerance)[:MOST_TIGHTENED]
     height = 1.7 + 0.22 * len(ranked)
-    margins = {"left": 0.33, "right": 0.97, "bottom": 0.95 / height, "top": 1 - 0.6 / height}
-    page, panels = sheet(1, 1, size=(8.27, height), margins=margins)
-    (panel,) = panels.flat
+    margins = {"left": 0.24, "right": 0.97, "bottom": 0.95 / height, "top": 1 - 0.6 / height, "wspace": 0.08}
+    page, panels = sheet(1, 2, size=(8.27, height), share_x=False, margins=margins)
+    shares, missed = panels[0]
     now = tolerance.any_outside
-    places = np.arange(len(ranked), dtype=float)
-    halved = 100.0 * np.array([t.any_outside.share for t in ranked])
-    doubled = 100.0 * np.array([t.doubled.share for t in ranked])
-    level = 100.0 * now.share
-    panel.vspan(100.0 * now.low, 100.0 * now.high, color="#E4E8EC", zorder=0)
-    panel.vline(level, color=PALETTE["black"], lw=0.9)
-    panel.segments(halved, places, doubled, places, colors=PALETTE["grey"], linewidths=0.8, zorder=2)
-    panel.plot(halved, places, "", marker="o", ms=4.5, mew=0, color=PALETTE["blue"])
-    panel.plot(doubled, places, "", marker="D", ms=4.0, mew=0.9, mfc="none", color=PALETTE["vermillion"])
-    panel.x.include([100.0 * now.low, 100.0 * now.high])
-    panel.y.set_limits(len(ranked) - 0.4, -0.6)
+    shares.vspan(100.0 * now.low, 100.0 * now.high, color=INTERVAL_FILL, zorder=0)
+    _pairs(shares, 100.0 * now.share, *(
+        [100.0 * s.share for s in of]
+        for of in ([t.any_outside for t in ranked], [t.doubled for t in ranked])
+    ))  # fmt: skip
+    _pairs(missed, tolerance.missed, [t.missed for t in ranked], [t.missed_doubled for t in ranked])
     words = [
         f"{t.scatter.parameter.path}  (sd {t.scatter.sd:.3g} {t.scatter.parameter.unit})" for t in ranked
     ]
-    panel.y.set_ticks(places, [w.replace(" -)", ")") for w in words])
-    panel.set_labels("cars outside any requirement [%]", None)
+    places = np.arange(len(ranked), dtype=float)
+    shares.y.set_ticks(places, [w.replace(" -)", ")") for w in words])
+    missed.y.set_ticks(places, [""] * len(ranked))
+    shares.set_labels("cars outside any requirement [%]", None)
+    missed.set_labels(f"requirements that a car misses, of {len(tolerance.required)}", None)
+    for panel in (shares, missed):
+        panel.y.set_limits(len(ranked) - 0.4, -0.6)
+        panel.x.set_locator(ticks(5))
     handles: list[Line2D | Patch] = [
         Line2D([], [], ls="", marker="o", ms=4.5, mew=0, color=PALETTE["blue"], label="scatter halved"),
         Line2D([], [], ls="", marker="D", ms=4.0, mfc="none", color=PALETTE["vermillion"], label="doubled"),
         Line2D([], [], color=PALETTE["black"], lw=0.9, label="now"),
-        Patch(color="#E4E8EC", label="95 % interval of now"),
+        Patch(color=INTERVAL_FILL, label="95 % interval of now"),
     ]
     page.add_legend(handles, 4, 7.5)
     page.set_heading(f"Which scatter to tighten, and which may grow: {study}", 1 - 0.15 / height)
     return page
+
+
+def _pairs(panel: Panel, now: float, halved: Sequence[float], doubled: Sequence[float]) -> None:
+    places = np.arange(len(halved), dtype=float)
+    panel.vline(now, color=PALETTE["black"], lw=0.9)
+    panel.segments(halved, places, doubled, places, colors=PALETTE["grey"], linewidths=0.8, zorder=2)
+    panel.plot(halved, places, "", marker="o", ms=4.5, mew=0, color=PALETTE["blue"])
+    panel.plot(doubled, places, "", marker="D", ms=4.0, mew=0.9, mfc="none", color=PALETTE["vermillion"])
 
 
 def write_tolerance_figures(

@@ -22,12 +22,13 @@ def share_words(share: CarShare) -> str:
 
 
 def ranked_tightenings(tolerance: Tolerance) -> list[Tightening]:
-    """The one that brings most first: cars outside any requirement; without requirements, or among equals, the
-    sum of the relative reductions of all standard deviations."""
+    """The one that brings most first: cars outside any requirement, where that makes a difference; then
+    requirements that a car misses; then the sum of the relative reductions of all standard deviations."""
+    some = bool(tolerance.required)
 
-    def merit(t: Tightening) -> tuple[float, float]:
-        gain = tolerance.any_outside.count - t.any_outside.count if tolerance.required else 0
-        return (float(gain), float(np.sum(1.0 - t.sd_ratio)))
+    def merit(t: Tightening) -> tuple[float, float, float]:
+        gain = tolerance.any_outside.count - t.any_outside.count if some else 0
+        return (float(gain), tolerance.missed - t.missed if some else 0.0, float(np.sum(1.0 - t.sd_ratio)))
 
     return sorted(tolerance.tightenings, key=merit, reverse=True)
 
@@ -51,11 +52,11 @@ def _conclusions(tolerance: Tolerance) -> Iterator[str]:
         worst = sorted(curved, key=lambda s: s.explained)[:MOST_NAMED]
         listed = ", ".join(f"{s.entry.id} ({100.0 * s.explained:.0f} %)" for s in worst)
         yield (
-            f"{len(curved)} of {len(tolerance.scatters)} characteristics are not linear over the scatter: slopes "
-            f"explain less than 95 % of their variance, least of {listed}."
+            f"{len(curved)} of {len(tolerance.scatters)} characteristics are not linear over the scatter: "
+            f"slopes explain less than 95 % of their variance, least of {listed}."
         )
     else:
-        yield "All characteristics are linear over the scatter: slopes explain 95 % of each variance and more."
+        yield "All characteristics are linear over the scatter: slopes explain 95 % of each variance."
 
 
 def _requirement_words(tolerance: Tolerance) -> Iterator[str]:
@@ -77,26 +78,29 @@ def _requirement_words(tolerance: Tolerance) -> Iterator[str]:
     if centre:
         more = f" and {len(centre) - MOST_NAMED} more" if len(centre) > MOST_NAMED else ""
         yield (
-            f"The unchanged axle is itself outside in {', '.join(centre[:MOST_NAMED])}{more}: there no tolerance "
-            "helps, the axle has to move."
+            f"The unchanged axle is itself outside in {', '.join(centre[:MOST_NAMED])}{more}: there no "
+            "tolerance helps, the axle has to move."
         )
 
 
 def _best_words(tolerance: Tolerance) -> Iterator[str]:
-    ranked = ranked_tightenings(tolerance)
-    if tolerance.required:
-        now = tolerance.any_outside
-        for t in [t for t in ranked if t.any_outside.count < now.count][:MOST_NAMED]:
-            unit = unit_words(t.scatter.parameter.unit)
-            yield (
-                f"Halving the scatter of {t.scatter.parameter.path} (sd {number(t.scatter.sd)}{unit}) takes the "
-                f"cars outside from {number(100.0 * now.share)} to {number(100.0 * t.any_outside.share)} %."
-            )
-        return
-    for t in ranked[:MOST_NAMED]:
-        k = int(np.argmin(t.sd_ratio))
-        yield (
-            f"Halving the scatter of {t.scatter.parameter.path} (sd {number(t.scatter.sd)}"
-            f"{unit_words(t.scatter.parameter.unit)}) takes {100.0 * (1.0 - t.sd_ratio[k]):.0f} % off the "
-            f"standard deviation of {tolerance.characteristics[k].id}."
+    now = tolerance.any_outside
+    for t in ranked_tightenings(tolerance)[:MOST_NAMED]:
+        parameter = t.scatter.parameter
+        head = (
+            f"Halving the scatter of {parameter.path} (sd {number(t.scatter.sd)}{unit_words(parameter.unit)})"
         )
+        if tolerance.required and t.any_outside.count < now.count:
+            before, after = (number(100.0 * s.share) for s in (now, t.any_outside))
+            yield f"{head} takes the cars outside from {before} to {after} %."
+        elif tolerance.required and t.missed < tolerance.missed:
+            yield (
+                f"{head} takes the requirements that a car misses from {tolerance.missed:.2f} to "
+                f"{t.missed:.2f} of {len(tolerance.required)}."
+            )
+        else:
+            k = int(np.argmin(t.sd_ratio))
+            yield (
+                f"{head} takes {100.0 * (1.0 - t.sd_ratio[k]):.0f} % off the standard deviation of "
+                f"{tolerance.characteristics[k].id}."
+            )

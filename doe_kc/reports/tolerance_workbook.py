@@ -13,14 +13,9 @@ from doe_kc.ground.numbers import number
 from doe_kc.reports.render.cells import cell_alignment, colour_scale, put
 from doe_kc.reports.render.workbook import TABLE_FIRST_ROW, lines_sheet, new_book, table_sheet, write_book
 from doe_kc.reports.table import Table
-from doe_kc.reports.tolerance_tables import (
-    band_table,
-    contribution_matrix,
-    reduction_matrix,
-    scatter_table,
-    tightening_table,
-    tolerance_table,
-)
+from doe_kc.reports.tolerance_contributions import contribution_matrix, reduction_matrix
+from doe_kc.reports.tolerance_scatter import band_table, scatter_table
+from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
 from doe_kc.tolerance.result import Tolerance
 
@@ -29,18 +24,18 @@ HEADS = 2
 TOLERANCE_LEGEND = (
     ("Car", "One draw of all scattering parameters, each side its own, solved by the true solver."),
     ("Standard deviation", "Of the characteristic over the cars; its standard error counts the kurtosis."),
-    ("By slopes alone", "Standard deviation of first order: slopes of the unchanged axle and the covariance of the "
-     "parameters."),
-    ("Variance that slopes explain", "1 - variance of (car minus its first order) over the variance of the cars; "
-     "below 95 % the characteristic is not linear over the scatter, and its row is shaded."),
+    ("By slopes alone", "Standard deviation of first order: slopes of the unchanged axle and the covariance "
+     "of the parameters."),
+    ("Variance that slopes explain", "1 - variance of (car minus its first order) over the variance of the "
+     "cars; below 95 % the characteristic is not linear over the scatter, and its row is shaded."),
     ("Cars outside", "Share of the cars beyond the requirement, with Wilson's interval of 95 % confidence."),
-    ("First order", "Share of the variance that a parameter takes part in by its slope, with the correlations: "
-     "Cov(y, slope times deviation) / Var(y). The shares add up to 100 %."),
-    ("Total", "From the cars: what slopes miss is fitted by squares and products of deviations (ridge regression, "
-     "the penalty by leaving one car out), and every term is counted for each parameter in it."),
+    ("First order", "Share of the variance that a parameter takes part in by its slope, with the "
+     "correlations: Cov(y, slope times deviation) / Var(y). The shares add up to 100 %."),
+    ("Total", "From the cars: what slopes miss is fitted by squares and products of deviations (ridge "
+     "regression, the penalty by leaving one car out), and every term is counted for each parameter in it."),
     ("Not attributed", "Below the totals: share of the variance that slopes and fit together miss."),
-    ("Tightening", "The same cars with one parameter's deviations halved or doubled; each car's change is of first "
-     "order, on top of what the true solver gave for it."),
+    ("Tightening", "The same cars with one parameter's deviations halved or doubled; each car's change is "
+     "of first order, on top of what the true solver gave for it."),
     ("Bands", "At each input 95 % of the cars lie between the 2.5 and the 97.5 percent of the curves."),
 )  # fmt: skip
 

@@ -16,8 +16,8 @@ BAND_PERCENTILES = (2.5, 25.0, 50.0, 75.0, 97.5)
 
 @dataclass(frozen=True)
 class CurveBand:
-    """One load case. input: (n,) in its unit. nominal, percentiles: response -> (2, n) and (5, 2, n) of the mean
-    curves, left and right, in the response's unit; angles and wheel centre as change from static."""
+    """One load case. input: (n,) in its unit. nominal, percentiles: response -> (2, n) and (5, 2, n) of the
+    mean curves, left and right, in the response's unit; angles and wheel centre as change from static."""
 
     load_case: str
     input_unit: str

@@ -2,8 +2,8 @@
 
 With slopes G (k, m) and the covariance C of the deviations, the characteristics have the covariance G C G'.
 Deviation i takes part in the variance of one by g_i (C g)_i: these shares add up to 1 whatever the
-correlations (Cov(y, g_i x_i) / Var(y); G. Li et al., J. Phys. Chem. A 114(19), 2010), and one is negative where
-the deviation makes up for others.
+correlations (Cov(y, g_i x_i) / Var(y); G. Li et al., J. Phys. Chem. A 114(19), 2010), and one is negative
+where the deviation makes up for others.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class FirstOrder:
         """(k, m) of each variance; 0 where nothing moves it."""
         parts = self._parts
         total = parts.sum(axis=1, keepdims=True)
-        return np.divide(parts, total, out=np.zeros_like(parts), where=total > 0.0)
+        return np.asarray(np.divide(parts, total, out=np.zeros_like(parts), where=total > 0.0))
 
     def changes(self, deviations: FloatArray) -> FloatArray:
         """(n, k) of the characteristics of cars with deviations (n, m)."""

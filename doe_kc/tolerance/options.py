@@ -69,7 +69,7 @@ class ToleranceOptions(Strict):
     """
 
     samples: Annotated[int, Field(ge=FEWEST_CARS, le=MOST_CARS)] = 1000
-    parameters: Annotated[list[str], Field(min_length=1)] = ["*"]
+    parameters: list[str] = Field(default=["*"], min_length=1)
     distribution: LawId = "truncated_normal"
     limits: Positive = 3.0
     common: Share = 0.5

@@ -49,8 +49,8 @@ def build_requirements(
             known = [e.id for e in entries]
             own = "no characteristic of this axle" if _fits(option.match) else "no characteristic"
             raise InputError(
-                f"{source}: tolerance.requirement: match = {option.match!r} fits {own}; expected an id or glob "
-                f"such as {known[0]}.{nearest(option.match, known)}"
+                f"{source}: tolerance.requirement: match = {option.match!r} fits {own}; expected an id or "
+                f"glob such as {known[0]}.{nearest(option.match, known)}"
             )
     if options:
         return {e.id: r for e in entries if (r := _stated(e, options)) is not None}

@@ -46,7 +46,8 @@ def moments(values: FloatArray) -> Moments:
 
 @dataclass(frozen=True)
 class CarShare:
-    """count of n cars, and the interval that holds the true share with 95 % confidence; all shares in [0, 1]."""
+    """count of n cars, and the interval that holds the true share with 95 % confidence; all shares in [0,
+    1]."""
 
     count: int
     n: int

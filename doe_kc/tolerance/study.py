@@ -87,9 +87,10 @@ def tolerance_study(
 ) -> Tolerance:
     """n cars of an axle, solved, with what their scatter comes from.
 
-    store: file of the evaluations; what it has is not run again. twin: the package's own model of an axle that
-    an outside solver solves, for the slopes; without one they are fitted to the sample. progress: told how many
-    more cars are done, the unchanged axle among them. RunError when that has no equilibrium, or hardly any car.
+    store: file of the evaluations; what it has is not run again. twin: the package's own model of an axle
+    that an outside solver solves, for the slopes; without one they are fitted to the sample. progress: told
+    how many more cars are done, the unchanged axle among them. RunError when that has no equilibrium, or
+    hardly any car.
     """
     started = time.perf_counter()
     design, deviations = car_design(model, n, seed, source)
@@ -136,8 +137,8 @@ def _solved(campaign: Campaign, design: Design, progress: Callable[[int], None])
     if solved.sum() < max(2.0, 0.5 * len(drawn)):
         reason = next(o.reason for o in drawn if o.failed)
         raise RunError(
-            f"{len(drawn) - int(solved.sum())} of {len(drawn)} cars have no equilibrium, the first: {reason}; "
-            "make the scatter of [tolerance] smaller."
+            f"{len(drawn) - int(solved.sum())} of {len(drawn)} cars have no equilibrium, the first: "
+            f"{reason}; make the scatter of [tolerance] smaller."
         )
     return _Cars(
         solved=solved,

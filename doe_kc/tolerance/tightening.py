@@ -23,10 +23,11 @@ HALVED, DOUBLED = 0.5, 2.0
 
 @dataclass(frozen=True)
 class Tightening:
-    """Of one parameter. sd_ratio: (k,) standard deviation of each characteristic with the halved tolerance over
-    that now. sd_slope: (k,) its derivative to the parameter's sd, of first order, in units of the
+    """Of one parameter. sd_ratio: (k,) standard deviation of each characteristic with the halved tolerance
+    over that now. sd_slope: (k,) its derivative to the parameter's sd, of first order, in units of the
     characteristic per unit of the parameter. outside: (r,) share of cars outside each requirement, halved.
-    any_outside: outside any of them, halved; doubled: with the tolerance doubled.
+    any_outside: outside any of them, halved; doubled: with the tolerance doubled. missed, missed_doubled:
+    mean number of requirements that a car misses, alike.
     """
 
     scatter: Scatter
@@ -35,6 +36,8 @@ class Tightening:
     outside: tuple[CarShare, ...]
     any_outside: CarShare
     doubled: CarShare
+    missed: float
+    missed_doubled: float
 
 
 def tightenings(
@@ -55,7 +58,7 @@ def tightenings(
         doubled = values + (DOUBLED - 1.0) * change
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = np.where(sd > 0.0, halved.std(axis=0) / sd, 1.0)
-        each, both = outside_table(halved, requirements), outside_table(doubled, requirements)
+        each, twice = outside_table(halved, requirements), outside_table(doubled, requirements)
         out.append(
             Tightening(
                 scatter,
@@ -63,7 +66,9 @@ def tightenings(
                 _sd_slope(model, first_order, own, scatter.sd),
                 tuple(car_share(int(column.sum()), len(values)) for column in each.T),
                 car_share(int(each.any(axis=1).sum()), len(values)),
-                car_share(int(both.any(axis=1).sum()), len(values)),
+                car_share(int(twice.any(axis=1).sum()), len(values)),
+                float(each.sum(axis=1).mean()),
+                float(twice.sum(axis=1).mean()),
             )
         )
     return tuple(out)
@@ -73,7 +78,7 @@ def _sd_slope(model: ScatterModel, first_order: FirstOrder, own: NDArray[np.bool
     """d sd(y) / d sd(x) = sum of g_i (C g)_i over its sides / (sd(x) sd(y))."""
     parts = (first_order.slopes * (first_order.slopes @ model.covariance))[:, own].sum(axis=1)
     scale = sd * first_order.sd
-    return np.divide(parts, scale, out=np.zeros_like(parts), where=scale > 0.0)
+    return np.asarray(np.divide(parts, scale, out=np.zeros_like(parts), where=scale > 0.0))
 
 
 def outside_table(values: FloatArray, requirements: Sequence[tuple[int, Requirement]]) -> NDArray[np.bool_]:

@@ -2,10 +2,10 @@
 
 The sample minus its first order is fitted by corrections of the slopes, squares of all deviations, and
 products of the pairs that contribute most, by ridge regression whose penalty leaving one car out chooses. A
-parameter's total share is the sum of Cov(term, y) / Var(y) over all terms that it is in; an interaction counts
-for each of its partners, so that the shares may add up to more than 1. Of independent deviations they are the
-total effects of Sobol (I. M. Sobol, Math. Comput. Simul. 55, 2001), by G. Li et al. (J. Phys. Chem. A 114(19),
-2010) for correlated ones.
+parameter's total share is the sum of Cov(term, y) / Var(y) over all terms that it is in; an interaction
+counts for each of its partners, so that the shares may add up to more than 1. Of independent deviations they
+are the total effects of Sobol (I. M. Sobol, Math. Comput. Simul. 55, 2001), by G. Li et al. (J. Phys. Chem. A
+114(19), 2010) for correlated ones.
 """
 
 from __future__ import annotations
@@ -37,8 +37,8 @@ class TotalEffects:
 def total_effects(
     deviations: FloatArray, values: FloatArray, slopes: FloatArray, sd: FloatArray, owner: np.ndarray
 ) -> TotalEffects:
-    """deviations: (n, m) with standard deviations sd (m,). values: (n, k). slopes: (k, m). owner: (m,) place of
-    each deviation's parameter."""
+    """deviations: (n, m) with standard deviations sd (m,). values: (n, k). slopes: (k, m). owner: (m,) place
+    of each deviation's parameter."""
     standard = deviations / sd
     linear = slopes * sd
     pairs = _pairs(linear, values.std(axis=0), len(values))
@@ -73,10 +73,7 @@ def _collected(parts: FloatArray, pairs: np.ndarray, owner: np.ndarray, m: int) 
     """(p, k): each term to its parameter, a product to both of its own, once where they are one."""
     out = np.zeros((int(owner.max()) + 1, len(parts)))
     for place, column in enumerate(parts.T):
-        if place < 2 * m:
-            members = {int(owner[place % m])}
-        else:
-            members = {int(owner[i]) for i in pairs[place - 2 * m]}
-        for i in members:
+        deviations = [place % m] if place < 2 * m else pairs[place - 2 * m]
+        for i in {int(owner[k]) for k in deviations}:
             out[i] += column
     return out

@@ -18,14 +18,9 @@ from doe_kc.measurement.rig_state import rig_state
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
-from doe_kc.reports.tolerance_tables import (
-    band_table,
-    car_columns,
-    contribution_table,
-    scatter_table,
-    tightening_table,
-    tolerance_table,
-)
+from doe_kc.reports.tolerance_contributions import contribution_table
+from doe_kc.reports.tolerance_scatter import band_table, scatter_table
+from doe_kc.reports.tolerance_tables import car_columns, tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
 from doe_kc.study import STORES, Study
 from doe_kc.targets import Targets, build_targets

@@ -13,21 +13,22 @@ from doe_kc.reports.render.page import Section, render, table_html, write_page
 from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.tolerance_bands import band_sheet
 from doe_kc.reports.tolerance_figures import contributions, distributions, measured_handles, tightening_bars
-from doe_kc.reports.tolerance_tables import band_table, scatter_table, tightening_table, tolerance_table
+from doe_kc.reports.tolerance_scatter import band_table, scatter_table
+from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
 from doe_kc.tolerance.result import Tolerance
 
 DISTRIBUTION_LEAD = (
-    "Each car is a draw of all scattering parameters, solved by the true solver. Dashed: what slopes alone would "
-    "give; shaded: outside the requirement."
+    "Each car is a draw of all scattering parameters, solved by the true solver. Dashed: what slopes alone "
+    "would give; shaded: outside the requirement."
 )
 CONTRIBUTION_LEAD = (
-    "Share of each variance that a parameter, both sides together, takes part in: by its slope, and in total, with "
-    "curvature and interactions."
+    "Share of each variance that a parameter, both sides together, takes part in: by its slope, and in "
+    "total, with curvature and interactions."
 )
 TIGHTENING_LEAD = (
-    "The same cars with the scatter of one parameter halved or doubled, by first order on top of what the true "
-    "solver gave for each."
+    "The same cars with the scatter of one parameter halved or doubled, by first order on top of what the "
+    "true solver gave for each."
 )
 BAND_LEAD = (
     "Where the curves of 95 % and of half of the cars lie; on the right as distance from the unchanged axle."
@@ -35,7 +36,8 @@ BAND_LEAD = (
 
 
 def tolerance_sections(tolerance: Tolerance, *, study: str) -> list[Section]:
-    """What follows, Distributions, What to tighten, Contributions, Curves, Scatter of the parameters, Words."""
+    """What follows, Distributions, What to tighten, Contributions, Curves, Scatter of the parameters,
+    Words."""
     tightening = table_html(tightening_table(tolerance))
     if tolerance.required:
         tightening = (
