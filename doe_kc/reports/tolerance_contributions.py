@@ -69,12 +69,15 @@ def contribution_table(tolerance: Tolerance) -> Table[ContributionRow]:
 
 def contribution_matrix(tolerance: Tolerance, kind: str) -> Table[ParameterContribution]:
     """Parameters down, characteristics across, percent of the variance. kind: "first" or "total"."""
-    words = {
-        "first": ("First order", "Percent of each variance by slopes (" + tolerance.first_order.source + "
-                  ""); the columns add up to 100, a negative share makes up for others that it is correlated with."),
-        "total": ("Total", "Percent of each variance from the cars themselves: slopes, curvature and "
-                  "interactions; an interaction counts for each of its partners."),
-    }[kind]  # fmt: skip
+    by_slopes = (
+        f"Percent of each variance by slopes ({tolerance.first_order.source}); the columns add up to 100, a "
+        "negative share makes up for others that it is correlated with."
+    )
+    by_cars = (
+        "Percent of each variance from the cars themselves: slopes, curvature and interactions; an interaction "
+        "counts for each of its partners."
+    )
+    words = {"first": ("First order", by_slopes), "total": ("Total", by_cars)}[kind]
 
     def column(k: int, entry: Characteristic) -> Column[ParameterContribution]:
         return Column(entry.id, f"{case_label(entry.load_case)}: {entry.label}",

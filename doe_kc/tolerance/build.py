@@ -146,7 +146,8 @@ def _between(scatters: Sequence[Scatter], options: ToleranceOptions, source: str
         if len(chosen) < 2:
             raise InputError(
                 f"{source}: tolerance.correlation: match = {entry.match} is one parameter, "
-                f"{paths[chosen[0]]}; expected two or more. How alike its sides are is `common` of [[tolerance.scatter]]."
+                f"{paths[chosen[0]]}; expected two or more. How alike its sides are is `common` of "
+                "[[tolerance.scatter]]."
             )
         for a in chosen:
             for b in chosen:
