@@ -21,5 +21,5 @@ class InfluenceOptions(Strict):
     parameters: list[str] = Field(default=["*"])
     methods: list[GlobalMethodId] = Field(default=[], alias="global")
     morris: Annotated[int, Field(ge=4, le=100_000)] = 20
-    sobol: Annotated[int, Field(ge=8, le=1_000_000)] = 256
+    sobol: Annotated[int, Field(ge=64, le=1_000_000)] = 256
     pawn: Annotated[int, Field(ge=50, le=1_000_000)] = 1000

@@ -74,8 +74,8 @@ def contribution_matrix(tolerance: Tolerance, kind: str) -> Table[ParameterContr
         "negative share makes up for others that it is correlated with."
     )
     by_cars = (
-        "Percent of each variance from the cars themselves: slopes, curvature and interactions; an interaction "
-        "counts for each of its partners."
+        "Percent of each variance from the cars themselves: slopes, curvature and interactions; an "
+        "interaction counts for each of its partners."
     )
     words = {"first": ("First order", by_slopes), "total": ("Total", by_cars)}[kind]
 
