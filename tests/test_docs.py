@@ -103,6 +103,7 @@ def test_the_commands_named_exist_with_their_options() -> None:
             "reduce",
             "influence",
             "sample",
+            "tolerance",
         ),
         *("surrogates", "correlate", "discover", "report", "run", "live"),
     }

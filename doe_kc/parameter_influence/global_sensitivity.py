@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.campaign.runner import Campaign
@@ -183,8 +182,8 @@ def _explained(space: Space, places: FloatArray, values: FloatArray, effects: Fl
 
 def _method_result(method: GlobalMethod, points: FloatArray, values: FloatArray, seed: int) -> MethodResult:
     size = method.block(points.shape[1])
-    solved: NDArray[np.bool_] = np.isfinite(values).all(axis=1)
-    blocks: NDArray[np.bool_] = solved.reshape(-1, size).min(axis=1)
+    solved = np.isfinite(values).all(axis=1)
+    blocks = np.asarray(solved.reshape(-1, size).all(axis=1), dtype=bool)
     kept = int(blocks.sum())
     if kept < max(4, len(blocks) // 2):
         raise RunError(

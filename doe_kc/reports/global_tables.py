@@ -26,8 +26,8 @@ from doe_kc.variables import Variable
 
 GLOBAL_LEAD = (
     "How the variables act over their whole ranges in [variables], by the true solver, beside what the "
-    "slopes of the unchanged axle say. Where the two disagree by more than the confidence intervals, the model "
-    "is not linear."
+    "slopes of the unchanged axle say. Where the two disagree by more than the confidence intervals, the "
+    "model is not linear."
 )
 CONVERGENCE_LEAD = (
     "Largest half width of the 95 % confidence interval of a method's main index over the variables, with a "
@@ -38,8 +38,8 @@ GLOBAL_LEGEND: Mapping[str, str] = {
     "variance that all slopes together give over the ranges.",
     "Global: Morris": "Mean and standard deviation of the change per whole range, over trajectories through "
     "the box; a standard deviation near the mean says that the effect depends on where the others are.",
-    "Global: Sobol": "Share of the variance over the ranges alone, and in total with interactions; Saltelli's "
-    "sample.",
+    "Global: Sobol": "Share of the variance over the ranges alone, and in total with interactions; "
+    "Saltelli's sample.",
     "Global: PAWN": "How far the distribution of the characteristic moves when the variable is held in a "
     "tenth of its range: median Kolmogorov-Smirnov distance; by chance it stays below 'shift by chance'.",
     "Global: ±": "Half width of the 95 % confidence interval, by bootstrap.",
@@ -90,8 +90,8 @@ def global_table(result: GlobalSensitivity, *, every: bool = False) -> Table[Glo
     columns: tuple[Column[GlobalRow], ...] = (
         *CHARACTERISTIC_COLUMNS,
         Column("variable", "Variable", lambda r: r.variable.path, width=14, page=PageCell()),
-        Column("effect", "By slope: effect over the range", lambda r: r.effect, lambda r: three_digits(r.effect),
-               14, page=PageCell("by slope, per range", digits=3)),
+        Column("effect", "By slope: effect over the range", lambda r: r.effect,
+               lambda r: three_digits(r.effect), 14, page=PageCell("by slope, per range", digits=3)),
         Column("share", "By slopes: share of the variance", lambda r: r.share, "0.0%", 14,
                page=PageCell("by slopes, share", layout=".1%")),
         *(c for m in result.methods for c in _index_columns(m)),

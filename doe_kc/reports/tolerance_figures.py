@@ -205,32 +205,32 @@ def tightening_bars(tolerance: Tolerance, *, study: str) -> Sheet:
     halved or doubled."""
     ranked = ranked_tightenings(tolerance)[:MOST_TIGHTENED]
     height = 1.7 + 0.22 * len(ranked)
-    margins = {"left": 0.24, "right": 0.97, "bottom": 0.95 / height, "top": 1 - 0.6 / height, "wspace": 0.08}
-    page, panels = sheet(1, 2, size=(8.27, height), share_x=False, margins=margins)
-    shares, missed = panels[0]
     now = tolerance.any_outside
-    shares.vspan(100.0 * now.low, 100.0 * now.high, color=INTERVAL_FILL, zorder=0)
-    _pairs(shares, 100.0 * now.share, *(
-        [100.0 * s.share for s in of]
-        for of in ([t.any_outside for t in ranked], [t.doubled for t in ranked])
-    ))  # fmt: skip
+    halved, doubled = [t.any_outside for t in ranked], [t.doubled for t in ranked]
+    moving = any(s.count != now.count for s in (*halved, *doubled))
+    margins = {"left": 0.24, "right": 0.97, "bottom": 0.95 / height, "top": 1 - 0.6 / height, "wspace": 0.08}
+    page, panels = sheet(1, 1 + moving, size=(8.27, height), share_x=False, margins=margins)
+    if moving:
+        shares = panels[0, 0]
+        shares.vspan(100.0 * now.low, 100.0 * now.high, color=INTERVAL_FILL, zorder=0)
+        _pairs(shares, 100.0 * now.share, *([100.0 * s.share for s in of] for of in (halved, doubled)))
+        shares.set_labels("cars outside any requirement [%]", None)
+    missed = panels[0, -1]
     _pairs(missed, tolerance.missed, [t.missed for t in ranked], [t.missed_doubled for t in ranked])
+    missed.set_labels(f"requirements that a car misses, of {len(tolerance.required)}", None)
     words = [
         f"{t.scatter.parameter.path}  (sd {t.scatter.sd:.3g} {t.scatter.parameter.unit})" for t in ranked
     ]
-    places = np.arange(len(ranked), dtype=float)
-    shares.y.set_ticks(places, [w.replace(" -)", ")") for w in words])
-    missed.y.set_ticks(places, [""] * len(ranked))
-    shares.set_labels("cars outside any requirement [%]", None)
-    missed.set_labels(f"requirements that a car misses, of {len(tolerance.required)}", None)
-    for panel in (shares, missed):
+    for k, panel in enumerate(panels.flat):
+        names = [w.replace(" -)", ")") if k == 0 else "" for w in words]
+        panel.y.set_ticks(np.arange(len(ranked), dtype=float), names)
         panel.y.set_limits(len(ranked) - 0.4, -0.6)
         panel.x.set_locator(ticks(5))
     handles: list[Line2D | Patch] = [
         Line2D([], [], ls="", marker="o", ms=4.5, mew=0, color=PALETTE["blue"], label="scatter halved"),
         Line2D([], [], ls="", marker="D", ms=4.0, mfc="none", color=PALETTE["vermillion"], label="doubled"),
         Line2D([], [], color=PALETTE["black"], lw=0.9, label="now"),
-        Patch(color=INTERVAL_FILL, label="95 % interval of now"),
+        *([Patch(color=INTERVAL_FILL, label="95 % interval of now")] if moving else []),
     ]
     page.add_legend(handles, 4, 7.5)
     page.set_heading(f"Which scatter to tighten, and which may grow: {study}", 1 - 0.15 / height)

@@ -113,6 +113,7 @@ def tolerance_table(tolerance: Tolerance) -> Table[CharacteristicScatter]:
         "Scatter of characteristics",
         filtered=True,
         choices={"outside": "with cars outside only", "curved": "not linear only"},
+        first=("name", "load_case", "unit", "outside", "nominal", "mean", "sd"),
         tags=lambda s: " ".join(
             [
                 *(["outside"] if s.outside is not None and s.outside.count else []),

@@ -143,8 +143,7 @@ class Tolerance:
     @cached_property
     def totals(self) -> TotalEffects:
         """Of every parameter, from the sample."""
-        slopes = self.first_order.slopes
-        return total_effects(self.deviations, self.values, slopes, self.model.sd, self.model.owner)
+        return total_effects(self.deviations, self.values, self.first_order.slopes, self.model)
 
     @cached_property
     def tightenings(self) -> tuple[Tightening, ...]:

@@ -1,11 +1,12 @@
-"""Total contributions, read off the Monte Carlo sample: what slopes miss is fitted, then taken apart.
+"""Total contributions: slopes, and what they miss, fitted to the Monte Carlo sample and taken apart.
 
 The sample minus its first order is fitted by corrections of the slopes, squares of all deviations, and
 products of the pairs that contribute most, by ridge regression whose penalty leaving one car out chooses. A
 parameter's total share is the sum of Cov(term, y) / Var(y) over all terms that it is in; an interaction
 counts for each of its partners, so that the shares may add up to more than 1. Of independent deviations they
 are the total effects of Sobol (I. M. Sobol, Math. Comput. Simul. 55, 2001), by G. Li et al. (J. Phys. Chem. A
-114(19), 2010) for correlated ones.
+114(19), 2010) for correlated ones. Deviations are symmetric about 0, so that they do not correlate with
+squares and products: the linear part is taken apart by its known covariance, without the sample's error.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.ridge import fit_ridge
+from doe_kc.tolerance.model import ScatterModel
 
 MOST_PAIRS = 150
 """Products of two deviations at most."""
@@ -35,25 +37,26 @@ class TotalEffects:
 
 @one_thread()
 def total_effects(
-    deviations: FloatArray, values: FloatArray, slopes: FloatArray, sd: FloatArray, owner: np.ndarray
+    deviations: FloatArray, values: FloatArray, slopes: FloatArray, model: ScatterModel
 ) -> TotalEffects:
-    """deviations: (n, m) with standard deviations sd (m,). values: (n, k). slopes: (k, m). owner: (m,) place
-    of each deviation's parameter."""
-    standard = deviations / sd
-    linear = slopes * sd
+    """deviations: (n, m) of the model. values: (n, k). slopes: (k, m)."""
+    standard = deviations / model.sd
+    m = standard.shape[1]
+    linear = slopes * model.sd
     pairs = _pairs(linear, values.std(axis=0), len(values))
-    terms = np.hstack([standard, standard**2 - 1.0, standard[:, pairs[:, 0]] * standard[:, pairs[:, 1]]])
-    remainder = values - standard @ linear.T
-    fit = fit_ridge(terms, remainder)
+    curved = np.hstack([standard**2 - 1.0, standard[:, pairs[:, 0]] * standard[:, pairs[:, 1]]])
+    fit = fit_ridge(np.hstack([standard, curved]), values - standard @ linear.T)
+    slope = linear + fit.slope[:, :m]
+    curvature = fit.slope[:, m:]
+    plane = slope * (slope @ model.correlation)
+    centred = curved - curved.mean(axis=0)
+    bent = curvature * (curvature @ (centred.T @ centred / len(values)))
+    total = plane.sum(axis=1) + bent.sum(axis=1)
     variance = values.var(axis=0)
-    centred = values - values.mean(axis=0)
-    weight = np.array(fit.slope)
-    weight[:, : len(sd)] += linear
-    parts = weight * (centred.T @ (terms - terms.mean(axis=0)) / len(values))
+    shares = _collected(np.hstack([plane, bent]), pairs, model.owner, m)
     with np.errstate(divide="ignore", invalid="ignore"):
-        parts = np.nan_to_num(parts / variance[:, None])
         unexplained = np.nan_to_num((fit.left_out**2).mean(axis=0) / variance)
-    return TotalEffects(_collected(parts, pairs, owner, len(sd)), unexplained)
+        return TotalEffects(np.nan_to_num(shares / total), unexplained)
 
 
 def _pairs(linear: FloatArray, spread: FloatArray, n: int) -> np.ndarray:

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from datetime import date
 from pathlib import Path
 from typing import Any
 
 from doe_kc.campaign.export import write_table
 from doe_kc.characteristics import characteristics_of
-from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
-from doe_kc.measurement.rig_state import rig_state
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
@@ -27,11 +24,12 @@ from doe_kc.targets import Targets, build_targets
 from doe_kc.tolerance.build import build_scatter
 from doe_kc.tolerance.model import ScatterModel
 from doe_kc.tolerance.requirements import Requirement, build_requirements
-from doe_kc.tolerance.result import MeasuredCar, Tolerance
+from doe_kc.tolerance.result import Tolerance
 from doe_kc.tolerance.statistics import CarShare
 from doe_kc.tolerance.study import tolerance_study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.measure import study_measurement
+from doe_kc.workflow.measured_cars import measured_cars, named_cars
 
 
 def tolerance_store(study: Study) -> Path:
@@ -42,29 +40,6 @@ def tolerance_store(study: Study) -> Path:
 def study_scatter(study: Study) -> ScatterModel:
     """The scatter that the study asks for; InputError as `build_scatter`."""
     return build_scatter(study.axle, study.tolerance, str(study.source))
-
-
-def car_folders(study: Study) -> list[Path]:
-    """Folders of the measured cars; InputError for one that is not there, or was measured in another state
-    than the study's axle has."""
-    if study.tolerance.cars is None:
-        return [] if study.measurement is None else [study.measurement]
-    folders = [study.folder / name for name in study.tolerance.cars]
-    for folder in folders:
-        where = f"{study.source}: tolerance.cars: {folder}"
-        if not folder.exists():
-            raise InputError(f"{where}: there is no such folder; expected one that holds test.toml.")
-        if rig_state(folder).arb != study.state.arb:
-            raise InputError(
-                f"{where}: the anti-roll bar was {rig_state(folder).arb}, of the study's axle it is "
-                f"{study.state.arb}; leave this car out, or name its records as the study's measurement."
-            )
-    return folders
-
-
-def measured_cars(study: Study) -> list[tuple[Path, Measurement]]:
-    """The reduced records of every car."""
-    return [(f, study_measurement(replace(study, measurement=f))) for f in car_folders(study)]
 
 
 def study_requirements(study: Study, measurement: Measurement | None) -> dict[str, Requirement]:
@@ -108,7 +83,7 @@ def study_tolerance(
         n=samples or study.tolerance.samples,
         seed=study.seed,
         requirements=requirements,
-        cars=list(_named(cars)),
+        cars=named_cars(cars),
         store=tolerance_store(study),
         twin=study.twin,
         workers=workers,
@@ -116,14 +91,6 @@ def study_tolerance(
         source=str(study.source),
         progress=progress,
     )
-
-
-def _named(cars: list[tuple[Path, Measurement]]) -> Iterator[MeasuredCar]:
-    """By the name of the records; with the folder's where two have one name."""
-    names = [m.manifest.name for _, m in cars]
-    for folder, m in cars:
-        name = m.manifest.name if names.count(m.manifest.name) == 1 else f"{m.manifest.name} ({folder.name})"
-        yield MeasuredCar(name, {k: e.value for k, e in m.characteristics.items()}, m.curves)
 
 
 def write_tolerance(
