@@ -29,7 +29,7 @@ GLOBAL_LEAD = (
     "slopes of the unchanged axle say. Where the two disagree by more than the confidence intervals, the "
     "model is not linear."
 )
-CONVERGENCE_LEAD = (
+METHODS_LEAD = (
     "Largest half width of the 95 % confidence interval of a method's main index over the variables, with a "
     "quarter, half and all of its samples, and the largest change that the second half made."
 )
@@ -216,7 +216,7 @@ def convergence_table(result: GlobalSensitivity) -> Table[ConvergenceRow]:
     )  # fmt: skip
     return Table(
         "Convergence",
-        CONVERGENCE_LEAD,
+        METHODS_LEAD,
         columns,
         rows,
         title="Convergence of the global sensitivities",

@@ -28,7 +28,7 @@ CAR_FILL, CAR_EDGE = PALETTE["sky"], PALETTE["blue"]
 LIMIT_COLOUR = PALETTE["black"]
 OUTSIDE_FILL = "#FBDDB3"
 """Behind what is beyond a requirement, as in the workbooks."""
-MEASURED_COLOURS = tuple(COLOUR_CYCLE[i] for i in (1, 2, 4, 3))
+MEASURED_CAR_COLOURS = tuple(COLOUR_CYCLE[i] for i in (1, 2, 4, 3))
 """Of the measured cars, in turn."""
 FIRST_COLOUR, TOTAL_COLOUR = PALETTE["sky"], PALETTE["blue"]
 INTERVAL_FILL = "#E4E8EC"
@@ -78,7 +78,7 @@ def _distribution(
     _limits(panel, scatter)
     for k, car in enumerate(tolerance.cars):
         if car.name in scatter.measured:
-            color = MEASURED_COLOURS[k % len(MEASURED_COLOURS)]
+            color = MEASURED_CAR_COLOURS[k % len(MEASURED_CAR_COLOURS)]
             note = _measured(panel, scatter.measured[car.name][0], color) or note
     panel.vline(scatter.nominal, ":", color=PALETTE["black"], lw=0.9)
     panel.numbers["y"] = False
@@ -149,7 +149,13 @@ def _distribution_handles(tolerance: Tolerance) -> list[Line2D | Patch]:
 def measured_handles(tolerance: Tolerance) -> list[Line2D | Patch]:
     """Lines of the measured cars for a legend."""
     return [
-        Line2D([], [], color=MEASURED_COLOURS[k % len(MEASURED_COLOURS)], lw=1.4, label=f"measured: {c.name}")
+        Line2D(
+            [],
+            [],
+            color=MEASURED_CAR_COLOURS[k % len(MEASURED_CAR_COLOURS)],
+            lw=1.4,
+            label=f"measured: {c.name}",
+        )
         for k, c in enumerate(tolerance.cars)
     ]
 

@@ -19,7 +19,7 @@ from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
 from doe_kc.tolerance.result import Tolerance
 
-HEADS = 2
+MATRIX_HEADS = 2
 """Columns of a matrix before its characteristics."""
 TOLERANCE_LEGEND = (
     ("Car", "One draw of all scattering parameters, each side its own, solved by the true solver."),
@@ -73,10 +73,10 @@ def _matrix(book: Workbook, table: Table[Any], study: str) -> None:
     """Heads upright, as the columns are narrow; colours from white at 0 to full at 100 %."""
     ws, columns = table_sheet(book, table, study), table.sheet_columns
     head = TABLE_FIRST_ROW - 1
-    for c in range(HEADS + 1, len(columns) + 1):
+    for c in range(MATRIX_HEADS + 1, len(columns) + 1):
         ws.cell(head, c).alignment = cell_alignment(textRotation=90, horizontal="center", vertical="bottom")
     ws.row_dimensions[head].height = 5.2 * max(len(c.head or "") for c in columns)
-    first, last = get_column_letter(HEADS + 1), get_column_letter(len(columns))
+    first, last = get_column_letter(MATRIX_HEADS + 1), get_column_letter(len(columns))
     colour_scale(ws, f"{first}{TABLE_FIRST_ROW}:{last}{head + len(table.rows)}")
 
 
@@ -86,4 +86,4 @@ def _unexplained(book: Workbook, tolerance: Tolerance) -> None:
     row = ws.max_row + 2
     put(ws, row, 1, "Not attributed, at most, %", bold=True)
     for k, share in enumerate(tolerance.totals.unexplained):
-        put(ws, row, HEADS + 1 + k, float(number(100.0 * float(share), 2)), number="0.0")
+        put(ws, row, MATRIX_HEADS + 1 + k, float(number(100.0 * float(share), 2)), number="0.0")

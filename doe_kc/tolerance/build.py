@@ -14,14 +14,14 @@ from doe_kc.axle.parameter_kinds import must_be_positive, not_below_zero
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.laws import LAWS
+from doe_kc.tolerance.laws import DEVIATION_LAWS
 from doe_kc.tolerance.model import Scatter, ScatterModel, correlation_matrix
 from doe_kc.tolerance.options import ScatterOptions, ToleranceOptions
 from doe_kc.variables.build import plain_parameter
 
-ROUNDING = 1e-9
+EIGENVALUE_ROUNDING = 1e-9
 """Below zero by no more, an eigenvalue of correlations is one of rounding."""
-NAMED = 4
+CORRELATED_NAMED = 4
 """Parameters that a sentence on impossible correlations names."""
 
 
@@ -92,7 +92,7 @@ def _scatter(
     source: str,
 ) -> Scatter:
     law_id = _last(own, "distribution", options.distribution)
-    law = LAWS[law_id](_last(own, "limits", options.limits))
+    law = DEVIATION_LAWS[law_id](_last(own, "limits", options.limits))
     sd = parameter.production_sd
     for entry in own:
         if entry.sd is not None:
@@ -167,10 +167,12 @@ def _check_correlation(model: ScatterModel, source: str) -> None:
         ) from None
     for matrix in matrices:
         values, vectors = np.linalg.eigh(matrix)
-        if values[0] >= -ROUNDING:
+        if values[0] >= -EIGENVALUE_ROUNDING:
             continue
         weight = model.by_parameter(vectors[:, 0] ** 2)
-        worst = [model.scatters[i].parameter.path for i in np.argsort(-weight, kind="stable")[:NAMED]]
+        worst = [
+            model.scatters[i].parameter.path for i in np.argsort(-weight, kind="stable")[:CORRELATED_NAMED]
+        ]
         raise InputError(
             f"{source}: tolerance.correlation: no cars have all these correlations at once (smallest "
             f"eigenvalue {values[0]:.3g}); make those between {', '.join(worst)} smaller, or give them the "

@@ -16,7 +16,7 @@ from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
-class FirstOrder:
+class FirstOrderScatter:
     """slopes: (k, m) of the characteristics to the deviations, in their units. covariance: (m, m). source:
     how the slopes are known, in words."""
 

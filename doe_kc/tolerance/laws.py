@@ -113,7 +113,9 @@ class UniformLaw(DeviationLaw):
         return math.sqrt(3.0)
 
 
-LAWS: dict[LawId, type[DeviationLaw]] = {law.id: law for law in (NormalLaw, TruncatedNormalLaw, UniformLaw)}
+DEVIATION_LAWS: dict[LawId, type[DeviationLaw]] = {
+    law.id: law for law in (NormalLaw, TruncatedNormalLaw, UniformLaw)
+}
 """By the name that a study gives them."""
 
 

@@ -12,7 +12,7 @@ from doe_kc.characteristics import Characteristic
 from doe_kc.curves import CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.tolerance.bands import CurveBand
-from doe_kc.tolerance.first_order import FirstOrder
+from doe_kc.tolerance.first_order import FirstOrderScatter
 from doe_kc.tolerance.model import ScatterModel
 from doe_kc.tolerance.requirements import Requirement
 from doe_kc.tolerance.statistics import (
@@ -81,7 +81,7 @@ class Tolerance:
     nominal: FloatArray
     deviations: FloatArray
     values: FloatArray
-    first_order: FirstOrder
+    first_order: FirstOrderScatter
     requirements: Mapping[str, Requirement]
     bands: tuple[CurveBand, ...]
     cars: tuple[MeasuredCar, ...]

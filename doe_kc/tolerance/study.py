@@ -21,7 +21,7 @@ from doe_kc.sampling.design import Design
 from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
 from doe_kc.tolerance.bands import BandCollector, CurveBand
-from doe_kc.tolerance.first_order import FirstOrder, regression_slopes
+from doe_kc.tolerance.first_order import FirstOrderScatter, regression_slopes
 from doe_kc.tolerance.model import ScatterModel
 from doe_kc.tolerance.requirements import Requirement
 from doe_kc.tolerance.result import MeasuredCar, Tolerance
@@ -157,13 +157,13 @@ def _first_order(
     entries: Sequence[Characteristic],
     deviations: FloatArray,
     values: FloatArray,
-) -> FirstOrder:
+) -> FirstOrderScatter:
     if axle is None:
-        return FirstOrder(regression_slopes(deviations, values), model.covariance, FITTED_SLOPES)
+        return FirstOrderScatter(regression_slopes(deviations, values), model.covariance, FITTED_SLOPES)
     gradients = characteristic_gradients(
         axle, solve(axle), list(model.paths), entries, windows=solver.windows
     )
     if not np.isfinite(gradients).all():
-        return FirstOrder(regression_slopes(deviations, values), model.covariance, FITTED_SLOPES)
+        return FirstOrderScatter(regression_slopes(deviations, values), model.covariance, FITTED_SLOPES)
     source = EXACT_SLOPES if solver.exact else f"{EXACT_SLOPES} of the twin"
-    return FirstOrder(np.asarray(gradients * model.sign), model.covariance, source)
+    return FirstOrderScatter(np.asarray(gradients * model.sign), model.covariance, source)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.first_order import FirstOrder
+from doe_kc.tolerance.first_order import FirstOrderScatter
 from doe_kc.tolerance.model import Scatter, ScatterModel
 from doe_kc.tolerance.requirements import Requirement
 from doe_kc.tolerance.statistics import CarShare, car_share
@@ -44,7 +44,7 @@ def tightenings(
     model: ScatterModel,
     deviations: FloatArray,
     values: FloatArray,
-    first_order: FirstOrder,
+    first_order: FirstOrderScatter,
     requirements: Sequence[tuple[int, Requirement]],
 ) -> tuple[Tightening, ...]:
     """Of every parameter. deviations (n, m) and values (n, k) of the cars; requirements: with the column that
@@ -74,7 +74,9 @@ def tightenings(
     return tuple(out)
 
 
-def _sd_slope(model: ScatterModel, first_order: FirstOrder, own: NDArray[np.bool_], sd: float) -> FloatArray:
+def _sd_slope(
+    model: ScatterModel, first_order: FirstOrderScatter, own: NDArray[np.bool_], sd: float
+) -> FloatArray:
     """d sd(y) / d sd(x) = sum of g_i (C g)_i over its sides / (sd(x) sd(y))."""
     parts = (first_order.slopes * (first_order.slopes @ model.covariance))[:, own].sum(axis=1)
     scale = sd * first_order.sd

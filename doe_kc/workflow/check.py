@@ -30,8 +30,9 @@ from doe_kc.workflow.twin_check import twin_differences
 
 @dataclass(frozen=True)
 class Fault:
-    """where: file, record or key. kind: study, solver, method, variables, targets, sampling, surrogates, tolerance,
-    measurement, record, setup, twin, out, or that of a finding on the records. message: the whole sentence.
+    """where: file, record or key. kind: study, solver, method, variables, targets, sampling, surrogates,
+    tolerance, measurement, record, setup, twin, out, or that of a finding on the records. message: the whole
+    sentence.
     """
 
     where: str

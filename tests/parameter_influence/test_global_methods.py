@@ -11,7 +11,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.parameter_influence.global_methods import GLOBAL_METHODS, GlobalIndex, find_global_method
 from doe_kc.parameter_influence.global_methods._base import salib
-from doe_kc.parameter_influence.global_methods.pawn import SLICES, pawn_medians
+from doe_kc.parameter_influence.global_methods.pawn import PAWN_SLICES, pawn_medians
 from doe_kc.parameter_influence.options import InfluenceOptions
 
 A, B = 7.0, 0.1
@@ -68,13 +68,13 @@ def test_pawn_is_salibs() -> None:
     values = np.column_stack([points[:, 0] ** 2 + 0.3 * points[:, 1], np.round(4.0 * points[:, 2])])
     problem = {"num_vars": 4, "names": list("abcd"), "bounds": [[0.0, 1.0]] * 4}
     analyze = salib("analyze.pawn", "PAWN").analyze
-    theirs = np.column_stack([analyze(problem, points, y, S=SLICES)["median"] for y in values.T])
+    theirs = np.column_stack([analyze(problem, points, y, S=PAWN_SLICES)["median"] for y in values.T])
     np.testing.assert_allclose(pawn_medians(points, values), theirs, atol=1e-12)
 
 
 def test_pawn_of_ishigami() -> None:
-    """Ranked as in Pianosi and Wagener 2018; the third acts at the ends of its range alone, so that the median
-    of its slices is that of chance."""
+    """Ranked as in Pianosi and Wagener 2018; the third acts at the ends of its range alone, so that the
+    median of its slices is that of chance."""
     done = indices("pawn", 800)
     median, dummy = done["median"].values[:, 0], done["dummy"].values[:, 0]
     assert np.all(median[:2] > 2.0 * dummy[:2]) and median[1] > median[0] > median[2]

@@ -11,7 +11,7 @@ from doe_kc.axle import Axle, Parameter
 from doe_kc.axle_file import read_axle
 from doe_kc.ground.typing import FloatArray
 from doe_kc.tolerance.build import build_scatter
-from doe_kc.tolerance.laws import LAWS
+from doe_kc.tolerance.laws import DEVIATION_LAWS
 from doe_kc.tolerance.model import Scatter, ScatterModel, correlation_matrix
 from doe_kc.tolerance.options import LawId, ToleranceOptions
 from tests.reference import EXAMPLE
@@ -38,7 +38,7 @@ def plain_model(sd: list[float], between: FloatArray | None = None, law: LawId =
                 step=1.0, active=True,
             ),
             sd=s,
-            law=LAWS[law](3.0),
+            law=DEVIATION_LAWS[law](3.0),
             common=0.0,
             both_sides=False,
         )

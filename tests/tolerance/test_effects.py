@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.tolerance.first_order import FirstOrder, regression_slopes
+from doe_kc.tolerance.first_order import FirstOrderScatter, regression_slopes
 from doe_kc.tolerance.requirements import Requirement
 from doe_kc.tolerance.statistics import car_share, moments, percentile_of
 from doe_kc.tolerance.tightening import tightenings
@@ -22,7 +22,7 @@ ENTRY = CHARACTERISTICS["vertical.bump_steer"]
 def test_variance_of_a_linear_model_with_correlations() -> None:
     """Var(a x + b y) = a² s² + b² t² + 2 a b r s t; shares by Cov(y, a x) / Var(y)."""
     model = plain_model([2.0, 0.5], np.array([[1.0, -0.6], [-0.6, 1.0]]))
-    first = FirstOrder(np.array([[3.0, 4.0]]), model.covariance, "test")
+    first = FirstOrderScatter(np.array([[3.0, 4.0]]), model.covariance, "test")
     variance = 9.0 * 4.0 + 16.0 * 0.25 - 2.0 * 3.0 * 4.0 * 0.6 * 2.0 * 0.5
     assert first.sd[0] == pytest.approx(math.sqrt(variance))
     covariance = 3.0 * 4.0 * 0.6 * 2.0 * 0.5
@@ -60,7 +60,7 @@ def test_halving_a_scatter_of_a_linear_model() -> None:
     slopes = np.array([[3.0, 4.0]])
     x = model.deviations(100_000, 4)
     values = x @ slopes.T
-    first = FirstOrder(slopes, model.covariance, "test")
+    first = FirstOrderScatter(slopes, model.covariance, "test")
     requirement = Requirement(ENTRY, -8.0, 8.0)
     one, other = tightenings(model, x, values, first, [(0, requirement)])
     for t, sd, twice in (

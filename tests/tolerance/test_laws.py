@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from doe_kc.tolerance.laws import LAWS, DeviationLaw, normal_correlation
+from doe_kc.tolerance.laws import DEVIATION_LAWS, DeviationLaw, normal_correlation
 
-EVERY = [LAWS[name](limits) for name in LAWS for limits in (2.0, 3.0)]
+EVERY = [DEVIATION_LAWS[name](limits) for name in DEVIATION_LAWS for limits in (2.0, 3.0)]
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(100)
 
 
@@ -25,32 +25,34 @@ def test_mean_and_variance(law: DeviationLaw) -> None:
 
 def test_a_tolerance_is_where_a_law_ends() -> None:
     for name in ("truncated_normal", "uniform"):
-        law = LAWS[name](3.0)
+        law = DEVIATION_LAWS[name](3.0)
         assert law.sd_of(1.5) * law.reach == pytest.approx(1.5)
-    assert LAWS["normal"](3.0).sd_of(1.5) == 0.5
+    assert DEVIATION_LAWS["normal"](3.0).sd_of(1.5) == 0.5
     truth = stats.truncnorm(-2.0, 2.0).std()
-    assert LAWS["truncated_normal"](2.0).sd_of(2.0) == pytest.approx(truth)
+    assert DEVIATION_LAWS["truncated_normal"](2.0).sd_of(2.0) == pytest.approx(truth)
 
 
 def test_the_laws_are_those_of_scipy() -> None:
     z = np.linspace(-3.0, 3.0, 13)
     cut = stats.truncnorm(-2.0, 2.0)
-    law = LAWS["truncated_normal"](2.0)
+    law = DEVIATION_LAWS["truncated_normal"](2.0)
     np.testing.assert_allclose(law.deviations(z), cut.ppf(stats.norm.cdf(z)) / cut.std(), atol=1e-9)
     uniform = stats.uniform(-math.sqrt(3.0), 2.0 * math.sqrt(3.0))
-    np.testing.assert_allclose(LAWS["uniform"](3.0).deviations(z), uniform.ppf(stats.norm.cdf(z)), atol=1e-12)
+    np.testing.assert_allclose(
+        DEVIATION_LAWS["uniform"](3.0).deviations(z), uniform.ppf(stats.norm.cdf(z)), atol=1e-12
+    )
 
 
 @pytest.mark.parametrize("value", [-0.9, -0.3, 0.5, 1.0])
 def test_uniform_correlation_in_closed_form(value: float) -> None:
     """Of uniform variables: 2 sin(pi rho / 6) (Pearson 1907)."""
-    uniform = LAWS["uniform"](3.0)
+    uniform = DEVIATION_LAWS["uniform"](3.0)
     truth = 2.0 * math.sin(math.pi * value / 6.0)
     assert normal_correlation(uniform, uniform, value) == pytest.approx(truth, abs=1e-9)
 
 
 def test_unlike_laws_keep_their_correlation() -> None:
-    first, second = LAWS["uniform"](3.0), LAWS["truncated_normal"](2.0)
+    first, second = DEVIATION_LAWS["uniform"](3.0), DEVIATION_LAWS["truncated_normal"](2.0)
     r = normal_correlation(first, second, 0.8)
     z = np.random.default_rng(1).standard_normal((200_000, 2))
     x = first.deviations(z[:, 0]), second.deviations(r * z[:, 0] + math.sqrt(1.0 - r * r) * z[:, 1])
@@ -59,4 +61,4 @@ def test_unlike_laws_keep_their_correlation() -> None:
 
 def test_unlike_laws_are_never_wholly_correlated() -> None:
     with pytest.raises(ValueError, match=r"at most 0\.977"):
-        normal_correlation(LAWS["normal"](3.0), LAWS["uniform"](3.0), 0.99)
+        normal_correlation(DEVIATION_LAWS["normal"](3.0), DEVIATION_LAWS["uniform"](3.0), 0.99)

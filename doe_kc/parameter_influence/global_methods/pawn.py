@@ -18,7 +18,7 @@ from doe_kc.parameter_influence.global_methods._base import (
     global_method,
 )
 
-SLICES = 10
+PAWN_SLICES = 10
 """Of each variable's range, equally probable (the default of SALib)."""
 PAWN_RESAMPLES = 30
 """Bootstrap samples: half the width of an interval to 13 %."""
@@ -71,8 +71,8 @@ def pawn_medians(points: FloatArray, values: FloatArray) -> FloatArray:
     A slice is [q_s, q_s+1) of the variable's quantiles, as in SALib.
     """
     n, d = points.shape
-    edges = np.quantile(points, np.arange(SLICES + 1) / SLICES, axis=0)
-    member = np.stack([(points >= edges[s]) & (points < edges[s + 1]) for s in range(SLICES)])
+    edges = np.quantile(points, np.arange(PAWN_SLICES + 1) / PAWN_SLICES, axis=0)
+    member = np.stack([(points >= edges[s]) & (points < edges[s + 1]) for s in range(PAWN_SLICES)])
     count = member.sum(axis=1)
     out = np.empty((d, values.shape[1]))
     for k, column in enumerate(values.T):

@@ -15,8 +15,8 @@ from doe_kc.parameter_influence.global_sensitivity import GlobalSensitivity
 from doe_kc.parameter_influence.study import Influence
 from doe_kc.reports.global_figures import global_bars
 from doe_kc.reports.global_tables import (
-    CONVERGENCE_LEAD,
     GLOBAL_LEAD,
+    METHODS_LEAD,
     convergence_table,
     global_sentences,
     global_table,
@@ -115,7 +115,7 @@ def influence_sections(
         out += [
             Section("Over the ranges", sentences + picture, GLOBAL_LEAD),
             Section("Global sensitivities", table_html(global_table(overall))),
-            Section("Convergence", table_html(convergence_table(overall)), CONVERGENCE_LEAD),
+            Section("Convergence", table_html(convergence_table(overall)), METHODS_LEAD),
         ]
     return out
 
