@@ -5,6 +5,7 @@ Where the two disagree the model is not linear over the ranges, and an answer by
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,9 +25,9 @@ from doe_kc.solver.suite import solve
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import Space, Variable
 
-DISAGREEMENT = 0.05
-"""Share of a variance, or of the largest effect, by which local and global differ at least, beyond the
-confidence intervals, where the model counts as not linear."""
+MISSED_SHARE, MISSED_EFFECT = 0.02, 0.1
+"""Of the variance, of the largest mean effect: what slopes miss of a variable from which it counts as not
+linear. The solver has no noise, so that anything above 0 is real; this much is worth a word."""
 SIMULTANEOUS = 2.1
 """Times the half width of one interval: thousands of pairs of variable and characteristic are compared, and
 with 95 % confidence none of 2000 is beyond 4.1 standard deviations by chance (Bonferroni)."""
@@ -60,7 +61,9 @@ class MethodResult:
 
 @dataclass(frozen=True)
 class Disagreement:
-    """Of one variable and characteristic: what slopes say, what the method says, in the method's measure."""
+    """Of one variable and characteristic: what slopes say, what the method says with its error, and what the
+    slope misses (nan where the method does not say), in the method's measure. size: of the last, of the
+    difference for PAWN, as a share of the variance or of the largest effect."""
 
     variable: Variable
     characteristic: Characteristic
@@ -68,6 +71,8 @@ class Disagreement:
     local: float
     overall: float
     error: float
+    missed: float
+    size: float
     sentence: str
 
 
@@ -90,9 +95,9 @@ class GlobalSensitivity:
     seconds: float
 
     def disagreements(self) -> list[Disagreement]:
-        """Where a method and the slopes differ by more than the method's error, the largest first."""
+        """Where slopes miss what a method sees, the largest first."""
         out = [d for m in self.methods for d in _disagreements(self, m)]
-        return sorted(out, key=lambda d: -abs(d.overall - d.local))
+        return sorted(out, key=lambda d: -d.size)
 
 
 def global_runs(methods: Mapping[GlobalMethod, int], d: int) -> int:
@@ -134,7 +139,7 @@ def global_sensitivity(
             designs = [space.values(place) for place in places]
             outcomes = campaign.evaluate(designs, f"influence:{method.id}", progress, curves=False)
             values = np.array([o.characteristics[columns] for o in outcomes])
-            done.append(_method_result(method, points, values, seed))
+            done.append(_method_result(method, points, values, (places - space.start) @ effects, seed))
             if method.distributed:
                 explained = _explained(space, places, values, effects)
     return GlobalSensitivity(
@@ -180,7 +185,9 @@ def _explained(space: Space, places: FloatArray, values: FloatArray, effects: Fl
     return np.asarray(1.0 - np.divide(rest, variance, out=np.ones_like(rest), where=variance > 0.0))
 
 
-def _method_result(method: GlobalMethod, points: FloatArray, values: FloatArray, seed: int) -> MethodResult:
+def _method_result(
+    method: GlobalMethod, points: FloatArray, values: FloatArray, plane: FloatArray, seed: int
+) -> MethodResult:
     size = method.block(points.shape[1])
     solved = np.isfinite(values).all(axis=1)
     blocks = np.asarray(solved.reshape(-1, size).all(axis=1), dtype=bool)
@@ -191,11 +198,11 @@ def _method_result(method: GlobalMethod, points: FloatArray, values: FloatArray,
             "design without equilibrium; narrow the ranges in [variables]."
         )
     rows = np.repeat(blocks, size)
-    inside, results = points[rows], values[rows]
+    inside, results, slopes = points[rows], values[rows], plane[rows]
     stages = []
     for share in CONVERGENCE_SHARES:
         count = max(2, round(share * kept)) * size
-        stages.append(_indices(method, inside[:count], results[:count], seed))
+        stages.append(_indices(method, inside[:count], results[:count], slopes[:count], seed))
     mains = [next(i for i in stage if i.id == method.main) for stage in stages]
     return MethodResult(
         id=method.id,
@@ -211,12 +218,12 @@ def _method_result(method: GlobalMethod, points: FloatArray, values: FloatArray,
 
 
 def _indices(
-    method: GlobalMethod, points: FloatArray, values: FloatArray, seed: int
+    method: GlobalMethod, points: FloatArray, values: FloatArray, plane: FloatArray, seed: int
 ) -> tuple[GlobalIndex, ...]:
     """Zero for an output that never changes."""
     spread = np.ptp(values, axis=0)
     moving = spread > 1e-12 * np.abs(values).max(axis=0)
-    indices = method.indices(points, values[:, moving], seed) if moving.any() else ()
+    indices = method.indices(points, values[:, moving], plane[:, moving], seed) if moving.any() else ()
     out = []
     for index in indices:
         full, error = np.zeros((2, points.shape[1], values.shape[1]))
@@ -226,53 +233,40 @@ def _indices(
 
 
 def _disagreements(result: GlobalSensitivity, method: MethodResult) -> Iterator[Disagreement]:
-    local = _local(result, method)
     main = method.index(method.main)
-    scale = (
-        np.maximum(main.values.max(axis=0), 1e-300)
-        if method.id == "morris"
-        else np.ones(main.values.shape[1])
-    )
     for i, k in np.ndindex(*main.values.shape):
-        own, overall, error = float(local[i, k]), float(main.values[i, k]), float(main.error[i, k])
+        overall, error = float(main.values[i, k]), float(main.error[i, k])
+        variable, entry = result.variables[i], result.characteristics[k]
+        share, effect = float(result.shares[i, k]), abs(float(result.effects[i, k]))
         if method.id == "pawn":
-            chance = float(method.index("dummy").values[i, k])
-            hidden = overall - SIMULTANEOUS * error > chance and own < WEAK_SHARE
-            if not hidden and not (overall + SIMULTANEOUS * error < chance and own > CLEAR_SHARE):
+            chance, margin = float(method.index("dummy").values[i, k]), SIMULTANEOUS * error
+            hidden = overall - margin > chance and share < WEAK_SHARE
+            if not hidden and not (overall + margin < chance and share > CLEAR_SHARE):
                 continue
-        elif abs(overall - own) <= SIMULTANEOUS * error + DISAGREEMENT * scale[k]:
-            continue
-        yield _disagreement(result, method, (i, k), own, overall, error)
-
-
-def _local(result: GlobalSensitivity, method: MethodResult) -> FloatArray:
-    """(d, k) what slopes say in the measure of the method: the effect per range, or the share of the
-    variance."""
-    return np.abs(result.effects) if method.id == "morris" else result.shares
-
-
-def _disagreement(
-    result: GlobalSensitivity,
-    method: MethodResult,
-    place: tuple[int, int],
-    local: float,
-    overall: float,
-    error: float,
-) -> Disagreement:
-    variable, entry = result.variables[place[0]], result.characteristics[place[1]]
-    if method.id == "morris":
-        words = (
-            f"{variable.path} moves {entry.id} by {overall:.3g} ± {error:.2g} {entry.unit} over its range on "
-            f"average, by its slope {local:.3g}"
+            own, missed, size = share, math.nan, abs(overall - chance)
+            words = (
+                f"{variable.path} shifts the distribution of {entry.id} by {overall:.2f} ± {error:.2f} "
+                f"(chance {chance:.2f}), by its slope it has {100.0 * share:.1f} % of the variance"
+            )
+        elif method.id == "morris":
+            own, missed = effect, float(method.index("missed").values[i, k])
+            size = missed / max(float(main.values[:, k].max()), effect, 1e-300)
+            if size < MISSED_EFFECT:
+                continue
+            words = (
+                f"{variable.path} moves {entry.id} by {overall:.3g} ± {error:.2g} {entry.unit} over its range "
+                f"on average, by its slope by {own:.3g}; what it does beyond its slope is {missed:.3g}"
+            )
+        else:
+            own, missed = share, float(method.index("missed").values[i, k])
+            size = missed
+            if size < MISSED_SHARE:
+                continue
+            words = (
+                f"{variable.path} takes part in {100.0 * overall:.0f} ± {100.0 * error:.0f} % of the variance "
+                f"of {entry.id} over the ranges, by its slope in {100.0 * own:.0f} %; "
+                f"{100.0 * missed:.0f} % are beyond its slope"
+            )
+        yield Disagreement(
+            variable, entry, method.label, own, overall, error, missed, size, f"{words} ({method.label})."
         )
-    elif method.id == "pawn":
-        words = (
-            f"{variable.path} shifts the distribution of {entry.id} by {overall:.2f} ± {error:.2f}, by its "
-            f"slope it has {100.0 * local:.1f} % of the variance"
-        )
-    else:
-        words = (
-            f"{variable.path} takes part in {100.0 * overall:.0f} ± {100.0 * error:.0f} % of the variance of "
-            f"{entry.id} over the ranges, by its slope in {100.0 * local:.0f} %"
-        )
-    return Disagreement(variable, entry, method.label, local, overall, error, f"{words} ({method.label}).")

@@ -26,8 +26,8 @@ from doe_kc.variables import Variable
 
 GLOBAL_LEAD = (
     "How the variables act over their whole ranges in [variables], by the true solver, beside what the "
-    "slopes of the unchanged axle say. Where the two disagree by more than the confidence intervals, the "
-    "model is not linear."
+    "slopes of the unchanged axle say. Where slopes miss something, "
+    "the model is not linear."
 )
 METHODS_LEAD = (
     "Largest half width of the 95 % confidence interval of a method's main index over the variables, with a "
@@ -42,6 +42,7 @@ GLOBAL_LEGEND: Mapping[str, str] = {
     "Saltelli's sample.",
     "Global: PAWN": "How far the distribution of the characteristic moves when the variable is held in a "
     "tenth of its range: median Kolmogorov-Smirnov distance; by chance it stays below 'shift by chance'.",
+    "Global: beyond the slope": "What the method sees once the slopes' plane is taken off; 0 of a plane.",
     "Global: ±": "Half width of the 95 % confidence interval, by bootstrap.",
 }
 MOST_SENTENCES = 6
@@ -156,15 +157,22 @@ def disagreement_table(result: GlobalSensitivity) -> Table[Disagreement]:
         Column("by_slope", "By slope", lambda d: d.local, lambda d: three_digits(d.local)),
         Column("overall", "Over the range", lambda d: d.overall, lambda d: three_digits(d.overall), 12),
         Column("error", "±", lambda d: d.error, lambda d: three_digits(d.error)),
+        Column(
+            "missed",
+            "Beyond the slope",
+            lambda d: d.missed if math.isfinite(d.missed) else None,
+            lambda d: three_digits(d.missed),
+            12,
+        ),
         Column("sentence", "In words", lambda d: d.sentence, width=90),
     )
     return Table(
         "Not linear",
-        "Where slopes of the unchanged axle and a global method differ by more than the method's error.",
+        "Where the slopes of the unchanged axle miss what a method sees over the ranges.",
         columns,
         result.disagreements(),
         title="Where the model is not linear over the ranges",
-        empty="Nowhere: slopes and global methods agree within their errors.",
+        empty="Nowhere: slopes and global methods agree.",
         sheet=SheetLayout(frozen="method", wrapped=True),
     )
 
@@ -249,7 +257,7 @@ def global_sentences(result: GlobalSensitivity) -> list[str]:
         out.append(f"Of the variance over the ranges slopes explain least of {least}.")
     differences = result.disagreements()
     if not differences:
-        return [*out, "Slopes and global methods agree within their errors: linear over the ranges."]
+        return [*out, "Slopes of the unchanged axle and global methods agree: linear over the ranges."]
     more = (
         f"; {len(differences) - MOST_SENTENCES} more in the workbook"
         if len(differences) > MOST_SENTENCES

@@ -78,8 +78,7 @@ def _distribution(
     _limits(panel, scatter)
     for k, car in enumerate(tolerance.cars):
         if car.name in scatter.measured:
-            color = MEASURED_CAR_COLOURS[k % len(MEASURED_CAR_COLOURS)]
-            note = _measured(panel, scatter.measured[car.name][0], color) or note
+            note = _measured(panel, scatter.measured[car.name][0], _car_colour(k)) or note
     panel.vline(scatter.nominal, ":", color=PALETTE["black"], lw=0.9)
     panel.numbers["y"] = False
     panel.marks["y"] = panel.grid["y"] = panel.spines["left"] = False
@@ -144,6 +143,10 @@ def _distribution_handles(tolerance: Tolerance) -> list[Line2D | Patch]:
             Patch(color=OUTSIDE_FILL, label="outside"),
         ]
     return out + measured_handles(tolerance)
+
+
+def _car_colour(k: int) -> str:
+    return MEASURED_CAR_COLOURS[k % len(MEASURED_CAR_COLOURS)]
 
 
 def measured_handles(tolerance: Tolerance) -> list[Line2D | Patch]:

@@ -38,7 +38,7 @@ def indices(method: str, size: int, points: FloatArray | None = None) -> dict[st
     assert sample.shape == (size * chosen.block(3), 3)
     assert sample.min() >= 0.0 and sample.max() <= 1.0
     np.testing.assert_array_equal(sample, chosen.points(3, size, 1))
-    return {i.id: i for i in chosen.indices(sample, ishigami(sample), 1)}
+    return {i.id: i for i in chosen.indices(sample, ishigami(sample), np.zeros((len(sample), 1)), 1)}
 
 
 def test_sobol_of_ishigami() -> None:
@@ -51,11 +51,35 @@ def test_sobol_of_ishigami() -> None:
         assert 0.0 < done[index].error.max() < 0.15
 
 
+def test_what_slopes_miss_of_ishigami() -> None:
+    """With the slope of sin x at 0 taken off, y and z are missed wholly; of a plane nothing is."""
+    chosen = find_global_method("sobol", "test")
+    points = chosen.points(3, 1024, 1)
+    x = (2.0 * points[:, :1] - 1.0) * math.pi
+    y = ishigami(points)
+    done = {i.id: i.values[:, 0] for i in chosen.indices(points, y, x, 1)}
+    np.testing.assert_allclose(done["missed"][1:], done["total"][1:], rtol=1e-6)
+    plain = {i.id: i.values[:, 0] for i in chosen.indices(points, x, x, 1)}
+    np.testing.assert_array_equal(plain["missed"], 0.0)
+    np.testing.assert_allclose(plain["total"], [1.0, 0.0, 0.0], atol=0.05)
+    bent = {i.id: i for i in find_global_method("morris", "test").indices(*_bent())}
+    np.testing.assert_allclose(bent["missed"].values[:, 0], [0.0, bent["sigma"].values[1, 0]], atol=1e-9)
+
+
+def _bent() -> tuple[FloatArray, FloatArray, FloatArray, int]:
+    """A plane and, beyond it, a parabola without a mean slope, on trajectories through a square."""
+    points = find_global_method("morris", "test").points(2, 40, 2)
+    points = np.vstack([points, 1.0 - points])
+    plane = 2.0 * points[:, :1]
+    return points, plane + (points[:, 1:] - 0.5) ** 2, plane, 1
+
+
 def test_morris_of_a_plane_and_of_ishigami() -> None:
     chosen = find_global_method("morris", "test")
     points = chosen.points(3, 10, 2)
     plane = (points @ np.array([3.0, -2.0, 0.0]))[:, None]
-    mean, sigma = chosen.indices(points, plane, 1)
+    mean, sigma, missed = chosen.indices(points, plane, plane, 1)
+    np.testing.assert_allclose(missed.values, 0.0, atol=1e-12)
     np.testing.assert_allclose(mean.values[:, 0], [3.0, 2.0, 0.0], atol=1e-12)
     np.testing.assert_allclose(sigma.values, 0.0, atol=1e-12)
     done = indices("morris", 60)

@@ -46,8 +46,11 @@ class GlobalMethod(ABC):
         """(blocks times block, d) points in [0, 1]; size: trajectories, base samples or designs."""
 
     @abstractmethod
-    def indices(self, points: FloatArray, values: FloatArray, seed: int) -> tuple[GlobalIndex, ...]:
-        """Of whole blocks: points (n, d), values (n, k) that are finite and not constant."""
+    def indices(
+        self, points: FloatArray, values: FloatArray, plane: FloatArray, seed: int
+    ) -> tuple[GlobalIndex, ...]:
+        """Of whole blocks: points (n, d), values (n, k) that are finite and not constant; plane (n, k): what
+        the slopes at the start say there."""
 
 
 GLOBAL_METHODS: Members[GlobalMethod] = Members(__name__.rpartition(".")[0])

@@ -6,7 +6,9 @@ Softw. 22(10), 2007 (mean of the magnitudes).
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
+
+import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.parameter_influence.global_methods._base import (
@@ -26,7 +28,8 @@ GRID_LEVELS = 4
 @global_method
 class Morris(GlobalMethod):
     """mu_star: mean magnitude of the output's change per whole range of the variable. sigma: standard
-    deviation of the change: 0 where the output is a plane. Over the bounds, whatever the distribution."""
+    deviation of the change: 0 where the output is a plane. missed: root mean square of the change minus that
+    by the slope. Over the bounds, whatever the distribution."""
 
     id: ClassVar[str] = "morris"
     label: ClassVar[str] = "Morris"
@@ -42,21 +45,21 @@ class Morris(GlobalMethod):
         out: FloatArray = sample(problem(d), size, num_levels=GRID_LEVELS, seed=seed)
         return out
 
-    def indices(self, points: FloatArray, values: FloatArray, seed: int) -> tuple[GlobalIndex, ...]:
-        analyze = salib("analyze.morris", self.label).analyze
-        done = [
-            analyze(
-                problem(points.shape[1]),
-                points,
-                column,
-                num_resamples=RESAMPLES,
-                num_levels=GRID_LEVELS,
-                seed=seed,
-            )
-            for column in values.T
-        ]
+    def indices(
+        self, points: FloatArray, values: FloatArray, plane: FloatArray, seed: int
+    ) -> tuple[GlobalIndex, ...]:
+        done, rest = (_analyzed(points, columns, seed) for columns in (values, values - plane))
         mean, sigma = stacked(done, "mu_star"), stacked(done, "sigma")
+        missed = np.hypot(stacked(rest, "mu"), stacked(rest, "sigma"))
+        none = np.full_like(mean, np.nan)
         return (
             GlobalIndex("mu_star", "mean effect μ*", mean, stacked(done, "mu_star_conf")),
-            GlobalIndex("sigma", "scatter of the effect σ", sigma, sigma * float("nan")),
+            GlobalIndex("sigma", "scatter of the effect σ", sigma, none),
+            GlobalIndex("missed", "effect beyond the slope", missed, none),
         )
+
+
+def _analyzed(points: FloatArray, values: FloatArray, seed: int) -> list[Any]:
+    analyze = salib("analyze.morris", Morris.label).analyze
+    options = {"num_resamples": RESAMPLES, "num_levels": GRID_LEVELS, "seed": seed}
+    return [analyze(problem(points.shape[1]), points, column, **options) for column in values.T]

@@ -47,7 +47,10 @@ class Pawn(GlobalMethod):
         out: FloatArray = qmc.LatinHypercube(d, rng=np.random.default_rng(seed)).random(size)
         return out
 
-    def indices(self, points: FloatArray, values: FloatArray, seed: int) -> tuple[GlobalIndex, ...]:
+    def indices(
+        self, points: FloatArray, values: FloatArray, plane: FloatArray, seed: int
+    ) -> tuple[GlobalIndex, ...]:
+        del plane
         rng = np.random.default_rng(seed)
         n, d = points.shape
         median = pawn_medians(points, values)
