@@ -254,8 +254,8 @@ def _disagreements(result: GlobalSensitivity, method: MethodResult) -> Iterator[
             if size < MISSED_EFFECT:
                 continue
             words = (
-                f"{variable.path} moves {entry.id} by {overall:.3g} ± {error:.2g} {entry.unit} over its range "
-                f"on average, by its slope by {own:.3g}; what it does beyond its slope is {missed:.3g}"
+                f"{variable.path} moves {entry.id} by {overall:.3g} ± {error:.2g} {entry.unit} over its "
+                f"range on average, by its slope by {own:.3g}; what it does beyond its slope is {missed:.3g}"
             )
         else:
             own, missed = share, float(method.index("missed").values[i, k])
@@ -263,8 +263,8 @@ def _disagreements(result: GlobalSensitivity, method: MethodResult) -> Iterator[
             if size < MISSED_SHARE:
                 continue
             words = (
-                f"{variable.path} takes part in {100.0 * overall:.0f} ± {100.0 * error:.0f} % of the variance "
-                f"of {entry.id} over the ranges, by its slope in {100.0 * own:.0f} %; "
+                f"{variable.path} takes part in {100.0 * overall:.0f} ± {100.0 * error:.0f} % of the "
+                f"variance of {entry.id} over the ranges, by its slope in {100.0 * own:.0f} %; "
                 f"{100.0 * missed:.0f} % are beyond its slope"
             )
         yield Disagreement(

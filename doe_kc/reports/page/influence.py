@@ -21,7 +21,7 @@ from doe_kc.reports.global_tables import (
     global_sentences,
     global_table,
 )
-from doe_kc.reports.page.axle import svg_data
+from doe_kc.reports.page.axle import png_data
 from doe_kc.reports.render.page import Section, render, table_html, write_page
 from doe_kc.reports.table import (
     NEGATIVE_FILL,
@@ -108,7 +108,7 @@ def influence_sections(
         sentences = render("tolerance.html", sentences=global_sentences(overall))
         picture = render(
             "picture.html",
-            source=svg_data(global_bars(overall, study=study)),
+            source=png_data(global_bars(overall, study=study)),
             words="Local and global influence of the strongest variables",
             folded=False,
         )

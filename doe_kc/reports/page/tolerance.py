@@ -7,7 +7,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from doe_kc.reports.page.axle import svg_data
+from doe_kc.reports.page.axle import png_data
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, render, table_html, write_page
 from doe_kc.reports.sheet import Sheet
@@ -77,7 +77,7 @@ def tolerance_sections(tolerance: Tolerance, *, study: str) -> list[Section]:
 
 
 def _picture(page: Sheet, words: str, *, folded: bool = False) -> Markup:
-    return render("picture.html", source=svg_data(page), words=words, folded=folded)
+    return render("picture.html", source=png_data(page), words=words, folded=folded)
 
 
 def write_tolerance_page(
