@@ -53,6 +53,37 @@ class InfluenceResult(FrameResult):
         chosen = self.influence.selection
         return None if chosen is None else chosen.to_frame().set_index("parameter")
 
+    def overall(self, method: str) -> pd.DataFrame:
+        """Global sensitivities by one method, one row a variable and characteristic: the method's indices with
+        the half widths of their 95 % intervals (`_error`), `effect` and `share` by the slopes.
+
+        InputError for a method that was not asked for.
+        """
+        import pandas as pd
+
+        done = self.influence.overall
+        known = [] if done is None else [m.id for m in done.methods]
+        if done is None or method not in known:
+            raise InputError(f"{method!r} was not among the methods; known are {', '.join(known) or 'none'}.")
+        (result,) = [m for m in done.methods if m.id == method]
+        size = len(done.characteristics)
+        columns = {
+            "variable": np.repeat([v.path for v in done.variables], size),
+            "characteristic": [c.id for c in done.characteristics] * len(done.variables),
+            "effect": done.effects.ravel(),
+            "share": done.shares.ravel(),
+        }
+        for index in result.indices:
+            columns |= {index.id: index.values.ravel(), f"{index.id}_error": index.error.ravel()}
+        return pd.DataFrame(columns)
+
+    @property
+    def not_linear(self) -> list[str]:
+        """What slopes miss of a variable over its range, in sentences, the largest first; none without global
+        sensitivities."""
+        done = self.influence.overall
+        return [] if done is None else [d.sentence for d in done.disagreements()]
+
     @property
     def failures(self) -> dict[str, str]:
         """Parameter path -> reason, of steps at which the axle has no equilibrium."""

@@ -27,7 +27,7 @@ def global_bars(result: GlobalSensitivity, *, study: str) -> Sheet:
     count = len(result.characteristics)
     rows = -(-count // GLOBAL_PANELS)
     height = 1.2 + 1.72 * rows
-    margins = {"left": 0.11, "right": 0.985, "wspace": 0.44, "hspace": 0.5}
+    margins = {"left": 0.13, "right": 0.985, "wspace": 0.56, "hspace": 0.5}
     margins |= {"bottom": 0.8 / height, "top": 1.0 - 0.8 / height}
     page, panels = sheet(rows, GLOBAL_PANELS, size=(8.27, height), share_x=False, margins=margins)
     for k, panel in enumerate(panels.flat[:count]):
