@@ -25,10 +25,10 @@ from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement.manifest import RigState
 from doe_kc.measurement.rig_state import axle_in_state, bar_values, rig_state
 from doe_kc.parameter_influence.options import InfluenceOptions
+from doe_kc.production_scatter.options import ToleranceOptions
 from doe_kc.sampling.options import SamplingOptions
 from doe_kc.surrogate_models.options import SurrogateOptions
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
-from doe_kc.tolerance.options import ToleranceOptions
 from doe_kc.true_solver.options import SolverOptions
 from doe_kc.variables import Space, VariableOptions, build_space
 

@@ -28,7 +28,7 @@ FLOORS = [
     "campaign",
     "parameter_influence",
     "surrogate_models",
-    "tolerance",
+    "production_scatter",
     "correlation",
     "discovery",
     "study",

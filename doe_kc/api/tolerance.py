@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Literal
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import Progress, as_study, step_counter, stored
 from doe_kc.ground.errors import InputError, nearest
+from doe_kc.production_scatter.options import FEWEST_CARS
+from doe_kc.production_scatter.result import Tolerance
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.reports.tolerance_scatter import band_table, scatter_table
 from doe_kc.reports.tolerance_tables import car_columns, tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
 from doe_kc.study import Study
-from doe_kc.tolerance.options import FEWEST_CARS
-from doe_kc.tolerance.result import Tolerance
 from doe_kc.workflow.tolerance import study_tolerance, write_tolerance
 
 if TYPE_CHECKING:

@@ -12,13 +12,13 @@ from matplotlib.patches import Patch
 from doe_kc.curves import SIDE_WORDS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
+from doe_kc.production_scatter.bands import CurveBand
+from doe_kc.production_scatter.result import MeasuredCar
 from doe_kc.reports.names import input_label, response_axis, without_remark
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.sheet import Sheet, sheet
 from doe_kc.reports.style import A4, PALETTE
-from doe_kc.tolerance.bands import CurveBand
-from doe_kc.tolerance.result import MeasuredCar
 
 BAND_MARGINS = {"left": 0.1, "right": 0.985, "top": 0.935, "bottom": 0.085, "wspace": 0.38, "hspace": 0.13}
 BAND_FILLS = ("#CFE6F5", "#8FC4E8")

@@ -11,10 +11,10 @@ import numpy as np
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
+from doe_kc.production_scatter.model import Scatter
+from doe_kc.production_scatter.result import Tolerance
+from doe_kc.production_scatter.tightening import Tightening
 from doe_kc.reports.table import Column, SheetLayout, Table
-from doe_kc.tolerance.model import Scatter
-from doe_kc.tolerance.result import Tolerance
-from doe_kc.tolerance.tightening import Tightening
 
 
 @dataclass(frozen=True)

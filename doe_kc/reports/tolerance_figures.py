@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
+from doe_kc.production_scatter.result import CharacteristicScatter, Tolerance
 from doe_kc.reports.panel import Panel
 from doe_kc.reports.panel_axis import ticks
 from doe_kc.reports.series import Job, draw_series
@@ -20,7 +21,6 @@ from doe_kc.reports.sheet import Sheet, sheet
 from doe_kc.reports.style import COLOUR_CYCLE, PALETTE
 from doe_kc.reports.tolerance_bands import band_sheet
 from doe_kc.reports.tolerance_words import ranked_tightenings
-from doe_kc.tolerance.result import CharacteristicScatter, Tolerance
 
 DISTRIBUTION_PANELS = 4
 """Columns of small multiples."""

@@ -10,10 +10,10 @@ import numpy as np
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS, SIDES, response_name
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
+from doe_kc.production_scatter.bands import CurveBand
+from doe_kc.production_scatter.model import Scatter
+from doe_kc.production_scatter.result import MeasuredCar, Tolerance
 from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Table, Value, three_digits
-from doe_kc.tolerance.bands import CurveBand
-from doe_kc.tolerance.model import Scatter
-from doe_kc.tolerance.result import MeasuredCar, Tolerance
 
 
 def scatter_table(tolerance: Tolerance) -> Table[Scatter]:

@@ -11,6 +11,9 @@ import numpy as np
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.numbers import at_sd, number
 from doe_kc.load_cases import case_label
+from doe_kc.production_scatter.result import CharacteristicScatter, MeasuredCar, Tolerance
+from doe_kc.production_scatter.statistics import PERCENTILES, CarShare
+from doe_kc.production_scatter.tightening import Tightening
 from doe_kc.reports.characteristic_columns import CHARACTERISTIC_COLUMNS
 from doe_kc.reports.table import (
     Bar,
@@ -24,9 +27,6 @@ from doe_kc.reports.table import (
     three_digits,
 )
 from doe_kc.reports.tolerance_words import ranked_tightenings, share_words
-from doe_kc.tolerance.result import CharacteristicScatter, MeasuredCar, Tolerance
-from doe_kc.tolerance.statistics import PERCENTILES, CarShare
-from doe_kc.tolerance.tightening import Tightening
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from doe_kc.ground.numbers import number, unit_words
-from doe_kc.tolerance.result import Tolerance
-from doe_kc.tolerance.statistics import CarShare
-from doe_kc.tolerance.tightening import Tightening
+from doe_kc.production_scatter.result import Tolerance
+from doe_kc.production_scatter.statistics import CarShare
+from doe_kc.production_scatter.tightening import Tightening
 
 MOST_NAMED = 3
 """Characteristics or parameters that a sentence names."""

@@ -10,6 +10,7 @@ from openpyxl.workbook import Workbook
 
 from doe_kc import __version__
 from doe_kc.ground.numbers import number
+from doe_kc.production_scatter.result import Tolerance
 from doe_kc.reports.render.cells import cell_alignment, colour_scale, put
 from doe_kc.reports.render.workbook import TABLE_FIRST_ROW, lines_sheet, new_book, table_sheet, write_book
 from doe_kc.reports.table import Table
@@ -17,7 +18,6 @@ from doe_kc.reports.tolerance_contributions import contribution_matrix, reductio
 from doe_kc.reports.tolerance_scatter import band_table, scatter_table
 from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
-from doe_kc.tolerance.result import Tolerance
 
 MATRIX_HEADS = 2
 """Columns of a matrix before its characteristics."""

@@ -193,8 +193,8 @@ def _check_work(study: Study, collect: _Collector) -> None:
 def _check_tolerance(study: Study, collect: _Collector) -> None:
     """Scatter, correlations, requirements and cars that [tolerance] names."""
     from doe_kc.characteristics import characteristics_of
-    from doe_kc.tolerance.build import build_scatter
-    from doe_kc.tolerance.requirements import build_requirements
+    from doe_kc.production_scatter.build import build_scatter
+    from doe_kc.production_scatter.requirements import build_requirements
     from doe_kc.workflow.measured_cars import car_folders
 
     source, options = str(study.source), study.tolerance

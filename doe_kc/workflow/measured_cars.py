@@ -9,8 +9,8 @@ from pathlib import Path
 from doe_kc.ground.errors import InputError
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.rig_state import rig_state
+from doe_kc.production_scatter.result import MeasuredCar
 from doe_kc.study import Study
-from doe_kc.tolerance.result import MeasuredCar
 from doe_kc.workflow.measure import study_measurement
 
 

@@ -12,6 +12,12 @@ from doe_kc.campaign.export import write_table
 from doe_kc.characteristics import characteristics_of
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
+from doe_kc.production_scatter.build import build_scatter
+from doe_kc.production_scatter.model import ScatterModel
+from doe_kc.production_scatter.requirements import Requirement, build_requirements
+from doe_kc.production_scatter.result import Tolerance
+from doe_kc.production_scatter.statistics import CarShare
+from doe_kc.production_scatter.study import tolerance_study
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
@@ -21,12 +27,6 @@ from doe_kc.reports.tolerance_tables import car_columns, tightening_table, toler
 from doe_kc.reports.tolerance_words import conclusions
 from doe_kc.study import STORES, Study
 from doe_kc.targets import Targets, build_targets
-from doe_kc.tolerance.build import build_scatter
-from doe_kc.tolerance.model import ScatterModel
-from doe_kc.tolerance.requirements import Requirement, build_requirements
-from doe_kc.tolerance.result import Tolerance
-from doe_kc.tolerance.statistics import CarShare
-from doe_kc.tolerance.study import tolerance_study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.measure import study_measurement
 from doe_kc.workflow.measured_cars import measured_cars, named_cars

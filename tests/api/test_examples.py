@@ -91,11 +91,16 @@ def test_every_public_name_is_typed_and_there() -> None:
         kc.correlat  # noqa: B018
 
 
-@pytest.mark.parametrize("first", ["doe_kc.reports.table", "doe_kc.surrogate_models.models"])
+@pytest.mark.parametrize(
+    "first", ["doe_kc.reports.table", "doe_kc.surrogate_models.models", "doe_kc.production_scatter.study"]
+)
 def test_a_public_name_is_no_folder_whatever_is_imported_before_it(first: str) -> None:
-    code = f"import doe_kc as kc, {first}; print(kc.report.__module__, kc.surrogates.__module__)"
+    code = f"import doe_kc as kc, {first}; print(kc.report.__module__, kc.surrogates.__module__, kc.tolerance.__module__)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["doe_kc.api.report", "doe_kc.api.surrogates"] and not done.stderr
+    assert (
+        done.stdout.split() == [f"doe_kc.api.{m}" for m in ("report", "surrogates", "tolerance")]
+        and not done.stderr
+    )
 
 
 def test_every_command_is_a_public_function() -> None:

@@ -11,6 +11,9 @@ import pytest
 from openpyxl import load_workbook
 
 from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.production_scatter.requirements import Requirement
+from doe_kc.production_scatter.result import MeasuredCar, Tolerance
+from doe_kc.production_scatter.study import tolerance_study
 from doe_kc.reports.page.tolerance import tolerance_sections
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.tolerance_bands import band_sheet
@@ -20,11 +23,8 @@ from doe_kc.reports.tolerance_scatter import band_table
 from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions, ranked_tightenings
 from doe_kc.reports.tolerance_workbook import write_tolerance_workbook
-from doe_kc.tolerance.requirements import Requirement
-from doe_kc.tolerance.result import MeasuredCar, Tolerance
-from doe_kc.tolerance.study import tolerance_study
 from doe_kc.true_solver.own import AxleSolver
-from tests.tolerance.cases import FEW, example, scatter_of
+from tests.production_scatter.cases import FEW, example, scatter_of
 
 BUMP, CAMBER = "vertical.bump_steer", "static.camber"
 

@@ -10,7 +10,7 @@ from doe_kc.cli._app import app
 from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
 from doe_kc.ground.output import write_json
-from doe_kc.tolerance.options import FEWEST_CARS, MOST_CARS
+from doe_kc.production_scatter.options import FEWEST_CARS, MOST_CARS
 from doe_kc.workflow.tolerance import (
     study_tolerance,
     tolerance_document,

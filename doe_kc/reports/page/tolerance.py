@@ -7,6 +7,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
+from doe_kc.production_scatter.result import Tolerance
 from doe_kc.reports.page.axle import png_data
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, render, table_html, write_page
@@ -16,7 +17,6 @@ from doe_kc.reports.tolerance_figures import contributions, distributions, measu
 from doe_kc.reports.tolerance_scatter import band_table, scatter_table
 from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
 from doe_kc.reports.tolerance_words import conclusions
-from doe_kc.tolerance.result import Tolerance
 
 DISTRIBUTION_LEAD = (
     "Each car is a draw of all scattering parameters, solved by the true solver. Dashed: what slopes alone "

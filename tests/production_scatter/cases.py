@@ -10,10 +10,10 @@ import numpy as np
 from doe_kc.axle import Axle, Parameter
 from doe_kc.axle_file import read_axle
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.build import build_scatter
-from doe_kc.tolerance.laws import DEVIATION_LAWS
-from doe_kc.tolerance.model import Scatter, ScatterModel, correlation_matrix
-from doe_kc.tolerance.options import LawId, ToleranceOptions
+from doe_kc.production_scatter.build import build_scatter
+from doe_kc.production_scatter.laws import DEVIATION_LAWS
+from doe_kc.production_scatter.model import Scatter, ScatterModel, correlation_matrix
+from doe_kc.production_scatter.options import LawId, ToleranceOptions
 from tests.reference import EXAMPLE
 
 FEW = ["ROB.z", "LLF.z", "llr.Fx", "arb.radius"]

@@ -7,8 +7,8 @@ import pytest
 
 from doe_kc.axle.parameters import parameter_value, with_values
 from doe_kc.ground.errors import InputError
-from doe_kc.tolerance.study import car_design
-from tests.tolerance.cases import FEW, example, scatter_of
+from doe_kc.production_scatter.study import car_design
+from tests.production_scatter.cases import FEW, example, scatter_of
 
 
 def test_every_parameter_that_scatters_by_kind_does() -> None:

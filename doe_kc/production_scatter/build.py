@@ -14,9 +14,9 @@ from doe_kc.axle.parameter_kinds import must_be_positive, not_below_zero
 from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.laws import DEVIATION_LAWS
-from doe_kc.tolerance.model import Scatter, ScatterModel, correlation_matrix
-from doe_kc.tolerance.options import ScatterOptions, ToleranceOptions
+from doe_kc.production_scatter.laws import DEVIATION_LAWS
+from doe_kc.production_scatter.model import Scatter, ScatterModel, correlation_matrix
+from doe_kc.production_scatter.options import ScatterOptions, ToleranceOptions
 from doe_kc.variables.build import plain_parameter
 
 EIGENVALUE_ROUNDING = 1e-9

@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.first_order import FirstOrderScatter
-from doe_kc.tolerance.model import Scatter, ScatterModel
-from doe_kc.tolerance.requirements import Requirement
-from doe_kc.tolerance.statistics import CarShare, car_share
+from doe_kc.production_scatter.first_order import FirstOrderScatter
+from doe_kc.production_scatter.model import Scatter, ScatterModel
+from doe_kc.production_scatter.requirements import Requirement
+from doe_kc.production_scatter.statistics import CarShare, car_share
 
 HALVED, DOUBLED = 0.5, 2.0
 

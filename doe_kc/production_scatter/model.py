@@ -14,7 +14,7 @@ import numpy as np
 
 from doe_kc.axle.parameters import Parameter
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.laws import DeviationLaw, normal_correlation
+from doe_kc.production_scatter.laws import DeviationLaw, normal_correlation
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from doe_kc.tolerance.laws import DEVIATION_LAWS, DeviationLaw, normal_correlation
+from doe_kc.production_scatter.laws import DEVIATION_LAWS, DeviationLaw, normal_correlation
 
 EVERY = [DEVIATION_LAWS[name](limits) for name in DEVIATION_LAWS for limits in (2.0, 3.0)]
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(100)

@@ -9,12 +9,12 @@ import pytest
 from scipy import stats
 
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.tolerance.first_order import FirstOrderScatter, regression_slopes
-from doe_kc.tolerance.requirements import Requirement
-from doe_kc.tolerance.statistics import car_share, moments, percentile_of
-from doe_kc.tolerance.tightening import tightenings
-from doe_kc.tolerance.total_effects import total_effects
-from tests.tolerance.cases import plain_model, scatter_of
+from doe_kc.production_scatter.first_order import FirstOrderScatter, regression_slopes
+from doe_kc.production_scatter.requirements import Requirement
+from doe_kc.production_scatter.statistics import car_share, moments, percentile_of
+from doe_kc.production_scatter.tightening import tightenings
+from doe_kc.production_scatter.total_effects import total_effects
+from tests.production_scatter.cases import plain_model, scatter_of
 
 ENTRY = CHARACTERISTICS["vertical.bump_steer"]
 

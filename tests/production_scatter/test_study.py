@@ -10,15 +10,15 @@ import pytest
 from doe_kc.characteristics import CHARACTERISTICS, characteristics_of
 from doe_kc.curves import CaseCurves
 from doe_kc.ground.errors import InputError, RunError
-from doe_kc.tolerance.bands import BandCollector
-from doe_kc.tolerance.options import RequirementOptions
-from doe_kc.tolerance.requirements import Requirement, build_requirements
-from doe_kc.tolerance.result import MeasuredCar, Tolerance
-from doe_kc.tolerance.study import FITTED_SLOPES, tolerance_study
+from doe_kc.production_scatter.bands import BandCollector
+from doe_kc.production_scatter.options import RequirementOptions
+from doe_kc.production_scatter.requirements import Requirement, build_requirements
+from doe_kc.production_scatter.result import MeasuredCar, Tolerance
+from doe_kc.production_scatter.study import FITTED_SLOPES, tolerance_study
 from doe_kc.true_solver.outcome import Outcome, failure
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.true_solver.protocol import Values
-from tests.tolerance.cases import FEW, example, scatter_of
+from tests.production_scatter.cases import FEW, example, scatter_of
 
 BUMP = "vertical.bump_steer"
 

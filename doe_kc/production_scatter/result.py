@@ -11,19 +11,19 @@ import numpy as np
 from doe_kc.characteristics import Characteristic
 from doe_kc.curves import CurveSet
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.bands import CurveBand
-from doe_kc.tolerance.first_order import FirstOrderScatter
-from doe_kc.tolerance.model import ScatterModel
-from doe_kc.tolerance.requirements import Requirement
-from doe_kc.tolerance.statistics import (
+from doe_kc.production_scatter.bands import CurveBand
+from doe_kc.production_scatter.first_order import FirstOrderScatter
+from doe_kc.production_scatter.model import ScatterModel
+from doe_kc.production_scatter.requirements import Requirement
+from doe_kc.production_scatter.statistics import (
     CarShare,
     Moments,
     car_share,
     moments,
     percentile_of,
 )
-from doe_kc.tolerance.tightening import Tightening, outside_table, tightenings
-from doe_kc.tolerance.total_effects import TotalEffects, total_effects
+from doe_kc.production_scatter.tightening import Tightening, outside_table, tightenings
+from doe_kc.production_scatter.total_effects import TotalEffects, total_effects
 
 LINEAR_SHARE = 0.95
 """Of the variance: a characteristic is linear over the scatter when its slopes explain as much, car by car.

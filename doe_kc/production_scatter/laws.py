@@ -18,7 +18,7 @@ import numpy as np
 from scipy.special import erf, ndtr, ndtri
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.tolerance.options import LawId
+from doe_kc.production_scatter.options import LawId
 
 HERMITE_NODES = 100
 """Of the quadrature that a distribution is expanded with."""

@@ -17,14 +17,14 @@ from doe_kc.curves import RIG_RESPONSES
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
+from doe_kc.production_scatter.bands import BandCollector, CurveBand
+from doe_kc.production_scatter.first_order import FirstOrderScatter, regression_slopes
+from doe_kc.production_scatter.model import ScatterModel
+from doe_kc.production_scatter.requirements import Requirement
+from doe_kc.production_scatter.result import MeasuredCar, Tolerance
 from doe_kc.sampling.design import Design
 from doe_kc.solver.curve_gradient import characteristic_gradients
 from doe_kc.solver.suite import solve
-from doe_kc.tolerance.bands import BandCollector, CurveBand
-from doe_kc.tolerance.first_order import FirstOrderScatter, regression_slopes
-from doe_kc.tolerance.model import ScatterModel
-from doe_kc.tolerance.requirements import Requirement
-from doe_kc.tolerance.result import MeasuredCar, Tolerance
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
+from doe_kc.production_scatter.options import RequirementOptions
 from doe_kc.targets import Targets
 from doe_kc.targets.comparison import constraint_interval
-from doe_kc.tolerance.options import RequirementOptions
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ import numpy as np
 
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
+from doe_kc.production_scatter.model import ScatterModel
 from doe_kc.surrogate_models.ridge import fit_ridge
-from doe_kc.tolerance.model import ScatterModel
 
 MOST_PAIRS = 150
 """Products of two deviations at most."""
