@@ -48,7 +48,7 @@ def band_sheet(
         panel.set_labels(without_remark(input_label(band.load_case, band.input_unit)), None)
     panels[0][0].set_title("Left")
     for side in (0, 1):
-        panels[0][1 + side].set_title(f"{SIDE_WORDS[SIDES[side]].capitalize()}, change")
+        panels[0][1 + side].set_title(f"{SIDE_WORDS[SIDES[side]].capitalize()}, minus unchanged")
     page.set_heading(f"{case_label(band.load_case)}, curves of the cars: {study}", 0.985)
     handles: list[Line2D | Patch] = [
         Patch(color=BAND_FILLS[0], label="95 % of the cars"),

@@ -59,7 +59,6 @@ def _distribution(
 ) -> None:
     m = scatter.moments
     entry = scatter.entry
-    note = ""
     if m.sd > 0.0:
         bins = min(40, max(12, int(np.sqrt(len(values)))))
         inside = values[np.abs(values - m.mean) <= SHOWN_OUT * m.sd]
@@ -78,7 +77,7 @@ def _distribution(
     _limits(panel, scatter)
     for k, car in enumerate(tolerance.cars):
         if car.name in scatter.measured:
-            note = _measured(panel, scatter.measured[car.name][0], _car_colour(k)) or note
+            _measured(panel, scatter.measured[car.name][0], k)
     panel.vline(scatter.nominal, ":", color=PALETTE["black"], lw=0.9)
     panel.numbers["y"] = False
     panel.marks["y"] = panel.grid["y"] = panel.spines["left"] = False
@@ -116,19 +115,19 @@ def _limits(panel: Panel, scatter: CharacteristicScatter) -> None:
             panel.vline(value, color=LIMIT_COLOUR, lw=1.0)
 
 
-def _measured(panel: Panel, value: float, color: str) -> str:
-    """A line, or an arrow to the side on which the car lies beyond the panel."""
+def _measured(panel: Panel, value: float, k: int) -> None:
+    """A line, or an arrow to the side on which the k-th car lies beyond the panel."""
     start, end = panel.x.limits
+    color = _car_colour(k)
     if start <= value <= end:
         panel.vline(value, color=color, lw=1.4, zorder=4)
-        return ""
+        return
     right = value > end
     text = f"{value:.3g} →" if right else f"← {value:.3g}"
     panel.text(
-        0.98 if right else 0.02, 0.93, text, scales=("panel", "panel"), size=6.5, color=color,
+        0.98 if right else 0.02, 0.93 - 0.16 * k, text, scales=("panel", "panel"), size=6.5, color=color,
         across="right" if right else "left", along="top", backing="white",
     )  # fmt: skip
-    return text
 
 
 def _distribution_handles(tolerance: Tolerance) -> list[Line2D | Patch]:
