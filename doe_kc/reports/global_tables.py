@@ -15,6 +15,7 @@ from doe_kc.ground.numbers import number
 from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.global_sensitivity import (
     CONVERGENCE_SHARES,
+    SIMULTANEOUS,
     WEAK_SHARE,
     Disagreement,
     GlobalSensitivity,
@@ -118,7 +119,8 @@ def _size(result: GlobalSensitivity, k: int) -> np.ndarray:
         if method.id == "morris":
             values = values / max(float(values.max()), 1e-300)
         elif method.id == "pawn":
-            values = np.where(values > method.index("dummy").values[:, k], values, 0.0)
+            margin = SIMULTANEOUS * main.error[:, k]
+            values = np.where(values - margin > method.index("dummy").values[:, k], values, 0.0)
         else:
             values = values - main.error[:, k]
         sizes.append(values)
