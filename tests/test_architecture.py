@@ -31,6 +31,7 @@ FLOORS = [
     "production_scatter",
     "correlation",
     "discovery",
+    "identification",
     "study",
     "examples",
     "reports",

@@ -2,7 +2,8 @@
 
 Reference: F. Pianosi, T. Wagener, Environ. Model. Softw. 108, 2018, doi:10.1016/j.envsoft.2018.07.019. Values
 are those of SALib's `pawn.analyze`, which takes 0.6 s for one output of 1000 designs of 72 variables, so that
-its bootstrap over 30 outputs would take nine minutes: here all variables' slices are counted at once, in 15 s.
+its bootstrap over 30 outputs would take nine minutes: here all variables' slices are counted together, in 15
+s.
 """
 
 from __future__ import annotations
