@@ -66,6 +66,7 @@ class InfluenceResult(FrameResult):
 
         InputError for a method that was not asked for.
         """
+        import numpy as np
         import pandas as pd
 
         done = self.influence.overall
