@@ -30,7 +30,7 @@ from doe_kc.true_solver.protocol import TrueSolver
 
 CHUNK = 512
 """Cars whose curves are in memory at once."""
-ORIGIN = "tolerance"
+CARS_ORIGIN = "tolerance"
 EXACT_SLOPES = "exact sensitivities"
 FITTED_SLOPES = "slopes fitted to the sample"
 
@@ -53,7 +53,7 @@ def car_design(model: ScatterModel, n: int, seed: int, source: str) -> tuple[Des
             )
     rows = np.vstack([model.nominal, values])
     labels = ("nominal", *(f"car {i + 1}" for i in range(n)))
-    return Design(ORIGIN, model.paths, rows, labels, seed), deviations
+    return Design(CARS_ORIGIN, model.paths, rows, labels, seed), deviations
 
 
 @dataclass(frozen=True)
@@ -122,7 +122,7 @@ def _solved(campaign: Campaign, design: Design, progress: Callable[[int], None])
     outcomes: list[Outcome] = []
     collector: BandCollector | None = None
     for start in range(0, len(rows), CHUNK):
-        part = campaign.evaluate(rows[start : start + CHUNK], ORIGIN, progress)
+        part = campaign.evaluate(rows[start : start + CHUNK], CARS_ORIGIN, progress)
         if start == 0:
             if part[0].failed:
                 raise RunError(f"the nominal axle cannot be solved: {part[0].reason}")
