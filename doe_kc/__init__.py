@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from doe_kc.api.studies import init, read_study
     from doe_kc.api.surrogate import Surrogate
     from doe_kc.api.surrogates import SurrogatesResult, surrogates
+    from doe_kc.api.tolerance import ToleranceResult, tolerance
     from doe_kc.axle.model import Axle
     from doe_kc.ground.errors import DoeKcError, InputError, RunError
     from doe_kc.study import Study
@@ -60,6 +61,7 @@ _HOMES = {
     "Study": "doe_kc.study",
     "Surrogate": "doe_kc.api.surrogate",
     "SurrogatesResult": "doe_kc.api.surrogates",
+    "ToleranceResult": "doe_kc.api.tolerance",
     "check": "doe_kc.api.check",
     "compare": "doe_kc.api.comparison",
     "correlate": "doe_kc.api.correlation",
@@ -82,6 +84,7 @@ _HOMES = {
     "sensitivities": "doe_kc.api.sensitivity",
     "simulate": "doe_kc.api.simulation",
     "surrogates": "doe_kc.api.surrogates",
+    "tolerance": "doe_kc.api.tolerance",
     "types": "doe_kc.api.axle",
     "with_effects": "doe_kc.api.axle",
     "with_values": "doe_kc.api.axle",
@@ -110,6 +113,7 @@ __all__ = [
     "Study",
     "Surrogate",
     "SurrogatesResult",
+    "ToleranceResult",
     "__version__",
     "check",
     "compare",
@@ -133,6 +137,7 @@ __all__ = [
     "sensitivities",
     "simulate",
     "surrogates",
+    "tolerance",
     "types",
     "with_effects",
     "with_values",

@@ -24,6 +24,8 @@ from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.load_cases import LOAD_CASES
 from doe_kc.measurement.manifest import RigState
 from doe_kc.measurement.rig_state import axle_in_state, bar_values, rig_state
+from doe_kc.parameter_influence.options import InfluenceOptions
+from doe_kc.production_scatter.options import ToleranceOptions
 from doe_kc.sampling.options import SamplingOptions
 from doe_kc.surrogate_models.options import SurrogateOptions
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions, check_names
@@ -32,12 +34,6 @@ from doe_kc.variables import Space, VariableOptions, build_space
 
 STORES = "store"
 """Folder under `out` of the files that make a repetition quick."""
-
-
-class InfluenceOptions(Strict):
-    """parameters: globs over parameter paths, e.g. ["LLF.*", "llr.F?"]."""
-
-    parameters: list[str] = Field(default=["*"])
 
 
 class StudyFile(Strict):
@@ -60,6 +56,7 @@ class StudyFile(Strict):
     curves: list[CurveOptions] = Field(default=[])
     correlation: CorrelationOptions = CorrelationOptions()
     discovery: DiscoveryOptions = DiscoveryOptions()
+    tolerance: ToleranceOptions = ToleranceOptions()
 
 
 @dataclass(frozen=True)
@@ -93,6 +90,8 @@ class Study:
     curves: tuple[CurveOptions, ...]
     correlation: CorrelationOptions
     discovery: DiscoveryOptions
+    influence: InfluenceOptions
+    tolerance: ToleranceOptions
     state: RigState = field(default_factory=RigState)
     hidden: Mapping[str, float] = field(default_factory=dict)
     twin: Axle | None = None
@@ -194,6 +193,8 @@ def read_study(
         curves=tuple(file.curves),
         correlation=file.correlation,
         discovery=file.discovery,
+        influence=file.influence,
+        tolerance=file.tolerance,
         state=state,
         hidden=bar_values(designed, state),
     )

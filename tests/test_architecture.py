@@ -28,6 +28,7 @@ FLOORS = [
     "campaign",
     "parameter_influence",
     "surrogate_models",
+    "production_scatter",
     "correlation",
     "discovery",
     "identification",

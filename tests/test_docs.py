@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,8 @@ from doe_kc.cli import commands
 from doe_kc.cli._app import app
 from doe_kc.correlation.options import CorrelationOptions
 from doe_kc.effects import EFFECTS
+from doe_kc.parameter_influence.options import InfluenceOptions
+from doe_kc.production_scatter.options import ToleranceOptions
 from doe_kc.study import read_study
 from doe_kc.targets import CharacteristicOptions
 from doe_kc.variables import Change
@@ -104,6 +107,7 @@ def test_the_commands_named_exist_with_their_options() -> None:
             "influence",
             "identify",
             "sample",
+            "tolerance",
         ),
         *("surrogates", "correlate", "discover", "report", "run", "live"),
     }
@@ -155,6 +159,21 @@ def test_the_study_page_names_every_key(head: str, options: type[BaseModel]) -> 
     section = text.split(f"## {head}\n")[1].split("\n## ")[0]
     for key in options.model_fields:
         assert f"`{key}`" in section or key == "match", key
+
+
+def test_the_tolerance_page_is_a_table_that_names_every_key() -> None:
+    text = (ROOT / "docs" / "tolerance.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    options = ToleranceOptions.model_validate(tomllib.loads(block)["tolerance"])
+    tables = (options, options.scatter[0], options.correlation[0], options.requirement[0])
+    for key in (k for table in tables for k in type(table).model_fields):
+        assert re.search(rf"\b{key}\b", text), key
+    assert options.model_fields_set >= {"samples", "limits", "common"}
+    defaults = ToleranceOptions()
+    for key in ("samples", "parameters", "distribution", "limits", "common"):
+        assert getattr(options, key) == getattr(defaults, key), key
+    for key in ("morris", "sobol", "pawn"):
+        assert f"| `{key}` |" in text and f"{getattr(InfluenceOptions(), key)} " in text, key
 
 
 def test_the_readmes_python_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

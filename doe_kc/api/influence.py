@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from doe_kc.api.frame_result import FrameResult
-from doe_kc.api.studies import Progress, as_study, step_counter
+from doe_kc.api.studies import Progress, as_study, step_counter, stored
 from doe_kc.ground.errors import InputError
 from doe_kc.measurement import Measurement
+from doe_kc.parameter_influence.global_sensitivity import global_runs
 from doe_kc.parameter_influence.relations import relations
 from doe_kc.study import Study
-from doe_kc.workflow.influence import StudyInfluence, influence_runs, study_influence, write_influence
+from doe_kc.workflow.influence import (
+    StudyInfluence,
+    influence_runs,
+    study_global,
+    study_influence,
+    study_methods,
+    write_influence,
+)
 from doe_kc.workflow.measure import study_measurement
 
 if TYPE_CHECKING:
@@ -51,6 +60,38 @@ class InfluenceResult(FrameResult):
         chosen = self.influence.selection
         return None if chosen is None else chosen.to_frame().set_index("parameter")
 
+    def overall(self, method: str) -> pd.DataFrame:
+        """Global sensitivities by one method, one row a variable and characteristic: the method's indices
+        with the half widths of their 95 % intervals (`_error`), `effect` and `share` by the slopes.
+
+        InputError for a method that was not asked for.
+        """
+        import numpy as np
+        import pandas as pd
+
+        done = self.influence.overall
+        known = [] if done is None else [m.id for m in done.methods]
+        if done is None or method not in known:
+            raise InputError(f"{method!r} was not among the methods; known are {', '.join(known) or 'none'}.")
+        (result,) = [m for m in done.methods if m.id == method]
+        size = len(done.characteristics)
+        columns = {
+            "variable": np.repeat([v.path for v in done.variables], size),
+            "characteristic": [c.id for c in done.characteristics] * len(done.variables),
+            "effect": done.effects.ravel(),
+            "share": done.shares.ravel(),
+        }
+        for index in result.indices:
+            columns |= {index.id: index.values.ravel(), f"{index.id}_error": index.error.ravel()}
+        return pd.DataFrame(columns)
+
+    @property
+    def not_linear(self) -> list[str]:
+        """What slopes miss of a variable over its range, in sentences, the largest first; none without global
+        sensitivities."""
+        done = self.influence.overall
+        return [] if done is None else [d.sentence for d in done.disagreements()]
+
     @property
     def failures(self) -> dict[str, str]:
         """Parameter path -> reason, of steps at which the axle has no equilibrium."""
@@ -84,23 +125,44 @@ class InfluenceResult(FrameResult):
 
 
 def influence(
-    study: Study | str | PathLike[str], *, workers: int | None = None, progress: Progress | None = None
+    study: Study | str | PathLike[str],
+    *,
+    methods: Sequence[str] | Mapping[str, int] | None = None,
+    out: str | PathLike[str] | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Progress | None = None,
 ) -> InfluenceResult:
     """One-at-a-time influence of the study's parameters on the characteristics, exact derivatives beside, and
-    the variables to use where the study has a measurement. Nothing is written.
+    the variables to use where the study has a measurement.
 
-    study: a `Study`, its file or its folder; `[influence] parameters` chooses the parameters. workers:
-    processes, one per core by default. progress: called with (what, steps done, of how many).
+    study: a `Study`, its file or its folder; `[influence] parameters` chooses the parameters. methods: global
+    sensitivities over the ranges of the study's variables ("morris", "sobol", "pawn"), by name or with their
+    sizes (trajectories, base samples, designs), in place of those of the study. out: folder for what
+    `doe-kc influence --out` writes, with the store of their designs; by default nothing is written. workers:
+    processes, one per core by default. scheduler: address of a Dask scheduler, for the global designs.
+    progress: called with (what, steps done, of how many).
 
-    Raises InputError for a study or record that is wrong, RunError where the axle has no equilibrium.
+    Raises InputError for a study or record that is wrong, an unknown method or one whose extra is missing,
+    RunError where the axle has no equilibrium.
 
     >>> result = kc.influence("examples/front_axle", workers=1)
     >>> float(result.to_frame()["vertical.bump_steer"].abs().max())
     100.0
     """
     chosen = as_study(study)
+    sizes = study_methods(chosen, None if methods is None else list(methods))
+    if isinstance(methods, Mapping):
+        sizes = {method: methods[method.id] for method in sizes}
     records = None if chosen.measurement is None else study_measurement(chosen)
-    return influence_of(chosen, records, workers=workers, progress=progress)
+    result = influence_of(chosen, records, workers=workers, progress=progress)
+    with stored(chosen, out) as kept:
+        counter = step_counter(progress, "global", global_runs(sizes, chosen.space.dimension))
+        overall = study_global(kept, sizes, workers=workers, scheduler=scheduler, progress=counter)
+    result = InfluenceResult(chosen, replace(result.influence, overall=overall))
+    if out is not None:
+        result.write(out, workers=workers)
+    return result
 
 
 def influence_of(

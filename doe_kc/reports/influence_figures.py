@@ -15,11 +15,13 @@ from doe_kc.characteristics import Characteristic
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
+from doe_kc.parameter_influence.global_sensitivity import GlobalSensitivity
 from doe_kc.parameter_influence.study import Influence
 from doe_kc.reports.color_scale import STRIPS, draw_color_scale
+from doe_kc.reports.global_figures import global_bars
 from doe_kc.reports.influence_layout import Layout, group_steps, layout, step_text
 from doe_kc.reports.panel import PageBox, Panel
-from doe_kc.reports.series import draw_series
+from doe_kc.reports.series import Job, draw_series
 from doe_kc.reports.sheet import Sheet, sheet
 from doe_kc.reports.style import PALETTE
 from doe_kc.reports.table import NEGATIVE_FILL, NEUTRAL_FILL, POSITIVE_FILL
@@ -218,13 +220,17 @@ def write_influence_figures(
     study: str,
     workers: int | None = None,
     pictures: PictureFormat = PNG,
+    overall: GlobalSensitivity | None = None,
 ) -> list[Path]:
-    """Pictures `influence_heat_map` and `influence_top_ten`; returns their paths.
+    """Pictures `influence_heat_map` and `influence_top_ten`, with global sensitivities also
+    `influence_global`; returns their paths.
 
     Raises RunError when the folder cannot be written.
     """
-    jobs = [
+    jobs: list[Job] = [
         (folder / "influence_heat_map", partial(influence_heat_map, influence, study=study)),
         (folder / "influence_top_ten", partial(influence_bars, influence, study=study)),
     ]
+    if overall is not None:
+        jobs.append((folder / "influence_global", partial(global_bars, overall, study=study)))
     return draw_series(jobs, workers, pictures=pictures)

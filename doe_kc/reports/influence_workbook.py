@@ -12,10 +12,17 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from doe_kc import __version__
 from doe_kc.load_cases import LOAD_CASES, case_label
+from doe_kc.parameter_influence.global_sensitivity import GlobalSensitivity
 from doe_kc.parameter_influence.identifiability import COLLINEAR, NO_INFLUENCE
 from doe_kc.parameter_influence.relations import Relations
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.parameter_influence.study import NONLINEAR_PERCENT, Influence
+from doe_kc.reports.global_tables import (
+    GLOBAL_LEGEND,
+    convergence_table,
+    disagreement_table,
+    global_table,
+)
 from doe_kc.reports.influence_sheets import absolute_sheet, exact_sheet, influence_sheet
 from doe_kc.reports.influence_tables import (
     characteristic_links_table,
@@ -67,7 +74,8 @@ class InfluenceBook:
 
     study: name in titles and page headers. date: as it shall stand in the legend. selection: None without
     measured differences. notes: further lines of the legend, title -> text (axle file, measurement, ...).
-    windows: load case -> half-width of the fit window where it is not the default.
+    windows: load case -> half-width of the fit window where it is not the default. overall: global
+    sensitivities, None where none were asked for.
     """
 
     influence: Influence
@@ -77,14 +85,20 @@ class InfluenceBook:
     selection: Selection | None = None
     notes: Mapping[str, str] = field(default_factory=dict)
     windows: Mapping[str, float] = field(default_factory=dict)
+    overall: GlobalSensitivity | None = None
 
     def workbook(self) -> Workbook:
-        """Sheets Influence (as Appendix C), Absolute, Exact, Relations, Selection and Legend."""
+        """Sheets Influence (as Appendix C), Absolute, Exact, Relations, Selection, Global and its convergence
+        where it was asked for, and Legend."""
         book = new_book(f"Parameter influence: {self.study}")
         for fill in (influence_sheet, absolute_sheet, exact_sheet):
             fill(book, self.influence, self.study)
         _relations_sheet(book, self.relations, self.study)
         _selection_sheet(book, self.selection, self.study)
+        if self.overall is not None:
+            table_sheet(book, global_table(self.overall), self.study)
+            table_sheet(book, disagreement_table(self.overall), self.study)
+            table_sheet(book, convergence_table(self.overall), self.study)
         lines = list(_legend_lines(self).items())
         remark = "How to read this workbook."
         width = LEGEND_KEY_WIDTH
@@ -134,6 +148,7 @@ def _legend_lines(book: InfluenceBook) -> dict[str, str]:
         **MATRIX,
         "Gradients": _gradients(book.influence, book.windows),
         **SELECTION,
+        **(GLOBAL_LEGEND if book.overall is not None else {}),
     }
 
 

@@ -22,8 +22,13 @@ RGB, RGB_DEPTH = 2, 8
 
 
 def write_png(path: Path, pixels: NDArray[np.uint8], dpi: float, *, words: Mapping[str, str]) -> None:
-    """Write `pixels`, (height, width, 3) uint8 from the upper left corner; words: keywords with their text,
-    before the pixels. Raises OSError."""
+    """Write `png_bytes`. Raises OSError."""
+    path.write_bytes(png_bytes(pixels, dpi, words=words))
+
+
+def png_bytes(pixels: NDArray[np.uint8], dpi: float, *, words: Mapping[str, str]) -> bytes:
+    """A file's content of `pixels`, (height, width, 3) uint8 from the upper left corner; words: keywords with
+    their text, before the pixels."""
     height, width, _ = pixels.shape
     rows = np.zeros((height, 1 + 3 * width), dtype=np.uint8)  # each begins with its filter: 0, none
     for colour in range(3):
@@ -37,7 +42,7 @@ def write_png(path: Path, pixels: NDArray[np.uint8], dpi: float, *, words: Mappi
         _chunk(b"IDAT", zlib.compress(rows.tobytes(), LEVEL)),
         _chunk(b"IEND", b""),
     ]
-    path.write_bytes(b"".join(parts))
+    return b"".join(parts)
 
 
 def _chunk(kind: bytes, content: bytes) -> bytes:

@@ -31,7 +31,8 @@ from doe_kc.workflow.twin_check import twin_differences
 @dataclass(frozen=True)
 class Fault:
     """where: file, record or key. kind: study, solver, method, variables, targets, sampling, surrogates,
-    measurement, record, setup, twin, out, or that of a finding on the records. message: the whole sentence.
+    tolerance, measurement, record, setup, twin, out, or that of a finding on the records. message: the whole
+    sentence.
     """
 
     where: str
@@ -182,10 +183,25 @@ def _check_work(study: Study, collect: _Collector) -> None:
         from doe_kc.workflow.sample import study_design
 
         collect("sampling", lambda: study_design(study, method=None, n=None))
+    _check_tolerance(study, collect)
     for model in study.surrogates.models:
         from doe_kc.surrogate_models.models import make
 
         collect("surrogates", lambda model=model: make(model))  # type: ignore[misc]
+
+
+def _check_tolerance(study: Study, collect: _Collector) -> None:
+    """Scatter, correlations, requirements and cars that [tolerance] names."""
+    from doe_kc.characteristics import characteristics_of
+    from doe_kc.production_scatter.build import build_scatter
+    from doe_kc.production_scatter.requirements import build_requirements
+    from doe_kc.workflow.measured_cars import car_folders
+
+    source, options = str(study.source), study.tolerance
+    collect("tolerance", lambda: build_scatter(study.axle, options, source))
+    entries = characteristics_of(study.axle)
+    collect("tolerance", lambda: build_requirements(entries, options.requirement, None, source))
+    collect("tolerance", lambda: car_folders(study))
 
 
 def _check_out(out: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from pathlib import Path
@@ -14,14 +14,18 @@ from doe_kc.correlation.options import ObjectiveKind
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
+from doe_kc.parameter_influence.global_methods import GlobalMethod, find_global_method
+from doe_kc.parameter_influence.global_sensitivity import GlobalSensitivity, global_sensitivity
 from doe_kc.parameter_influence.relations import relations
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.parameter_influence.study import NONLINEAR_PERCENT, Influence, influence_study
+from doe_kc.reports.global_tables import global_document, global_table
 from doe_kc.reports.influence_tables import strongest_table
 from doe_kc.reports.influence_workbook import InfluenceBook
+from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.terminal import table_lines
-from doe_kc.study import Study
+from doe_kc.study import STORES, Study
 from doe_kc.targets import Target, build_targets
 from doe_kc.targets.comparison import constraint_interval
 
@@ -32,11 +36,12 @@ FORECAST_SHARE = 0.2
 @dataclass(frozen=True)
 class StudyInfluence:
     """matrix: the columns of Appendix C that the axle has; everything: all that it has; selection: None
-    without targets."""
+    without targets; overall: global sensitivities, None where none were asked for."""
 
     matrix: Influence
     everything: Influence
     selection: Selection | None
+    overall: GlobalSensitivity | None = None
 
 
 def study_influence(
@@ -85,6 +90,46 @@ def _sd(target: Target) -> float:
     return math.hypot(target.sd, (high - low) / 2.0 * FORECAST_SHARE)
 
 
+def study_methods(study: Study, asked: Sequence[str] | None) -> dict[GlobalMethod, int]:
+    """Methods of global sensitivity with their sizes: `asked`, or those of the study; InputError for an
+    unknown one."""
+    options = study.influence
+    names = options.methods if asked is None else asked
+    source = f"{study.source}: influence.global" if asked is None else "--global"
+    return {find_global_method(n, source): int(getattr(options, n)) for n in dict.fromkeys(names)}
+
+
+def global_store(study: Study) -> Path:
+    """The file of the designs of global sensitivities: apart from the study's own, which surrogates learn
+    from."""
+    return study.out / STORES / "global.sqlite"
+
+
+def study_global(
+    study: Study,
+    methods: Mapping[GlobalMethod, int],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Callable[[int], None] = lambda _: None,
+) -> GlobalSensitivity | None:
+    """Global sensitivities of the study's variables over their ranges; None without a method."""
+    if not methods:
+        return None
+    return global_sensitivity(
+        study.axle,
+        study.space,
+        characteristics_of(study.axle),
+        methods,
+        seed=study.seed,
+        store=global_store(study),
+        windows=study.windows,
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    )
+
+
 def influence_lines(matrix: Influence) -> list[str]:
     """Strongest parameters of every characteristic, and what went wrong, for a terminal."""
     nonlinear = int(matrix.nonlinear.sum())
@@ -119,12 +164,16 @@ def write_influence(
             "Effects": ", ".join(study.axle.effects) or "none",
         },
         windows=study.windows,
+        overall=study_influence.overall,
     ).write(folder / "influence.xlsx")
     tables = {"percent": matrix.percent, "absolute": matrix.absolute, "exact": matrix.exact}
     csv = [
         write_columns(folder / f"influence_{name}.csv", matrix.columns(values))
         for name, values in tables.items()
     ]
+    if study_influence.overall is not None:
+        columns = table_columns(global_table(study_influence.overall, every=True))
+        csv.append(write_columns(folder / "influence_global.csv", columns))
     from doe_kc.reports.page.influence import write_influence_page
     from doe_kc.reports.page.links import link_pages
 
@@ -134,6 +183,7 @@ def write_influence(
         study=study.name,
         date=date.today().isoformat(),
         labels=study.axle.labels,
+        overall=study_influence.overall,
     )
     link_pages(folder.parent)
     if study.pictures == "none":
@@ -141,18 +191,27 @@ def write_influence(
     from doe_kc.reports.influence_figures import write_influence_figures
 
     pictures = write_influence_figures(
-        matrix, folder, study=study.name, workers=workers, pictures=study.pictures
+        matrix,
+        folder,
+        study=study.name,
+        workers=workers,
+        pictures=study.pictures,
+        overall=study_influence.overall,
     )
     return [book, page, *pictures, *csv]
 
 
-def influence_document(influence: Influence) -> dict[str, Any]:
-    """`{"percent": {characteristic: {parameter: number}}, "absolute": ..., "exact": ..., "seconds"}`."""
+def influence_document(influence: Influence, overall: GlobalSensitivity | None = None) -> dict[str, Any]:
+    """`{"percent": {characteristic: {parameter: number}}, "absolute": ..., "exact": ..., "seconds"}`; with
+    global sensitivities also `"global"`: method -> index -> `"value"` and `"error"`, likewise, and
+    `"not_linear"`."""
     tables = {"percent": influence.percent, "absolute": influence.absolute, "exact": influence.exact}
     document: dict[str, Any] = {
         name: _by_characteristic(influence, values) for name, values in tables.items()
     }
     steps = {p.path: p.step for p in influence.parameters}
+    if overall is not None:
+        document["global"] = global_document(overall)
     return document | {"steps": steps, "failures": influence.failures, "seconds": influence.seconds}
 
 

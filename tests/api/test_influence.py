@@ -63,3 +63,27 @@ def test_it_writes_what_the_command_writes(result: kc.InfluenceResult, tmp_path:
     pd.testing.assert_frame_equal(table, result.to_frame(), check_exact=False, rtol=1e-8)
     assert written["influence.xlsx"].parent == tmp_path / "influence"
     assert "5 parameters x 21 characteristics" in repr(result) and len(repr(result)) < 500
+
+
+def test_global_sensitivities_beside_it(folder: Path, tmp_path: Path) -> None:
+    steps: list[tuple[str, int, int]] = []
+    both = kc.influence(
+        folder, methods={"morris": 4, "pawn": 50}, workers=1, out=tmp_path,
+        progress=lambda *step: steps.append(step),
+    )  # fmt: skip
+    frame = both.overall("morris").set_index(["variable", "characteristic"])
+    assert frame.loc[("ROB.z", "vertical.bump_steer"), "mu_star"] > 1.0
+    assert set(both.overall("pawn")) >= {
+        "variable",
+        "characteristic",
+        "effect",
+        "share",
+        "median",
+        "median_error",
+    }
+    assert steps[-1] == ("global", 4 * 8 + 50, 4 * 8 + 50) and isinstance(both.not_linear, list)
+    assert (tmp_path / "influence" / "influence_global.csv").is_file()
+    with pytest.raises(kc.InputError, match="'sobol' was not among the methods; known are morris, pawn"):
+        both.overall("sobol")
+    with pytest.raises(kc.InputError, match="'fast' is no method of global sensitivity"):
+        kc.influence(folder, methods=["fast"])

@@ -48,6 +48,13 @@ GLOSSARY: Mapping[str, str] = {
     "rating": "Weighted sum of all deviations from the targets, equation 2.2 of the thesis; 0 is best.",
     "improvement": "Share of the first deviation from a target that is gone; 100 % is on target.",
     "not visible": ("The records do not tell the parameter at least twice as well as was assumed before."),
+    "scatter": ("What cars of one design differ by in a parameter: one standard deviation, of either side."),
+    "first order": "By the slopes of the unchanged axle alone, as if every characteristic were a plane.",
+    "total share": (
+        "Share of a variance that a parameter takes part in, alone or with others; an interaction counts for "
+        "each of its partners."
+    ),
+    "95 % interval": "Of a counted share: where the true one is with 95 % confidence (Wilson).",
     "prior": (
         "What is assumed of a parameter before the records: its nominal value and the scatter of production."
     ),

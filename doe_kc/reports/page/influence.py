@@ -11,8 +11,18 @@ from doe_kc.axle.parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
+from doe_kc.parameter_influence.global_sensitivity import GlobalSensitivity
 from doe_kc.parameter_influence.study import Influence
-from doe_kc.reports.render.page import Section, table_html, write_page
+from doe_kc.reports.global_figures import global_bars
+from doe_kc.reports.global_tables import (
+    GLOBAL_LEAD,
+    METHODS_LEAD,
+    convergence_table,
+    global_sentences,
+    global_table,
+)
+from doe_kc.reports.page.axle import png_data
+from doe_kc.reports.render.page import Section, render, table_html, write_page
 from doe_kc.reports.table import (
     NEGATIVE_FILL,
     NEUTRAL_FILL,
@@ -89,14 +99,36 @@ def _fill(percent: float) -> str:
     return "".join(f"{round(low + share * (high - low)):02X}" for low, high in pairs)
 
 
-def influence_sections(influence: Influence) -> Sequence[Section]:
-    """The matrix."""
-    return [Section("Influence of every parameter", table_html(influence_table(influence)), INFLUENCE_LEAD)]
+def influence_sections(
+    influence: Influence, overall: GlobalSensitivity | None = None, study: str = ""
+) -> Sequence[Section]:
+    """The matrix; then global sensitivities, where there are some."""
+    out = [Section("Influence of every parameter", table_html(influence_table(influence)), INFLUENCE_LEAD)]
+    if overall is not None:
+        sentences = render("tolerance.html", sentences=global_sentences(overall))
+        picture = render(
+            "picture.html",
+            source=png_data(global_bars(overall, study=study)),
+            words="Local and global influence of the strongest variables",
+            folded=False,
+        )
+        out += [
+            Section("Over the ranges", sentences + picture, GLOBAL_LEAD),
+            Section("Global sensitivities", table_html(global_table(overall))),
+            Section("Convergence", table_html(convergence_table(overall)), METHODS_LEAD),
+        ]
+    return out
 
 
 def write_influence_page(
-    path: Path, influence: Influence, *, study: str, date: str, labels: Mapping[str, str] | None = None
+    path: Path,
+    influence: Influence,
+    *,
+    study: str,
+    date: str,
+    labels: Mapping[str, str] | None = None,
+    overall: GlobalSensitivity | None = None,
 ) -> Path:
     """Write the page; RunError when it cannot be written. labels: of the axle's points and elements."""
-    sections = influence_sections(influence)
+    sections = influence_sections(influence, overall, study)
     return write_page(path, f"Influence: {study}", sections, subtitle=date, labels=labels)

@@ -18,6 +18,7 @@ STUDY_PAGES: Mapping[str, str] = {
     "correlate/report.html": "Correlation",
     "compare/report.html": "Comparison",
     "influence/report.html": "Influence",
+    "tolerance/report.html": "Tolerance",
     "reduce/report.html": "Rig records",
     "simulate/report.html": "Simulation",
 }
