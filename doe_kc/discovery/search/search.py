@@ -16,7 +16,7 @@ from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
-from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
+from doe_kc.discovery.search.laws import with_free_laws, with_free_shapes, with_open_laws
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.refits import (
@@ -99,6 +99,16 @@ class Decision:
     accepted: bool
     """Whether the first refit passes the threshold."""
 
+    @property
+    def without_derivatives(self) -> Decision:
+        """What was looked at and decided, for the record; no fit can begin from it."""
+        return replace(
+            self,
+            before=self.before.without_derivatives,
+            screened=tuple(s.change_only for s in self.screened),
+            trials=tuple(replace(t, fit=t.fit.without_derivatives) for t in self.trials),
+        )
+
     def step(self, own: Likelihood) -> Step:
         """What is told of it. own: the records' own errors."""
         before = self.before.model.members
@@ -123,7 +133,8 @@ class EffectSearch:
     steps: tuple[Step, ...]
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
     first: Decision
-    """The first step whole: all that the verdict on a single effect takes."""
+    """The first step: all that the verdict on a single effect takes; without derivatives where the last set
+    is another."""
     screened: tuple[Screened, ...]
     """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
     with_law_discrepancy: Fit
@@ -178,6 +189,9 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
         if current.model.likelihood is not before:
             current = converged_fit(current, workers)
         screened = _latest(screened, decision, current)
+    if len(current.model.members) != 1:
+        first = first.without_derivatives
+    current = with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)
     return EffectSearch(tuned, tuple(steps), first, last, current, with_effects, shares, without_own, prior)

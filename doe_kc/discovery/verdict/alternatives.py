@@ -38,7 +38,8 @@ class Alternatives:
     screened: tuple[Screened, ...]
     """Itself, then the library without the other members, added to `without`; some without derivatives."""
     trials: tuple[HypothesisFit, ...]
-    """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`."""
+    """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`.
+    Of a set of several effects without derivatives."""
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
 
@@ -70,6 +71,7 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     if len(bases) == 1 and _is_first(search, bases[0]):
         return (_from_first_step(search, bases[0], search.first, temper, workers),)
     removals = workers.fits([_removal(base) for base in bases], "taking effects out")
+    bases = [base.without_derivatives for base in bases]
     withouts = [w or search.tuned for w in removals]  # no equilibrium without it: nothing in the model at all
     losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
     places = [
@@ -78,7 +80,8 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     ]
     places = _on_true_solutions(places, workers)
     starts = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
-    refits = iter(workers.fits([start for own in starts for start in own], "refitting rivals"))
+    every = [start for own in starts for start in own]
+    refits = iter(workers.fits(every, "refitting rivals", derivatives=False))
     return tuple(
         _judged(place, [next(refits) for _ in own], search, temper)
         for place, own in zip(places, starts, strict=True)
@@ -90,7 +93,7 @@ class _Place:
     """The place of one effect in the last set."""
 
     base: Fit
-    """The set with it as the last member."""
+    """The set with it as the last member, without derivatives."""
     without: Fit
     """The set without it."""
     screened: tuple[Screened, ...]
