@@ -91,9 +91,12 @@ class Fit(FieldsOnly):
     def without_derivatives(self) -> Fit:
         """The fit as far as its point, covariance and evidence go: a fiftieth of the memory.
 
-        Of all records: one with a load case left out takes the derivatives for its covariance.
+        Of all records: one with a load case left out takes the derivatives for its covariance. Its model
+        has no columns of linear nuisances: nothing is solved with it.
         """
-        return replace(self, jacobian=self.jacobian.normal_only, slope=self.gradient)
+        jacobian, known = self.jacobian.normal_only, self.model.nuisances
+        model = self.model if known is None else replace(self.model, nuisances=jacobian.nuisances)
+        return replace(self, model=model, jacobian=jacobian, slope=self.gradient)
 
     @cached_property
     def projection(self) -> Projection:

@@ -70,11 +70,7 @@ class Jacobian:
     @property
     def normal_only(self) -> Jacobian:
         """J'J alone, without the derivatives, which are most of the memory: none of its rows is there."""
-        nuisances = (
-            None
-            if self.nuisances is None
-            else replace(self.nuisances, columns=self.nuisances.columns[:0].copy())
-        )
+        nuisances = None if self.nuisances is None else self.nuisances.names_only
         return replace(self, own=self.own[:0].copy(), nuisances=nuisances, normal=self.gram)
 
     def rows(self, places: slice | NDArray[np.int_] | NDArray[np.bool_]) -> FloatArray:

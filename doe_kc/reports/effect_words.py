@@ -30,19 +30,26 @@ SIZE_WORDS: Mapping[str, str] = {
     "scale": "stiffness factor",
 }
 """Option of an effect -> what it is called; others by their own names without the unit."""
+FREE_LAW = "a law of its own shape"
+"""In place of the many numbers of one."""
 AXIS_LETTERS = "XYZ"
 """Of a list option's components."""
 
 
 def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
     """One line of the verdict."""
-    effect = EFFECTS[finding.hypothesis.effect]
+    effect, known = EFFECTS[finding.hypothesis.effect], list(found_sizes(discovery, finding))
+    free = [FREE_LAW] if any(s.of_free_law for s in known) else []
     return EffectWords(
         label=hypothesis_label(finding.hypothesis),
         kind=kind_of(discovery, finding),
         sizes=[
-            f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
-            for s in found_sizes(discovery, finding)
+            *(
+                f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
+                for s in known
+                if not s.of_free_law
+            ),
+            *free,
         ],
         sure=sure_words(discovery, finding),
         physics=physics_words(finding),
