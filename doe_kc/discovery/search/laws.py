@@ -18,7 +18,7 @@ import numpy as np
 
 from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import LAW_WINDOW, NOISE_CHANCE
+from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -73,7 +73,7 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     if model is current.model:
         return current
     (refit,) = workers.fits([FitStart(model, z, current)], "opening laws")
-    if refit is None or refit.cost > current.cost + 2.0 * LAW_WINDOW:
+    if refit is None or refit.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
         return current
     return refit
 
