@@ -47,7 +47,13 @@ def _draw_bins(axes: Axes, bins: Sequence[Bin]) -> None:
     low, high = np.array([b.right.interval for b in bins]).T
     reach = 100 * np.array([right - low, high - right])
     axes.errorbar(
-        stated, 100 * right, yerr=reach, fmt="o", color=SEEN, capsize=3, label="benchmark, 95 % interval"
+        stated,
+        100 * right,
+        yerr=reach,
+        fmt="o",
+        color=SEEN,
+        capsize=3,
+        label="benchmark: 95 % interval, number of names",
     )
     for x, y, b in zip(stated, high, bins, strict=True):
         axes.annotate(
