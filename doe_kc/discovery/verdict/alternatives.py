@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
-from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
@@ -23,9 +24,20 @@ from doe_kc.discovery.search.refits import (
 )
 from doe_kc.discovery.search.search import Decision, EffectSearch, threshold
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import BEYOND_DOUBT
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, NAME_ALWAYS_LEVEL
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class EffectChange:
+    """What an effect makes of the records beyond what re-tuning could, in the set without it."""
+
+    contrasts: FloatArray
+    """(k,) of each contrast, without a sign."""
+    correlations: tuple[tuple[str, float], ...]
+    """Id of each effect that was screened in its place, and the correlation of what both make, -1 to 1."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +50,14 @@ class Alternatives:
     screened: tuple[Screened, ...]
     """Itself, then the library without the other members, added to `without`; some without derivatives."""
     trials: tuple[HypothesisFit, ...]
-    """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`.
-    Of a set of several effects without derivatives."""
+    """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`."""
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
+    change: EffectChange
+    """What it makes of the records."""
+    removal_chance: float
+    """How often noise alone leaves as large a disagreement as the set without it; 0 where its removal costs
+    NAME_ALWAYS_LEVEL standard deviations."""
 
     @property
     def hypothesis(self) -> Hypothesis:
@@ -51,13 +67,48 @@ class Alternatives:
     @property
     def loss(self) -> float:
         """ln evidence lost by its removal."""
-        own = self.trials[0]
-        return own.gain - own.prior
+        return _loss(self.trials)
 
     @property
-    def map(self) -> Map:
-        """Where model and records disagree without it."""
-        return self.without.residual_map
+    def without_derivatives(self) -> Alternatives:
+        """The same, its fits without derivatives and what was screened without changes."""
+        return replace(
+            self,
+            without=self.without.without_derivatives,
+            screened=tuple(s.numbers_only for s in self.screened),
+            trials=tuple(replace(t, fit=t.fit.without_derivatives) for t in self.trials),
+        )
+
+
+def comparison(
+    without: Fit, screened: Sequence[Screened], trials: Sequence[HypothesisFit], temper: float
+) -> Alternatives:
+    """The alternatives of the first of the trials; without, screened, trials: see there, with derivatives."""
+    strong = 2.0 * _loss(trials) >= NAME_ALWAYS_LEVEL**2
+    chance = 0.0 if strong else without.residual_map.chance
+    change = effect_change(without, screened)
+    return Alternatives(without, tuple(screened), tuple(trials), temper, change, chance)
+
+
+def effect_change(without: Fit, screened: Sequence[Screened]) -> EffectChange:
+    """What the first of those screened makes of the records, and the others beside it."""
+    first, others = screened[0], [s for s in screened[1:] if not s.failed]
+    changes = without.changes(np.array([s.change for s in (first, *others)]).T)
+    seen, own = without.without_traces, changes.columns(slice(1))
+    left = seen.remaining(own)[:, 0]
+    along, lengths = seen.inner(own, changes)[0], np.sqrt(seen.squares(changes)) * np.sqrt(seen.squares(own))
+    alike = np.divide(along, lengths, out=np.zeros(along.size), where=lengths > 0.0)
+    return EffectChange(
+        np.asarray(np.abs(without.model.contrasts.rows.T @ left)),
+        tuple(
+            (s.hypothesis.effect, float(c))
+            for s, c in zip(others, np.clip(alike[1:], -1.0, 1.0), strict=True)
+        ),
+    )
+
+
+def _loss(trials: Sequence[HypothesisFit]) -> float:
+    return trials[0].gain - trials[0].prior
 
 
 def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
@@ -83,7 +134,7 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     every = [start for own in starts for start in own]
     refits = iter(workers.fits(every, "refitting rivals", derivatives=False))
     return tuple(
-        _judged(place, [next(refits) for _ in own], search, temper)
+        _place_comparison(place, [next(refits) for _ in own], search, temper)
         for place, own in zip(places, starts, strict=True)
     )
 
@@ -149,7 +200,7 @@ def _from_first_step(
     rivals = sorted((again.get(t.hypothesis.name, t) for t in kept), key=lambda t: -t.gain)
     itself = next(s for s in first.screened if s.hypothesis.name == own.hypothesis.name)
     others = [s for s in first.screened if _may_replace(base, s.hypothesis)]
-    return Alternatives(first.before, (itself, *others), (own, *rivals), temper)
+    return comparison(first.before, (itself, *others), (own, *rivals), temper)
 
 
 def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
@@ -174,12 +225,14 @@ def _on_true_solutions(places: Sequence[_Place], workers: DiscoveryWorkers) -> l
     ]
 
 
-def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float) -> Alternatives:
+def _place_comparison(
+    place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float
+) -> Alternatives:
     """The alternatives from refits of the last set without the member and with each rival in its place."""
     trials = [hypothesis_fit(f, place.without, search.prior) for f in refits if f is not None]
     rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
     own = _own(place.base, place.without, search.prior)
-    return Alternatives(place.without, place.screened, (own, *rivals), temper)
+    return comparison(place.without, place.screened, (own, *rivals), temper).without_derivatives
 
 
 def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
