@@ -147,6 +147,13 @@ class EffectSearch:
     """Name of a member with such a discrepancy -> the last errors of the records without its own."""
     prior: SetPrior
     """Probabilities of sets before the records."""
+    shape_loss: float
+    """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any."""
+
+    @property
+    def evidence(self) -> float:
+        """ln evidence of the last set by the laws that it was chosen with, to the records' own errors."""
+        return self.with_effects.evidence + self.shape_loss
 
 
 def search(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
@@ -191,10 +198,21 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
         screened = _latest(screened, decision, current)
     if len(current.model.members) != 1:
         first = first.without_derivatives
-    current = with_free_shapes(current, workers)
+    closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)
-    return EffectSearch(tuned, tuple(steps), first, last, current, with_effects, shares, without_own, prior)
+    return EffectSearch(
+        tuned,
+        tuple(steps),
+        first,
+        last,
+        current,
+        with_effects,
+        shares,
+        without_own,
+        prior,
+        closed - current.evidence,
+    )
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
