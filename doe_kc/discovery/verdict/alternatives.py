@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
 from doe_kc.discovery.search.compatibility import compatible
@@ -22,7 +23,7 @@ from doe_kc.discovery.search.refits import (
     plausible,
     refit_starts,
 )
-from doe_kc.discovery.search.search import Decision, EffectSearch, threshold
+from doe_kc.discovery.search.search import EffectSearch, threshold
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, NAME_ALWAYS_LEVEL
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -117,25 +118,21 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     A decoy of another kind is put in the place of the one whose removal costs most, where a reader looks
     for it.
     """
-    final = search.with_law_discrepancy
-    bases = [_without_own_law(search, h) for h in final.model.members]
-    if len(bases) == 1 and _is_first(search, bases[0]):
-        return (_from_first_step(search, bases[0], search.first, temper, workers),)
-    removals = workers.fits([_removal(base) for base in bases], "taking effects out")
-    bases = [base.without_derivatives for base in bases]
-    withouts = [w or search.tuned for w in removals]  # no equilibrium without it: nothing in the model at all
+    if _is_first(search):
+        return (_from_first_step(search, temper, workers),)
+    bases, withouts = _removals(search, workers)
     losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
     places = [
         _place(search, base, without, decoy=loss == max(losses))
         for base, without, loss in zip(bases, withouts, losses, strict=True)
     ]
     places = _on_true_solutions(places, workers)
-    starts = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
-    every = [start for own in starts for start in own]
+    rivals = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
+    every = [start for own in rivals for start in own]
     refits = iter(workers.fits(every, "refitting rivals", derivatives=False))
     return tuple(
         _place_comparison(place, [next(refits) for _ in own], search, temper)
-        for place, own in zip(places, starts, strict=True)
+        for place, own in zip(places, rivals, strict=True)
     )
 
 
@@ -153,17 +150,24 @@ class _Place:
     """Its rivals that are worth a refit."""
 
 
-def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
-    """The last set, the member last, under errors that do not grant its own law."""
-    errors = search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
-    return last_member(refit_to_errors(search.with_law_discrepancy, errors), member)
+def _own_errors(search: EffectSearch, member: Hypothesis) -> Likelihood:
+    """Errors of the records that do not grant the member's own law."""
+    return search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
 
 
-def _removal(base: Fit) -> FitStart:
-    """The last set without the last member, to be fitted as far as anything turns on it."""
-    member = base.model.members[-1]
-    z = base.z[: base.z.size - len(member.sizes)]
-    return FitStart(base.model.without(member), z, base, _ceiling(base))
+def _removals(search: EffectSearch, workers: DiscoveryWorkers) -> tuple[list[Fit], list[Fit]]:
+    """Of every member of the last set, in its own errors: the set with it as the last one, without
+    derivatives, and the set without it, fitted as far as anything turns on it."""
+    final = search.with_law_discrepancy
+    bases, starts = [], []
+    for member in final.model.members:
+        near = refit_to_errors(final, _own_errors(search, member))
+        base = last_member(near, member).without_derivatives
+        z = base.z[: base.z.size - len(member.sizes)]
+        bases.append(base)
+        starts.append(FitStart(near.model.without(member), z, near, _ceiling(base)))
+    fits = workers.fits(starts, "taking effects out")
+    return bases, [w or search.tuned for w in fits]  # no equilibrium without it: nothing in the model at all
 
 
 def _ceiling(base: Fit) -> float:
@@ -171,17 +175,19 @@ def _ceiling(base: Fit) -> float:
     return base.cost + 2.0 * BEYOND_DOUBT
 
 
-def _is_first(search: EffectSearch, base: Fit) -> bool:
-    """Whether the first step began with exactly the set without the last member, in the same errors."""
-    before = search.first.before.model
-    errors = zip(before.likelihood.curves, base.model.likelihood.curves, strict=True)
-    return len(base.model.members) == 1 and all(a is b for a, b in errors)
+def _is_first(search: EffectSearch) -> bool:
+    """Whether the first step began with exactly the last set without its only member, in the same errors."""
+    members = search.with_law_discrepancy.model.members
+    if len(members) != 1:
+        return False
+    before, after = search.first.before.model.likelihood, _own_errors(search, members[0])
+    return all(a is b for a, b in zip(before.curves, after.curves, strict=True))
 
 
-def _from_first_step(
-    search: EffectSearch, base: Fit, first: Decision, temper: float, workers: DiscoveryWorkers
-) -> Alternatives:
+def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> Alternatives:
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
+    first, final = search.first, search.with_law_discrepancy
+    base = refit_to_errors(final, _own_errors(search, final.model.members[0]))
     own = _own(base, first.before, search.prior)
     kept = [
         t
