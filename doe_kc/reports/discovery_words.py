@@ -138,11 +138,6 @@ class FoundSize:
     seen: bool
 
     @property
-    def of_free_law(self) -> bool:
-        """Whether it is one of the many numbers of a law of free shape, which say nothing one by one."""
-        return self.size.shape and self.size.index is not None
-
-    @property
     def words(self) -> str:
         """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
         unit = unit_words(self.size.unit)
@@ -176,12 +171,10 @@ def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
 
 
 def size_words(discovery: Discovery, finding: Finding) -> str:
-    """All sizes of a finding in one line; the numbers of a law's shape together, without their errors, which
-    hang on each other."""
-    known = list(found_sizes(discovery, finding))
-    shapes: dict[str, list[str]] = {}
-    for s in known:
-        if s.of_free_law:
-            shapes.setdefault(s.size.key, []).append(number(s.estimate.value, 2))
-    told = [s.sentence for s in known if s.size.key not in shapes]
-    return "; ".join([*told, *(f"{key} = {', '.join(values)}" for key, values in shapes.items())])
+    """The sizes of a finding in one line."""
+    return "; ".join(s.sentence for s in told_sizes(discovery, finding))
+
+
+def told_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
+    """Those that a reader can use: without the sliders of a free law, which mean nothing one by one."""
+    return (s for s in found_sizes(discovery, finding) if not (s.size.shape and s.size.index is not None))

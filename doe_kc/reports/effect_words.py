@@ -10,7 +10,7 @@ from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
 from doe_kc.reports.discovery_effects import kind_of
-from doe_kc.reports.discovery_words import found_sizes, physics_words
+from doe_kc.reports.discovery_words import physics_words, told_sizes
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 SIZE_WORDS: Mapping[str, str] = {
@@ -33,26 +33,19 @@ SIZE_WORDS: Mapping[str, str] = {
     "spread": "spread of the law",
 }
 """Option of an effect -> what it is called; others by their own names without the unit."""
-FREE_LAW = "a law of its own shape"
-"""In place of the many numbers of one."""
 AXIS_LETTERS = "XYZ"
 """Of a list option's components; a shape's are numbered."""
 
 
 def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
     """One line of the verdict."""
-    effect, known = EFFECTS[finding.hypothesis.effect], list(found_sizes(discovery, finding))
-    free = [FREE_LAW] if any(s.of_free_law for s in known) else []
+    effect = EFFECTS[finding.hypothesis.effect]
     return EffectWords(
         label=hypothesis_label(finding.hypothesis),
         kind=kind_of(discovery, finding),
         sizes=[
-            *(
-                f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
-                for s in known
-                if not s.of_free_law
-            ),
-            *free,
+            f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
+            for s in told_sizes(discovery, finding)
         ],
         sure=sure_words(discovery, finding),
         physics=physics_words(finding),
