@@ -1,4 +1,4 @@
-"""The report of one run: results/discovery.md, .csv and .png."""
+"""The report of one run: results/discovery.md, .csv, and pictures."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.discovery.confusion import confusion, draw, write_csv
+from benchmarks.discovery.reliability_diagram import draw_reliability
 from benchmarks.discovery.scoring import Score
 from benchmarks.discovery.table import (
     calibration_lines,
@@ -82,6 +83,8 @@ def lines(found: Sequence[Score], run: Run, followed: Sequence[Score] = ()) -> l
         *followup_lines(found, followed),
         *calibration_lines(found),
         "",
+        "![Stated probabilities and how often they are right](discovery_reliability.png)",
+        "",
         "![Who is taken for whom](discovery.png)",
     ]
 
@@ -99,6 +102,7 @@ def write(found: Sequence[Score], run: Run, folder: Path, followed: Sequence[Sco
     matrix = confusion(found)
     write_csv(matrix, folder / "discovery_confusion.csv")
     draw(matrix, folder / "discovery.png")
+    draw_reliability([b for s in found for b in s.believed], folder / "discovery_reliability.png")
     return text
 
 

@@ -67,6 +67,12 @@ class Jacobian:
         out[self._linear, self._linear] = self.nuisances.gram * np.outer(self.weights, self.weights)
         return out
 
+    @property
+    def normal_only(self) -> Jacobian:
+        """J'J alone, without the derivatives, which are most of the memory: none of its rows is there."""
+        nuisances = None if self.nuisances is None else self.nuisances.names_only
+        return replace(self, own=self.own[:0].copy(), nuisances=nuisances, normal=self.gram)
+
     def rows(self, places: slice | NDArray[np.int_] | NDArray[np.bool_]) -> FloatArray:
         """(k, n) some rows of the whole matrix."""
         if self.nuisances is None:

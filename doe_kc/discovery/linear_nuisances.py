@@ -61,6 +61,11 @@ class LinearNuisances:
         """The same and further traces (M, k)."""
         return LinearNuisances(np.hstack([self.columns, columns]), (*self.traces, *names))
 
+    @property
+    def names_only(self) -> LinearNuisances:
+        """The same nuisances without their columns: how many there are, and of what."""
+        return replace(self, columns=self.columns[:0].copy())
+
     def rewhitened(self, before: Likelihood, after: Likelihood) -> LinearNuisances:
         """The same in units of other errors of the same records."""
         return replace(self, columns=rewhitened(self.columns, before, after))

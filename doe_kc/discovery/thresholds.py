@@ -197,6 +197,9 @@ deviations: what is weaker waits for better derivatives."""
 LAW_WINDOW = 10.0
 """ln evidence, that the more flexible of two laws may be behind while noise does not explain what remains.
 Occam's window (Madigan, Raftery 1994): effects are then looked for beside the open law."""
+FREE_SHAPE_LOSS = 10.0
+"""ln likelihood, with priors, that frictions of free shape may cost before sizes are estimated beside the
+laws that were chosen. As `LAW_WINDOW`: on a car with five effects they cost 1."""
 EFFECTS_MOST = 6
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six."""
 MOST_STEPS = 12

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Executor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from itertools import islice
 from typing import Any, TypeVar
 
 import numpy as np
@@ -23,6 +24,8 @@ from doe_kc.solver.result import NotConverged
 Watch = Callable[[str, int, int], None]
 """Told what has been done, how many steps of the work that were, and how many more are begun."""
 T = TypeVar("T")
+TASKS_AHEAD = 2
+"""Tasks begun for each worker: one that it does, one that waits for it."""
 
 
 class DiscoveryWorkers:
@@ -99,28 +102,35 @@ class DiscoveryWorkers:
             out += [own[j::parts] for j in range(parts)]
         return out
 
-    def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
+    def fits(self, starts: Sequence[FitStart], what: str, *, derivatives: bool = True) -> list[Fit | None]:
         """Fits from several starts, None where one has no equilibrium.
 
         They are of the very models of `starts`, wherever they were computed: whether two fits are to the same
-        errors is asked by identity.
+        errors is asked by identity. derivatives: whether they are kept, see `Fit.without_derivatives`.
         """
         keys = [_fit_key(start) for start in starts]
         self._begun += len(starts)
-        stored = {i: self._cache.get(key) for i, key in enumerate(keys)}
-        known: dict[int, Arrays] = {i: arrays for i, arrays in stored.items() if arrays is not None}
-        if known:
-            self.watch(what, len(known))
-        missing = [i for i in range(len(starts)) if i not in known]
-        tasks = [
+        out: dict[int, Fit | None] = {}
+
+        def unpacked(i: int, arrays: Arrays) -> None:
+            refit = _unpacked_fit(starts[i].model, arrays)
+            out[i] = refit if refit is None or derivatives else refit.without_derivatives
+
+        for i, key in enumerate(keys):
+            arrays = self._cache.get(key)
+            if arrays is not None:
+                unpacked(i, arrays)
+        if out:
+            self.watch(what, len(out))
+        missing = [i for i in range(len(starts)) if i not in out]
+        tasks = (
             (s.model, s.z, known_columns(s.near, s.model), s.ceiling) for s in (starts[i] for i in missing)
-        ]
-        for at, arrays in self._run(_fit_one, tasks):
-            i = missing[at]
-            known[i] = arrays
-            self._cache.put(keys[i], arrays)
+        )
+        for at, result in self._run(_fit_one, tasks):
+            self._cache.put(keys[missing[at]], result)
+            unpacked(missing[at], result)
             self.watch(what, 1)
-        return [_unpacked_fit(start.model, known[i]) for i, start in enumerate(starts)]
+        return [out[i] for i in range(len(starts))]
 
     def held_out(self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
@@ -150,15 +160,25 @@ class DiscoveryWorkers:
 
         return waited
 
-    def _run(self, task: Callable[..., T], arguments: Sequence[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
-        """(place, result) of every task as it is done; in this process one is done before the next begins."""
+    def _run(self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
+        """(place, result) of every task as it is done; in this process one is done before the next begins.
+
+        No more are begun ahead than keep every worker busy: what they are given is large.
+        """
         if isinstance(self._executor, InProcess):
             for i, call in enumerate(arguments):
                 yield i, task(*call)
             return
-        futures = {self._executor.submit(task, *call): i for i, call in enumerate(arguments)}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
+        following = enumerate(arguments)
+        begun: dict[Future[T], int] = {}
+        for i, call in islice(following, TASKS_AHEAD * self._workers):
+            begun[self._executor.submit(task, *call)] = i
+        while begun:
+            for future in wait(begun, return_when=FIRST_COMPLETED).done:
+                place = begun.pop(future)
+                for i, call in islice(following, 1):
+                    begun[self._executor.submit(task, *call)] = i
+                yield place, future.result()
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:

@@ -54,6 +54,7 @@ def test_the_perfect_analyser_is_always_right(tmp_path: Path) -> None:
     text = "\n".join(write(found, RUN, tmp_path))
     assert "| single | 2 | 100 (34-100) |" in text
     assert (tmp_path / "discovery.png").stat().st_size > 10_000
+    assert (tmp_path / "discovery_reliability.png").stat().st_size > 10_000
     assert (tmp_path / "discovery_confusion.csv").read_text().startswith("hidden,")
 
 

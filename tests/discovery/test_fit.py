@@ -148,3 +148,12 @@ def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
         car.dimension,
         car.dimension + 1,
     }
+
+
+def test_without_derivatives_size_covariance_and_evidence_are_those_of_the_fit(with_hub: Fit) -> None:
+    short = with_hub.without_derivatives
+    assert short.jacobian.own.size == 0 and short.jacobian.size == with_hub.jacobian.size
+    assert short.evidence == with_hub.evidence
+    np.testing.assert_array_equal(short.covariance, with_hub.covariance)
+    np.testing.assert_array_equal(short.held, with_hub.held)
+    np.testing.assert_array_equal(short.without_derivatives.gradient, with_hub.gradient)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +16,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache
 from doe_kc.discovery.screening.screen import effort
 from doe_kc.discovery.search.search import tune
-from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.discovery.workers import TASKS_AHEAD, DiscoveryWorkers
 from tests.discovery.cases import library, model
 
 
@@ -101,3 +103,23 @@ def test_the_longest_screenings_begin_first(tuned: Fit) -> None:
     begun.clear()
     DiscoveryWorkers(cache=alone).screenings(tuned, hypotheses[-1:])
     assert begun == [first]
+
+
+def test_fits_are_kept_without_derivatives_on_request_and_no_more_are_begun_than_workers_do(
+    tuned: Fit,
+) -> None:
+    extended, z = start(tuned)
+    asked: list[float] = []
+
+    def starts() -> Iterator[tuple[float]]:
+        for i in range(9):
+            asked.append(float(i))
+            yield (float(i),)
+
+    (short,) = DiscoveryWorkers().fits([FitStart(extended, z, tuned)], "", derivatives=False)
+    assert short is not None and not short.jacobian.own.size
+    with ThreadPoolExecutor(1) as executor:
+        done = DiscoveryWorkers(executor)._run(abs, starts())
+        first = next(done)
+        assert first == (0, 0.0) and len(asked) <= TASKS_AHEAD + 1
+        assert dict([first, *done]) == {i: float(i) for i in range(9)}

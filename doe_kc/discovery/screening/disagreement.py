@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import cholesky
 
 from doe_kc.discovery.projection import Changes, Projection
 from doe_kc.discovery.screening.contrasts import Contrast, Contrasts
@@ -21,25 +22,18 @@ class Map:
     """(k,) the contrasts."""
     z: FloatArray
     """(k,) statistics, N(0, 1) each without disagreement, nan where re-tuning absorbs the contrast wholly."""
-    root: FloatArray
-    """(k', k') R of the correlation R R' of those that are not nan."""
-
-    @cached_property
-    def _largest_by_noise(self) -> FloatArray:
-        """(draws,) largest |z| that noise alone gives."""
-        rng = np.random.default_rng(11)
-        drawn = rng.standard_normal((NOISE_DRAWS, self.root.shape[1])) @ self.root.T
-        return np.asarray(np.abs(drawn).max(axis=1))
+    noise: FloatArray
+    """(draws,) largest |z| of maps that noise alone gives."""
 
     @cached_property
     def threshold(self) -> float:
         """Largest |z| that noise alone passes in 5 % of maps."""
-        return float(np.quantile(self._largest_by_noise, 1.0 - FALSE_ALARM_CHANCE))
+        return float(np.quantile(self.noise, 1.0 - FALSE_ALARM_CHANCE))
 
     @property
     def chance(self) -> float:
         """How often noise alone gives a largest |z| as large as this map's."""
-        return float(np.mean(self._largest_by_noise >= self.largest))
+        return float(np.mean(self.noise >= self.largest))
 
     @property
     def largest(self) -> float:
@@ -80,6 +74,11 @@ def _map(contrasts: Contrasts, gram: FloatArray, products: FloatArray) -> Map:
     z = np.where(seen, products / np.where(seen, length, 1.0), np.nan)
     scale = length[seen]
     correlation = gram[np.ix_(seen, seen)] / np.outer(scale, scale)
-    values, vectors = np.linalg.eigh(correlation)
-    root = vectors * np.sqrt(np.clip(values, 0.0, None))
-    return Map(contrasts.names, z, root)
+    return Map(contrasts.names, z, _largest_by_noise(correlation))
+
+
+def _largest_by_noise(correlation: FloatArray) -> FloatArray:
+    """(draws,) largest |z| of maps of noise of a correlation (k, k), positive definite by the doubt in it."""
+    root = cholesky(correlation, lower=True, check_finite=False)
+    drawn = np.random.default_rng(11).standard_normal((NOISE_DRAWS, root.shape[0])) @ root.T
+    return np.asarray(np.abs(drawn).max(axis=1))

@@ -68,6 +68,11 @@ class Screened:
         """Without derivatives, which are several times as large as the change."""
         return replace(self, columns=self.columns[:0].copy(), bend=self.bend[:0].copy())
 
+    @property
+    def numbers_only(self) -> Screened:
+        """Without anything of the size of the records."""
+        return replace(self.change_only, change=self.change[:0].copy())
+
 
 def rewhitened_screenings(
     screened: Sequence[Screened], before: Likelihood, after: Likelihood

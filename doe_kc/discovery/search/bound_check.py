@@ -35,7 +35,7 @@ def search_within_bounds(
     if factor == 1.0:
         return first, factor
     wider = search(replace(model, space=model.space.widened(factor)), library, workers)
-    gain = wider.with_effects.evidence - first.with_effects.evidence
+    gain = wider.evidence - first.evidence
     return (wider, factor) if gain > BOUND_EVIDENCE else (first, 1.0)
 
 

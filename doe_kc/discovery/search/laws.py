@@ -3,6 +3,13 @@
 What a wrong law leaves behind looks like another effect, and hides others. So where noise does not explain
 what remains, the law of every friction in the set is opened: by one number at once, wholly where nothing else
 explains it.
+
+Which effects are there, laws of few numbers tell as well as any; how large they are, they do not. A motion
+that stays in presliding is a spring by the law's shape, and a compliance beside it takes up what that shape
+lacks. Closed forms that noise does not tell apart, or nearly so, then give sizes that differ by more than any
+of them allows, and their evidence measures which is the least wrong one. So sizes are estimated beside
+frictions of free shape, of which closed forms are special cases: the discrepancy of the law at its source,
+as numbers of the fit.
 """
 
 from __future__ import annotations
@@ -11,7 +18,7 @@ import numpy as np
 
 from doe_kc.discovery.fit import Fit, FitStart
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import LAW_WINDOW, NOISE_CHANCE
+from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -58,6 +65,26 @@ def with_free_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     return current
 
 
+def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
+    """The fit with every friction by the law of most numbers, where sizes of other effects may hang on it.
+
+    Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
+    as a law with drifting loops could make it, the fit stays as it is.
+    """
+    frictions = [h for h in current.model.members if EFFECTS[h.effect].laws]
+    others = [h for h in current.model.members if h not in frictions and not EFFECTS[h.effect].on_rig]
+    model, z = current.model, current.z
+    for member in frictions if others else ():
+        for law in open_laws(member)[-1:]:
+            model, z = _replaced(model, z, member, law)
+    if model is current.model:
+        return current
+    (refit,) = workers.fits([FitStart(model, z, current)], "opening laws")
+    if refit is None or refit.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
+        return current
+    return refit
+
+
 def _opened(
     current: Fit, member: Hypothesis, law: Hypothesis, window: float, workers: DiscoveryWorkers
 ) -> Fit:
@@ -72,8 +99,13 @@ def _opened(
 
 def with_law(current: Fit, member: Hypothesis, law: Hypothesis) -> tuple[EffectModel, FloatArray]:
     """The model with a member by another law, and the fit's point in it; numbers that are new at typical."""
-    model = current.model.with_member(member, law)
-    known = current.model.sizes_at(current.z, member)
+    return _replaced(current.model, current.z, member, law)
+
+
+def _replaced(
+    model: EffectModel, z: FloatArray, member: Hypothesis, law: Hypothesis
+) -> tuple[EffectModel, FloatArray]:
+    known = model.sizes_at(z, member)
     own = [known.get(s.name, 0.0) for s in law.sizes]
-    place = next(p for h, p in current.model.places() if h == member)
-    return model, np.concatenate([current.z[: place.start], own, current.z[place.stop :]])
+    place = next(p for h, p in model.places() if h == member)
+    return model.with_member(member, law), np.concatenate([z[: place.start], own, z[place.stop :]])

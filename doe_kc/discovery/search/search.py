@@ -21,7 +21,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     without_own_discrepancy,
 )
-from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
+from doe_kc.discovery.search.laws import with_free_laws, with_free_shapes, with_open_laws
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.refits import (
@@ -104,6 +104,16 @@ class Decision:
     accepted: bool
     """Whether the first refit passes the threshold."""
 
+    @property
+    def without_derivatives(self) -> Decision:
+        """What was looked at and decided, for the record; no fit can begin from it."""
+        return replace(
+            self,
+            before=self.before.without_derivatives,
+            screened=tuple(s.change_only for s in self.screened),
+            trials=tuple(replace(t, fit=t.fit.without_derivatives) for t in self.trials),
+        )
+
     def step(self, own: Likelihood) -> Step:
         """What is told of it. own: the records' own errors."""
         before = self.before.model.members
@@ -129,7 +139,7 @@ class EffectSearch:
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
     first: Decision
     """The first step whole, or after an exchange of effects the first one since: where it began without any
-    effect, all that the verdict on a single effect takes."""
+    effect, all that the verdict on a single effect takes; without derivatives where the last set differs."""
     screened: tuple[Screened, ...]
     """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
     with_law_discrepancy: Fit
@@ -142,12 +152,19 @@ class EffectSearch:
     """Name of a member with such a discrepancy -> the last errors of the records without its own."""
     prior: SetPrior
     """Probabilities of sets before the records."""
+    shape_loss: float
+    """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any."""
+
+    @property
+    def evidence(self) -> float:
+        """ln evidence of the last set by the laws that it was chosen with, to the records' own errors."""
+        return self.with_effects.evidence + self.shape_loss
 
     @property
     def log_posterior(self) -> float:
         """ln of the last set's probability, relative to a constant that all sets and errors share."""
         last = self.with_law_discrepancy
-        return marginal(last) + self.prior.log(last.model.members)
+        return marginal(last) + self.shape_loss + self.prior.log(last.model.members)
 
 
 def search(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
@@ -232,10 +249,22 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             current = following
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         screened = _latest(screened, decision, current)
+    if len(current.model.members) != 1:
+        first = first.without_derivatives
+    closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)
     return EffectSearch(
-        state.tuned, tuple(steps), first, last, current, with_effects, shares, without_own, prior
+        state.tuned,
+        tuple(steps),
+        first,
+        last,
+        current,
+        with_effects,
+        shares,
+        without_own,
+        prior,
+        closed - current.evidence,
     )
 
 

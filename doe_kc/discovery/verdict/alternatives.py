@@ -10,8 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
-from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.refits import (
@@ -21,11 +23,22 @@ from doe_kc.discovery.search.refits import (
     plausible,
     refit_starts,
 )
-from doe_kc.discovery.search.search import Decision, EffectSearch, threshold
+from doe_kc.discovery.search.search import EffectSearch, threshold
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import BEYOND_DOUBT
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, NAME_ALWAYS_LEVEL
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+
+
+@dataclass(frozen=True)
+class EffectChange:
+    """What an effect makes of the records beyond what re-tuning could, in the set without it."""
+
+    contrasts: FloatArray
+    """(k,) of each contrast, without a sign."""
+    correlations: tuple[tuple[str, float], ...]
+    """Id of each effect that was screened in its place, and the correlation of what both make, -1 to 1."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +54,11 @@ class Alternatives:
     """Itself, then the plausible rivals in its place, refitted, best first; gains are over `without`."""
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
+    change: EffectChange
+    """What it makes of the records."""
+    removal_chance: float
+    """How often noise alone leaves as large a disagreement as the set without it; 0 where its removal costs
+    NAME_ALWAYS_LEVEL standard deviations."""
 
     @property
     def hypothesis(self) -> Hypothesis:
@@ -50,13 +68,48 @@ class Alternatives:
     @property
     def loss(self) -> float:
         """ln evidence lost by its removal."""
-        own = self.trials[0]
-        return own.gain - own.prior
+        return _loss(self.trials)
 
     @property
-    def map(self) -> Map:
-        """Where model and records disagree without it."""
-        return self.without.residual_map
+    def without_derivatives(self) -> Alternatives:
+        """The same, its fits without derivatives and what was screened without changes."""
+        return replace(
+            self,
+            without=self.without.without_derivatives,
+            screened=tuple(s.numbers_only for s in self.screened),
+            trials=tuple(replace(t, fit=t.fit.without_derivatives) for t in self.trials),
+        )
+
+
+def comparison(
+    without: Fit, screened: Sequence[Screened], trials: Sequence[HypothesisFit], temper: float
+) -> Alternatives:
+    """The alternatives of the first of the trials; without, screened, trials: see there, with derivatives."""
+    strong = 2.0 * _loss(trials) >= NAME_ALWAYS_LEVEL**2
+    chance = 0.0 if strong else without.residual_map.chance
+    change = effect_change(without, screened)
+    return Alternatives(without, tuple(screened), tuple(trials), temper, change, chance)
+
+
+def effect_change(without: Fit, screened: Sequence[Screened]) -> EffectChange:
+    """What the first of those screened makes of the records, and the others beside it."""
+    first, others = screened[0], [s for s in screened[1:] if not s.failed]
+    changes = without.changes(np.array([s.change for s in (first, *others)]).T)
+    seen, own = without.without_traces, changes.columns(slice(1))
+    left = seen.remaining(own)[:, 0]
+    along, lengths = seen.inner(own, changes)[0], np.sqrt(seen.squares(changes)) * np.sqrt(seen.squares(own))
+    alike = np.divide(along, lengths, out=np.zeros(along.size), where=lengths > 0.0)
+    return EffectChange(
+        np.asarray(np.abs(without.model.contrasts.rows.T @ left)),
+        tuple(
+            (s.hypothesis.effect, float(c))
+            for s, c in zip(others, np.clip(alike[1:], -1.0, 1.0), strict=True)
+        ),
+    )
+
+
+def _loss(trials: Sequence[HypothesisFit]) -> float:
+    return trials[0].gain - trials[0].prior
 
 
 def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
@@ -65,23 +118,21 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     A decoy of another kind is put in the place of the one whose removal costs most, where a reader looks
     for it.
     """
-    final = search.with_law_discrepancy
-    bases = [_without_own_law(search, h) for h in final.model.members]
-    if len(bases) == 1 and _is_first(search, bases[0]):
-        return (_from_first_step(search, bases[0], search.first, temper, workers),)
-    removals = workers.fits([_removal(base) for base in bases], "taking effects out")
-    withouts = [w or search.tuned for w in removals]  # no equilibrium without it: nothing in the model at all
+    if _is_first(search):
+        return (_from_first_step(search, temper, workers),)
+    bases, withouts = _removals(search, workers)
     losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
     places = [
         _place(search, base, without, decoy=loss == max(losses))
         for base, without, loss in zip(bases, withouts, losses, strict=True)
     ]
     places = _on_true_solutions(places, workers)
-    starts = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
-    refits = iter(workers.fits([start for own in starts for start in own], "refitting rivals"))
+    rivals = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
+    every = [start for own in rivals for start in own]
+    refits = iter(workers.fits(every, "refitting rivals", derivatives=False))
     return tuple(
-        _judged(place, [next(refits) for _ in own], search, temper)
-        for place, own in zip(places, starts, strict=True)
+        _place_comparison(place, [next(refits) for _ in own], search, temper)
+        for place, own in zip(places, rivals, strict=True)
     )
 
 
@@ -90,7 +141,7 @@ class _Place:
     """The place of one effect in the last set."""
 
     base: Fit
-    """The set with it as the last member."""
+    """The set with it as the last member, without derivatives."""
     without: Fit
     """The set without it."""
     screened: tuple[Screened, ...]
@@ -99,17 +150,24 @@ class _Place:
     """Its rivals that are worth a refit."""
 
 
-def _without_own_law(search: EffectSearch, member: Hypothesis) -> Fit:
-    """The last set, the member last, under errors that do not grant its own law."""
-    errors = search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
-    return last_member(refit_to_errors(search.with_law_discrepancy, errors), member)
+def _own_errors(search: EffectSearch, member: Hypothesis) -> Likelihood:
+    """Errors of the records that do not grant the member's own law."""
+    return search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
 
 
-def _removal(base: Fit) -> FitStart:
-    """The last set without the last member, to be fitted as far as anything turns on it."""
-    member = base.model.members[-1]
-    z = base.z[: base.z.size - len(member.sizes)]
-    return FitStart(base.model.without(member), z, base, _ceiling(base))
+def _removals(search: EffectSearch, workers: DiscoveryWorkers) -> tuple[list[Fit], list[Fit]]:
+    """Of every member of the last set, in its own errors: the set with it as the last one, without
+    derivatives, and the set without it, fitted as far as anything turns on it."""
+    final = search.with_law_discrepancy
+    bases, starts = [], []
+    for member in final.model.members:
+        near = refit_to_errors(final, _own_errors(search, member))
+        base = last_member(near, member).without_derivatives
+        z = base.z[: base.z.size - len(member.sizes)]
+        bases.append(base)
+        starts.append(FitStart(near.model.without(member), z, near, _ceiling(base)))
+    fits = workers.fits(starts, "taking effects out")
+    return bases, [w or search.tuned for w in fits]  # no equilibrium without it: nothing in the model at all
 
 
 def _ceiling(base: Fit) -> float:
@@ -117,18 +175,20 @@ def _ceiling(base: Fit) -> float:
     return base.cost + 2.0 * BEYOND_DOUBT
 
 
-def _is_first(search: EffectSearch, base: Fit) -> bool:
-    """Whether the first step began with exactly the set without the last member, in the same errors."""
+def _is_first(search: EffectSearch) -> bool:
+    """Whether the first step began without effects and the last set has one alone, in the same errors."""
+    members = search.with_law_discrepancy.model.members
     before = search.first.before.model
-    errors = zip(before.likelihood.curves, base.model.likelihood.curves, strict=True)
-    alone = len(base.model.members) == 1 and not before.members
-    return alone and all(a is b for a, b in errors)
+    if len(members) != 1 or before.members:
+        return False
+    after = _own_errors(search, members[0])
+    return all(a is b for a, b in zip(before.likelihood.curves, after.curves, strict=True))
 
 
-def _from_first_step(
-    search: EffectSearch, base: Fit, first: Decision, temper: float, workers: DiscoveryWorkers
-) -> Alternatives:
+def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> Alternatives:
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
+    first, final = search.first, search.with_law_discrepancy
+    base = refit_to_errors(final, _own_errors(search, final.model.members[0]))
     own = _own(base, first.before, search.prior)
     kept = [
         t
@@ -147,7 +207,7 @@ def _from_first_step(
     rivals = sorted((again.get(t.hypothesis.name, t) for t in kept), key=lambda t: -t.gain)
     itself = next(s for s in first.screened if s.hypothesis.name == own.hypothesis.name)
     others = [s for s in first.screened if _may_replace(base, s.hypothesis)]
-    return Alternatives(first.before, (itself, *others), (own, *rivals), temper)
+    return comparison(first.before, (itself, *others), (own, *rivals), temper)
 
 
 def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
@@ -172,12 +232,14 @@ def _on_true_solutions(places: Sequence[_Place], workers: DiscoveryWorkers) -> l
     ]
 
 
-def _judged(place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float) -> Alternatives:
+def _place_comparison(
+    place: _Place, refits: Sequence[Fit | None], search: EffectSearch, temper: float
+) -> Alternatives:
     """The alternatives from refits of the last set without the member and with each rival in its place."""
     trials = [hypothesis_fit(f, place.without, search.prior) for f in refits if f is not None]
     rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
     own = _own(place.base, place.without, search.prior)
-    return Alternatives(place.without, place.screened, (own, *rivals), temper)
+    return comparison(place.without, place.screened, (own, *rivals), temper).without_derivatives
 
 
 def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:

@@ -22,7 +22,6 @@ from doe_kc.discovery.thresholds import (
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.verdict import ambiguous
-from doe_kc.ground.typing import FloatArray
 
 
 def certain(finding: Finding, own: Alternatives, final: Fit) -> bool:
@@ -52,13 +51,6 @@ def name_doubt(own: Alternatives, final: Fit, explained: Adequacy | None) -> flo
 
 def explained(own: Alternatives, remaining: Map) -> bool:
     """Whether noise explains what remains of the contrasts in which the effect shows most."""
-    signal, left = own_contrasts(own), np.abs(np.nan_to_num(remaining.z))
+    signal, left = own.change.contrasts, np.abs(np.nan_to_num(remaining.z))
     asked = signal >= OWN_CONTRASTS * signal.max()
     return bool((left[asked] <= remaining.threshold).all())
-
-
-def own_contrasts(own: Alternatives) -> FloatArray:
-    """(k,) what the effect makes of each contrast beyond what re-tuning could, without a sign."""
-    fit = own.without
-    seen = fit.without_traces.remaining(fit.changes(own.screened[0].change))[:, 0]
-    return np.asarray(np.abs(fit.model.contrasts.rows.T @ seen))

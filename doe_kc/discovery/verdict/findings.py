@@ -53,7 +53,7 @@ def _stands_out(own: Alternatives, least: float) -> bool:
     strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
     if strength >= NAME_ALWAYS_LEVEL:
         return True
-    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.map.chance < NOISE_CHANCE)
+    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.removal_chance < NOISE_CHANCE)
 
 
 def _finding(
@@ -155,17 +155,10 @@ def _detectability(fit: Fit, place: slice) -> float:
 
 def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:
     """Effect id -> chance that noise names it instead, from the remaining changes without the effect."""
-    fit = own.without
-    first, *others = (s for s in own.screened if not s.failed)
-    changes = fit.changes(np.array([s.change for s in (first, *others)]).T)
-    along = fit.without_traces.inner(changes.columns(slice(1)), changes)[0]
-    length = np.sqrt(fit.without_traces.squares(changes))
     out: dict[str, float] = {}
-    for s, product, left in zip(others, along[1:], length[1:], strict=True):
-        effect = s.hypothesis.effect
+    for effect, correlation in own.change.correlations:
         if effect != own.hypothesis.effect:
-            correlation = float(product / (left * length[0])) if left * length[0] > 0.0 else 0.0
-            chance = wrong_name_chance(detectability, float(np.clip(correlation, -1.0, 1.0)))
+            chance = wrong_name_chance(detectability, correlation)
             out[effect] = max(out.get(effect, 0.0), chance)
     return out
 

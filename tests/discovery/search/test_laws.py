@@ -8,10 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit, FitStart, amplitude_estimates
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.laws import open_laws, other_laws, with_free_laws, with_law, with_open_laws
+from doe_kc.discovery.search.laws import (
+    open_laws,
+    other_laws,
+    with_free_laws,
+    with_free_shapes,
+    with_law,
+    with_open_laws,
+)
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
@@ -23,12 +31,11 @@ class Answers(DiscoveryWorkers):
         super().__init__()
         self.cost, self.laws = cost, [""] * 0
 
-    def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
-        self.laws += [s.model.members[0].law for s in starts]
-        return [self._fit(s.model, s.z) for s in starts]
+    def fits(self, starts: Sequence[FitStart], what: str, *, derivatives: bool = True) -> list[Fit | None]:
+        self.laws += [next(h.law for h in s.model.members if EFFECTS[h.effect].laws) for s in starts]
+        return [self._fit(s.model, s.z, s.near) for s in starts]
 
-    def _fit(self, model: EffectModel, z: FloatArray) -> Fit:
-        found = disagreeing()
+    def _fit(self, model: EffectModel, z: FloatArray, found: Fit) -> Fit:
         more = z.size - found.z.size
         jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
         return replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + self.cost)
@@ -83,3 +90,38 @@ def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> N
     (friction,) = agreeing().model.members
     assert asked.laws == [open_laws(friction)[-1].law]
     assert bool(found.model.members[0].law) is opened
+
+
+def beside_a_hub() -> Fit:
+    """The friction by its default law, and a hub of no size, which moves nothing."""
+    (hub,) = library("hub_compliance")
+    found, none = agreeing(), np.zeros(len(hub.sizes))
+    model, z = found.model.extended(hub), np.append(found.z, none)
+    own = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
+    return replace(found, model=model, z=z, jacobian=model.jacobian(own))
+
+
+@pytest.mark.parametrize(("cost", "free"), [(-50.0, True), (19.0, True), (21.0, False)])
+def test_beside_another_effect_a_friction_gets_a_free_shape_unless_that_fits_worse(
+    cost: float, free: bool
+) -> None:
+    found = with_free_shapes(beside_a_hub(), Answers(cost))
+    friction, hub = found.model.members
+    assert friction.law == (open_laws(agreeing().model.members[0])[-1].law if free else "")
+    assert hub == library("hub_compliance")[0]
+
+
+def test_a_friction_alone_keeps_its_law() -> None:
+    asked = Answers(-50.0)
+    assert with_free_shapes(agreeing(), asked).model.members == agreeing().model.members
+    assert asked.laws == []
+
+
+def test_the_size_of_an_effect_beside_a_friction_is_estimated_beside_a_free_shape() -> None:
+    found = discovery("pair").search
+    laws = {h.effect: h.law for h in found.with_effects.model.members}
+    assert laws == {"hub_compliance": "", "steering_friction": "backbone"}
+    assert not open_laws(found.with_effects.model.members[-1])
+    hub = next(h for h in found.with_effects.model.members if h.effect == "hub_compliance")
+    sizes, sd = amplitude_estimates(found.with_effects, hub)
+    np.testing.assert_array_less(np.abs(sizes - [6000.0 / 4000.0, 9000.0 / 7000.0]), 3.0 * sd)

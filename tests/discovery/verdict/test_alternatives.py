@@ -10,7 +10,7 @@ import pytest
 from doe_kc.discovery.fit import last_member
 from doe_kc.discovery.search.refits import HypothesisFit, plausible
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives, effect_change
 from doe_kc.discovery.verdict.findings import findings
 from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import discovery
@@ -98,3 +98,20 @@ def test_one_effect_alone_is_judged_by_the_refits_of_the_search() -> None:
     (one,) = alternatives(search, 1.0, DiscoveryWorkers())
     assert one.without is search.first.before
     assert {id(t) for t in one.trials[1:]} <= {id(t) for t in search.first.trials}
+
+
+def test_of_several_effects_no_derivatives_are_kept(compared: tuple[Alternatives, ...]) -> None:
+    for one in compared:
+        assert not any(f.jacobian.own.size for f in (one.without, *(t.fit for t in one.trials)))
+        assert not any(s.change.size for s in one.screened)
+        assert one.without.evidence == pytest.approx(one.trials[0].fit.evidence - one.loss)
+
+
+def test_what_an_effect_makes_of_the_records_is_seen_in_the_set_without_it() -> None:
+    """Camber under lateral force, of a compliant hub; alike to itself wholly."""
+    search = discovery("named").search
+    hub = next(s for s in search.first.screened if s.hypothesis.effect == "hub_compliance")
+    change = effect_change(search.tuned, [hub, hub])
+    assert change.correlations == (("hub_compliance", pytest.approx(1.0)),)
+    worst = search.tuned.model.contrasts.names[int(np.argmax(change.contrasts))]
+    assert worst.response == "camber" and "lateral" in worst.load_case

@@ -11,7 +11,7 @@ from doe_kc.discovery.discover import with_verdicts
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Finding, Rival
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
-from doe_kc.discovery.verdict.certainty import certain, explained, name_doubt, own_contrasts
+from doe_kc.discovery.verdict.certainty import certain, explained, name_doubt
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import discovery
@@ -52,7 +52,7 @@ def test_it_is_a_lead_where_its_own_deviations_are_not_explained(
     hub: tuple[Finding, Alternatives, Fit],
 ) -> None:
     finding, own, final = hub
-    worst = own.map.names[int(np.argmax(own_contrasts(own)))]
+    worst = own.without.model.contrasts.names[int(np.argmax(own.change.contrasts))]
     assert worst.response == "camber"
     assert explained(own, final.residual_map)
     spoilt = disagreeing(final, worst.load_case, worst.response, 60.0)

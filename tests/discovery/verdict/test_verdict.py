@@ -35,7 +35,8 @@ def of(largest: float, *, count: int = 50) -> Map:
     names = tuple(Contrast("lateral", "toe", "gradient", "both") for _ in range(count))
     z = np.full(count, 0.1)
     z[0] = largest
-    return Map(names, z, np.eye(count))
+    noise = np.abs(np.random.default_rng(11).standard_normal((1000, count))).max(axis=1)
+    return Map(names, z, noise)
 
 
 def with_rms(rms: float) -> Fit:
