@@ -12,6 +12,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
+
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import (
     PATHS,
@@ -32,6 +34,7 @@ from doe_kc.axle.parameter_kinds import (
 from doe_kc.axle.structure_parameters import structure_kinds
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,6 +174,25 @@ class ParameterMap:
                 if rank > ranks.get(internal, -1):
                     result[internal], ranks[internal] = known[internal] + change * factor, rank
         return _with_matching_topology(self._axle.changed(result))
+
+    def changes(self, values: FloatArray) -> dict[str, FloatArray]:
+        """Internal values that differ between designs, or from the axle's: name -> (d,), what `axle` gives for
+        each row of the values (d, paths), one column a path in their order. InputError as `axle`."""
+        count = len(values)
+        out: dict[str, FloatArray] = {}
+        ranks: dict[str, FloatArray] = {}
+        for effect, column in zip(self._paths, values.T, strict=True):
+            for value in column[~(np.isfinite(column) & (column > effect.least))]:
+                check_value(effect.path, float(value), self._source)
+            sets = np.full(count, True) if effect.overrides else column != effect.value
+            change = effect.sign * column - effect.reference
+            for internal, factor, rank in effect.moves:
+                before = ranks.setdefault(internal, np.full(count, -1.0))
+                moves = sets & (rank > before)
+                known = out.setdefault(internal, np.full(count, self._axle.values[internal]))
+                known[moves] = (self._axle.values[internal] + change * factor)[moves]
+                before[moves] = rank
+        return out
 
 
 @dataclass(frozen=True)
