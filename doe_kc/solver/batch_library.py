@@ -142,9 +142,7 @@ def batch_library(topology: Topology, instructions: InstructionSet | None = None
     if os.environ.get(COMPILE_VARIABLE) == "0":
         raise CompileError(f"{COMPILE_VARIABLE} is 0")
     chosen = instructions or own_instruction_set()
-    path = library_of(
-        topology, _kind(chosen), lambda: _batch_sources(topology, chosen), chosen.build_flags
-    )
+    path = library_of(topology, _kind(chosen), lambda: _batch_sources(topology, chosen), chosen.build_flags)
     library = ctypes.CDLL(str(path))
     library.march_batch.argtypes = _BATCH_ARGUMENTS
     library.constants_batch.argtypes = (*(_INT,) * 3, *(_ADDRESS,) * 2)

@@ -161,9 +161,7 @@ class _BatchSuite:
             held = HOLD_WHEEL in values
             u = self._controls(values, len(inputs))
             s = np.broadcast_to(inputs, (self._designs, len(inputs)))
-            known = np.broadcast_to(
-                np.concatenate([seeds, inputs[:1]]), (self._designs, len(seeds) + 1)
-            )
+            known = np.broadcast_to(np.concatenate([seeds, inputs[:1]]), (self._designs, len(seeds) + 1))
             start = BatchStart(known, before, u[:, 0], state)
             path = self._march(start, s[:, 1:], u[:, 1:], full=held, held=held)
             done.append(BatchBranch(name, inputs, np.concatenate([first[:, None], path.y], axis=1)))

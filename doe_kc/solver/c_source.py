@@ -176,9 +176,7 @@ def _pieces(statements: dict[int, _Statement]) -> list[list[tuple[int, _Statemen
     return [items[i : i + PIECE] for i in range(0, len(items), PIECE)]
 
 
-def _piece_texts(
-    pieces: list[list[tuple[int, _Statement]]], dialect: Dialect
-) -> tuple[list[list[str]], int]:
+def _piece_texts(pieces: list[list[tuple[int, _Statement]]], dialect: Dialect) -> tuple[list[list[str]], int]:
     """Lines of each piece, and how many places values need that later pieces read."""
     piece_of = {k: i for i, piece in enumerate(pieces) for k, _ in piece}
     last = dict(piece_of)  # piece that reads a value last

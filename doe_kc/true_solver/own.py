@@ -96,7 +96,6 @@ class AxleSolver:
         outcome = from_curves(observed(changed, curve_set(solution)), self.windows, seconds)
         return outcome if self.curves else replace(outcome, curves=None)
 
-
     def evaluate_all(self, designs: Sequence[Values], *, curves: bool) -> list[Outcome]:
         """See `BatchSolver`; designs of `batched` topologies side by side, the others one by one."""
         groups = defaultdict[tuple[Topology, tuple[str, ...]], list[int]](list)
@@ -107,7 +106,9 @@ class AxleSolver:
         for (topology, paths), members in groups.items():
             if topology not in self.batched:
                 continue
-            values = np.array([[designs[i][path] for path in paths] for i in members]).reshape(len(members), -1)
+            values = np.array([[designs[i][path] for path in paths] for i in members]).reshape(
+                len(members), -1
+            )
             parameters = self._map(paths)
             outcomes = batch_outcomes(self.axle, topology, parameters, values, self.windows, curves=wanted)
             for i, outcome in zip(members, outcomes, strict=True):
