@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -34,12 +34,18 @@ def rounded(value: float) -> float:
 
 
 def design_key(values: Mapping[str, float]) -> str:
-    """SHA-256 of the sorted path/value pairs, 64 hex digits; InputError for a value that is not finite."""
+    """SHA-256 of the sorted path/value pairs in JSON, 64 hex digits; InputError for one that is not finite."""
     for path, value in values.items():
         if not math.isfinite(value):
             raise InputError(f"design: {path} = {value}, expected a finite number.")
-    pairs = [(path, repr(rounded(float(value)))) for path, value in sorted(values.items())]
-    return hashlib.sha256(json.dumps(pairs).encode()).hexdigest()
+    pairs = [f'[{_quoted(path)}, "{rounded(value)!r}"]' for path, value in sorted(values.items())]
+    return hashlib.sha256(f"[{', '.join(pairs)}]".encode()).hexdigest()
+
+
+@lru_cache(maxsize=4096)
+def _quoted(path: str) -> str:
+    """A path as JSON."""
+    return json.dumps(path)
 
 
 def run_one(solver: TrueSolver, values: Values, *, keep_curves: bool = True) -> Packed:

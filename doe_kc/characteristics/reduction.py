@@ -55,8 +55,13 @@ def abscissa(entry: Characteristic, case: CaseCurves, half_track: float | FloatA
     return case.input
 
 
-def slope(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Slope of the least-squares line y = a + b x over the last axis, (n,) or (d, n)."""
+def slope(x: FloatArray, y: FloatArray) -> float:
+    """Slope of the least-squares line y = a + b x."""
+    return float(slopes(x, y))
+
+
+def slopes(x: FloatArray, y: FloatArray) -> FloatArray:
+    """The same along the last axis of each, (n,) or (d, n)."""
     dx = x - x.mean(axis=-1, keepdims=True)
     dy = y - y.mean(axis=-1, keepdims=True)
     return np.asarray((dx * dy).sum(axis=-1) / (dx * dx).sum(axis=-1))
@@ -75,7 +80,7 @@ def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None 
         return float("nan")
     inside = fit_window(case, window)
     x = abscissa(entry, case, curves.half_track)[inside]
-    return entry.scale * float(slope(x, case.mean[entry.response][LEFT_WHEEL][inside]))
+    return entry.scale * slope(x, case.mean[entry.response][LEFT_WHEEL][inside])
 
 
 def reduce_all(curves: CurveSet, windows: Mapping[str, float] | None = None) -> dict[str, float]:
@@ -126,7 +131,7 @@ def _slopes(
         return out
     inside = fit_window(case, window)
     x = abscissa(entries[0], case, curves.half_track)[..., inside]
-    return out | {e.id: e.scale * slope(x, case.mean[e.response][LEFT_WHEEL][..., inside]) for e in known}
+    return out | {e.id: e.scale * slopes(x, case.mean[e.response][LEFT_WHEEL][..., inside]) for e in known}
 
 
 def reduction_gradient(

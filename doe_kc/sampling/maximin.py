@@ -23,7 +23,7 @@ MOST_EXCHANGES = 12_000
 FIRST_THRESHOLD, LAST_THRESHOLD = 3e-4, 1e-7
 """Relative growth of the sum that a step may make, at the first and at the last step."""
 LEAST_SQUARE = 1e-7
-"""Squared distance that stands for smaller ones and for a row's to itself: its power fits single precision."""
+"""Squared distance that stands for smaller ones and a row's to itself; its power fits single precision."""
 
 
 def spread_hypercube(points: FloatArray, rng: np.random.Generator, *, fixed: int = 0) -> FloatArray:
@@ -42,7 +42,7 @@ def spread_hypercube(points: FloatArray, rng: np.random.Generator, *, fixed: int
 
 
 class _Search:
-    """x: (n, d). square: (n, n) squared distances; inverse: the same to the power -p / 2, zero on the diagonal;
+    """x: (n, d). square: (n, n) squared distances; inverse: their power -p / 2, zero on the diagonal;
     both in single precision, which tells trials apart at half the time.
 
     rows: (n,) sums of inverse by row, kept up to date as rows change; total: the sum of each pair once.
@@ -84,7 +84,7 @@ class _Search:
         return self.fixed + int(np.argmax(self.rows[self.fixed :]))
 
     def _changes(self, column: np.ndarray, row: int, others: np.ndarray) -> FloatArray:
-        """(m,) by how much the total grows when a row exchanges its entry of a column with each of the others."""
+        """(m,) growth of the total when a row exchanges its entry of a column with each of the others."""
         m = len(others)
         theirs, mine, yours, a, b, work = (buffer[:m] for buffer in self._buffers)
         own = (column - column[row]) ** 2
@@ -132,7 +132,7 @@ def _powers(squares: np.ndarray, out: np.ndarray, work: np.ndarray) -> np.ndarra
     np.reciprocal(out, out=out)
     np.square(out, out=work)
     np.square(work, out=work)
-    return np.multiply(out, work, out=out)
+    return np.asarray(np.multiply(out, work, out=out))
 
 
 def more_slices(points: FloatArray, more: int, rng: np.random.Generator) -> FloatArray:

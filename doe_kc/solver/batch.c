@@ -23,8 +23,9 @@ int constants(const double **, double **, integer *, double *, int);
 #define ONWARD 1e-3
 #define STALL_LEVEL 1e-4        /* N */
 #define STALL_STEP 1e-10        /* mm, Gibbs units */
-#define DULL 0.5                /* contraction above which a factorization is renewed at once ... */
-#define TOGETHER 2              /* ... and below it at the next multiple of so many steps, together with others */
+#define DULL 0.5                /* contraction above which a factorization is renewed at once, ... */
+#define SLOW 2                  /* as after more than so many slow ones of an equilibrium; ... */
+#define TOGETHER 2              /* else at the next multiple of so many steps, together with that of other lanes */
 #define LARGEST_FACTOR 1e8      /* of the elimination, whose order is the same for all designs */
 
 /* What a lane waits for, in the order in which it is done. */
@@ -52,7 +53,7 @@ typedef struct {
 typedef struct {
     int at, newton_at;                      /* where `go_on` and `newton` resume */
     int steps, step, points, have_lu, stale, singular, failed, smooth;
-    int iterations, fresh, halvings, accepted, work, bad;
+    int iterations, slow, fresh, halvings, accepted, work, bad;
     double now, best, damp, done, to, here, part, wish, gap, s_from, far;
     double hs[HISTORY + 1];
     double *hx, *x, *guessed, *back, *u_now, *u_next, *u_on;
@@ -178,7 +179,7 @@ static int newton(block *b, design *t, int l) {
     double next;
     switch (t->newton_at) {
     case 0:
-        t->fresh = 0;
+        t->fresh = t->slow = 0;
         t->accepted = ACCEPT;
         AWAIT(t->newton_at, EVALUATE);
         t->now = t->best = b->level[l];
@@ -207,7 +208,7 @@ static int newton(block *b, design *t, int l) {
             }
             t->accepted = ACCEPT;
             if (next > p->refresh * t->now) {
-                if (next <= DULL * t->now) t->stale = 1;
+                if (next <= DULL * t->now && t->slow++ < SLOW) t->stale = 1;
                 else t->have_lu = 0;
                 if (!t->fresh && !(next <= 0.5 * t->now)) {
                     t->accepted = 0;

@@ -43,9 +43,11 @@ class BatchStart:
 
 @dataclass(frozen=True)
 class BatchMarch:
-    """x: (d, n, nx); y: (d, n, outputs asked for); z: (d, nz) after the last step. failed: (d,) whether a design
-    has no such march; its rows hold nothing. counts: calls of residual, Jacobian, solution and outputs, each for
-    all lanes."""
+    """x: (d, n, nx); y: (d, n, outputs asked for); z: (d, nz) after the last step.
+
+    failed: (d,) whether a design has no such march; its rows hold nothing. counts: calls of residual,
+    Jacobian, solution and outputs, each for all lanes.
+    """
 
     x: FloatArray
     y: FloatArray
@@ -137,8 +139,8 @@ def stored_batch_library(topology: Topology) -> bool:
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
 def batch_library(topology: Topology, instructions: InstructionSet | None = None) -> BatchLibrary:
-    """Build or load the library of a topology, by default for this processor; CompileError when that cannot or
-    shall not be done."""
+    """Build or load the library of a topology, by default for this processor; CompileError when that cannot
+    or shall not be done."""
     if os.environ.get(COMPILE_VARIABLE) == "0":
         raise CompileError(f"{COMPILE_VARIABLE} is 0")
     chosen = instructions or own_instruction_set()

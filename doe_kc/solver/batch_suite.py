@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -20,7 +21,7 @@ from doe_kc.load_cases import Datum, LoadCase
 from doe_kc.solver.batch_library import BatchLibrary, BatchMarch, BatchStart
 from doe_kc.solver.compiled import compiled_kernel
 from doe_kc.solver.elimination import EliminationOrder, elimination_order
-from doe_kc.solver.kernel import Buffered, Kernel, kernel
+from doe_kc.solver.kernel import Buffered, kernel
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Failure
 from doe_kc.solver.static import FAR, control_matrix, static_state
@@ -144,7 +145,8 @@ class _BatchSuite:
         heights = (y[:, [COLUMNS.index("wc_z@L")]], y[:, [COLUMNS.index("wc_z@R")]])
         rack = self._value("steering.rack_mm_per_rev")
         half_track = np.abs(self._value("WLC.y@L"))
-        return raised.x[:, 0], raised.z, y, Datum(pads, heights, preload, half_track, rack)
+        fields: tuple[Any, ...] = (pads, heights, preload, half_track, rack)
+        return raised.x[:, 0], raised.z, y, Datum(*fields)
 
     def _branches(
         self, case: LoadCase, x: FloatArray, z: FloatArray, y: FloatArray, datum: Datum

@@ -20,7 +20,7 @@ PIVOT_THRESHOLD = 0.1
 
 @dataclass(frozen=True)
 class EliminationOrder:
-    """row_of, column_of: (m,) equation and unknown of each pivot. The numbers of L by column, U by row and the
+    """row_of, column_of: (m,) equation and unknown of each pivot. Numbers of L by column, U by row and the
     diagonal stand one after the other; place: (nnz,) of the Jacobian's numbers there, -1 for those of none.
 
     l_start, u_start: (m + 1,) first entry of each pivot; l_row, u_column: pivots that entries belong to.
@@ -85,7 +85,7 @@ def _pivots(matrix: FloatArray, pattern: np.ndarray) -> tuple[np.ndarray, np.nda
         share = size / np.where(largest > 0.0, largest, 1.0)
         fill[~there | (share < PIVOT_THRESHOLD)] = np.inf
         least = np.where(fill == fill.min(), share, -1.0)
-        i, j = np.unravel_index(np.argmax(least), least.shape)
+        i, j = divmod(int(np.argmax(least)), least.shape[1])
         rows[[k, k + i]], columns[[k, k + j]] = rows[[k + i, k]], columns[[k + j, k]]
         below, right, pivot = rows[k + 1 :], columns[k + 1 :], (rows[k], columns[k])
         factors = matrix[below, pivot[1]] / matrix[pivot]

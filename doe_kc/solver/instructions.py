@@ -18,7 +18,7 @@ VECTOR_LIBRARY_SINCE = (2, 35)
 
 @dataclass(frozen=True)
 class InstructionSet:
-    """lanes: designs side by side. flags: of the compiler. library: whether glibc's vector library is there."""
+    """lanes: designs side by side. flags: of the compiler. library: whether there is glibc's libmvec."""
 
     lanes: int
     flags: tuple[str, ...]

@@ -84,7 +84,7 @@ class Kernel:
 
     @cached_property
     def coordinates(self) -> int:
-        """How many unknowns, the first, are displacements and turns; constraint forces and the tail follow."""
+        """How many unknowns, the first, are displacements and turns; constraint forces and tail follow."""
         moving = self.scale[: self.nx - self.layout.tail] >= FORCE_SCALE
         return len(moving) if moving.all() else int(np.argmin(moving))
 

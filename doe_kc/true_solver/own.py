@@ -106,11 +106,11 @@ class AxleSolver:
         for (topology, paths), members in groups.items():
             if topology not in self.batched:
                 continue
-            values = np.array([[designs[i][path] for path in paths] for i in members]).reshape(
-                len(members), -1
+            rows = np.array([[designs[i][path] for path in paths] for i in members], dtype=float)
+            table = rows.reshape(len(members), len(paths))
+            outcomes = batch_outcomes(
+                self.axle, topology, self._map(paths), table, self.windows, curves=wanted
             )
-            parameters = self._map(paths)
-            outcomes = batch_outcomes(self.axle, topology, parameters, values, self.windows, curves=wanted)
             for i, outcome in zip(members, outcomes, strict=True):
                 out[i] = outcome
         single = replace(self, curves=wanted)

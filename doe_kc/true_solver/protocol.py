@@ -65,8 +65,8 @@ class BatchSolver(TrueSolver, Protocol):
         ...
 
     def evaluate_all(self, designs: Sequence[Values], *, curves: bool) -> list[Outcome]:
-        """What `evaluate` gives for each, up to rounding, every number checked. curves: whether outcomes shall
-        hold the curves that the solver has.
+        """What `evaluate` gives for each, up to rounding, every number checked. curves: whether outcomes
+        shall hold the curves that the solver has.
 
         InputError when one of them has a path that there is not, or a value that no axle can have.
         """
