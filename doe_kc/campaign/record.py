@@ -34,7 +34,7 @@ def rounded(value: float) -> float:
 
 
 def design_key(values: Mapping[str, float]) -> str:
-    """SHA-256 of the sorted path/value pairs in JSON, 64 hex digits; InputError for one that is not finite."""
+    """SHA-256 of the sorted path/value pairs in JSON, 64 hex digits; InputError for one not finite."""
     for path, value in values.items():
         if not math.isfinite(value):
             raise InputError(f"design: {path} = {value}, expected a finite number.")

@@ -27,14 +27,14 @@ from doe_kc.solver.result import Failure
 from doe_kc.solver.static import FAR, control_matrix, static_state
 from doe_kc.solver.suite import SEEDS, branch_inputs, ordered_cases
 
-COLUMNS = tuple(f"{response}@{side}" for response in RESPONSE_UNITS for side in SIDES)
+RESPONSE_COLUMNS = tuple(f"{response}@{side}" for response in RESPONSE_UNITS for side in SIDES)
 """Outputs that curves are made of, in the order of the columns of every y here."""
 HOLD_WHEEL = "hold_wheel_centre"
 
 
 @dataclass(frozen=True)
 class BatchBranch:
-    """input: (n,) in the case's unit, the same for all designs; y: (d, n, columns) by `COLUMNS`."""
+    """input: (n,) in the case's unit, the same for all designs; y: (d, n, columns) by `RESPONSE_COLUMNS`."""
 
     name: str
     input: FloatArray
@@ -87,7 +87,7 @@ class _BatchSuite:
         self._orders = _reference_orders(axle.topology, base.tobytes())
         if not self._orders.ready:
             self._orders.begin(axle, settings)
-        self._columns = np.array([self._kernel.layout.output_names.index(name) for name in COLUMNS])
+        self._columns = np.array([self._kernel.layout.output_names.index(name) for name in RESPONSE_COLUMNS])
         self._failed = np.zeros(self._designs, dtype=bool)
         self._counts = np.zeros(4, dtype=np.int64)
 
@@ -142,7 +142,7 @@ class _BatchSuite:
         s = np.where(offset == 0.0, 1.0, offset)
         raised = self._march(BatchStart(zero, x0, frozen[:, 0], rest), s, u)
         y = raised.y[:, 0]
-        heights = (y[:, [COLUMNS.index("wc_z@L")]], y[:, [COLUMNS.index("wc_z@R")]])
+        heights = (y[:, [RESPONSE_COLUMNS.index("wc_z@L")]], y[:, [RESPONSE_COLUMNS.index("wc_z@R")]])
         rack = self._value("steering.rack_mm_per_rev")
         half_track = np.abs(self._value("WLC.y@L"))
         fields: tuple[Any, ...] = (pads, heights, preload, half_track, rack)

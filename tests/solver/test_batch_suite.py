@@ -17,7 +17,7 @@ from doe_kc.examples import EXAMPLE_TYPES, example_folder
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases.vertical import Vertical
 from doe_kc.solver.batch_library import BatchLibrary, batch_library
-from doe_kc.solver.batch_suite import COLUMNS, BatchSolution, solve_batch
+from doe_kc.solver.batch_suite import RESPONSE_COLUMNS, BatchSolution, solve_batch
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.library import find_compiler
 from doe_kc.solver.result import Solution
@@ -74,7 +74,7 @@ def one_by_one(axle: Axle, changes: dict[str, FloatArray]) -> Iterator[Solution]
 def assert_the_same(axle: Axle, changes: dict[str, FloatArray], found: BatchSolution) -> None:
     for i, alone in enumerate(one_by_one(axle, changes)):
         assert alone.failure is None and not found.failed[i]
-        columns = [alone.column(name) for name in COLUMNS]
+        columns = [alone.column(name) for name in RESPONSE_COLUMNS]
         for ident, (_, branches) in found.cases.items():
             for one, other in zip(branches, alone.cases[ident].branches, strict=True):
                 np.testing.assert_array_equal(one.input, other.input)
