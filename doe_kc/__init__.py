@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from doe_kc.api.comparison import ComparisonResult, compare
     from doe_kc.api.correlation import CorrelationResult, correlate
     from doe_kc.api.discovery import DiscoveryResult, discover
+    from doe_kc.api.identify import IdentificationResult, identify
     from doe_kc.api.influence import InfluenceResult, influence
     from doe_kc.api.map_rig import map
     from doe_kc.api.measurement import ReductionResult, reduce
@@ -46,6 +47,7 @@ _HOMES = {
     "CorrelationResult": "doe_kc.api.correlation",
     "DiscoveryResult": "doe_kc.api.discovery",
     "DoeKcError": "doe_kc.ground.errors",
+    "IdentificationResult": "doe_kc.api.identify",
     "InfluenceResult": "doe_kc.api.influence",
     "InputError": "doe_kc.ground.errors",
     "ReductionResult": "doe_kc.api.measurement",
@@ -65,6 +67,7 @@ _HOMES = {
     "export_adams": "doe_kc.api.adams",
     "export_kc": "doe_kc.api.adams",
     "import_adams": "doe_kc.api.adams",
+    "identify": "doe_kc.api.identify",
     "influence": "doe_kc.api.influence",
     "init": "doe_kc.api.studies",
     "map": "doe_kc.api.map_rig",
@@ -94,6 +97,7 @@ __all__ = [
     "CorrelationResult",
     "DiscoveryResult",
     "DoeKcError",
+    "IdentificationResult",
     "InfluenceResult",
     "InputError",
     "ReductionResult",
@@ -113,6 +117,7 @@ __all__ = [
     "discover",
     "export_adams",
     "export_kc",
+    "identify",
     "import_adams",
     "influence",
     "init",

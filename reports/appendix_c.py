@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from appendix_c_causes import causes, matrix
+from appendix_c_checks import PUBLISHED, SLIPS, STRONG, identified_matrix, x_reversed
+from appendix_c_signs_text import signs_and_digits
 from appendix_c_text import markdown
 from axes import draw_matrix, figure
 from matplotlib.figure import Figure
@@ -23,12 +25,7 @@ from doe_kc.reports.style import save
 
 HERE = Path(__file__).parent
 AXLE = HERE.parent / "examples" / "front_axle" / "axle.toml"
-PUBLISHED = HERE / "data" / "appendix_c_influence.csv"
-SLIPS = ("upb Tz", "sff Tz", "sfr Tz")
-"""Rows that repeat the row `Fy` of the same bushing: a copying slip, a torsion stiffness does ~nothing."""
 KINEMATIC = ("vertical", "roll", "steer")
-STRONG = 20.0
-"""Percent from which an entry's sign counts."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +127,10 @@ def main() -> None:
     """Compare, write, assert, print the table."""
     found = agreement()
     experiments = causes(read_axle(AXLE), found.own, found.published, appendix_c())
-    text = markdown(found.table, experiments, found.knuckle_caster)
+    turned = x_reversed(found.published)
+    reversed_signed = pd.Series({c: abs(pearson(found.own[c], turned[c])) for c in _ids()})
+    section = signs_and_digits(found.published, found.own, identified_matrix(found.published.index))
+    text = markdown(found.table, experiments, found.knuckle_caster, reversed_signed, section)
     (HERE / "appendix_c.md").write_text(text, encoding="utf-8")
     found.table.to_csv(HERE / "appendix_c.csv", float_format="%.4f")
     save(side_by_side(found), HERE / "appendix_c")

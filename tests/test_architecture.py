@@ -30,6 +30,7 @@ FLOORS = [
     "surrogate_models",
     "correlation",
     "discovery",
+    "identification",
     "study",
     "examples",
     "reports",

@@ -102,6 +102,7 @@ def test_the_commands_named_exist_with_their_options() -> None:
             "simulate",
             "reduce",
             "influence",
+            "identify",
             "sample",
         ),
         *("surrogates", "correlate", "discover", "report", "run", "live"),

@@ -45,5 +45,6 @@ def sound_lines(cars: Sequence[Car], model: CurveSet | None) -> list[str]:
     for car in cars:
         outcome = told(car, None, model)
         words = "; ".join(f"{s} {k}.{c}.{n}" for s, k, c, n in outcome.findings) or "-"
-        out.append(f"{car.folder.parent.parent.name}/{car.folder.name}: {outcome.refusal or words}")
+        name = car.folder.parent.name if car.folder.name == "records" else car.folder.name
+        out.append(f"{name}: {outcome.refusal or words}")
     return out

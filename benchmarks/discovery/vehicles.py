@@ -10,9 +10,11 @@ from doe_kc.axle import Axle, design_parameters, with_values
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS
 from doe_kc.axle_file import read_axle
 from doe_kc.axle_file.write import write_axle
+from doe_kc.axle_types import BUILT_IN, DEFAULT_TYPE
+from doe_kc.examples import example_folder
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"
-TYPE_BASES = ("double_wishbone_front", "five_link_rear")
+TYPE_BASES = tuple(t for t in BUILT_IN if t != DEFAULT_TYPE)
 """Examples of other axle types, for the suites `null` and `type`."""
 BASES = ("example", "shifted", *TYPE_BASES)
 """The shipped axle, or another car of its kind, one for each seed, to set thresholds on; other types."""
@@ -29,20 +31,16 @@ def nominal_axle(base: str, seed: int) -> Axle:
     if base not in BASES:
         raise ValueError(f"base {base!r}, expected one of {', '.join(BASES)}")
     if base in TYPE_BASES:
-        return read_axle(_example_of(base))
+        return read_axle(example_folder(base) / EXAMPLE.name)
     axle = read_axle(EXAMPLE)
     return axle if base == "example" else _shifted(axle, seed)
-
-
-def _example_of(axle_type: str) -> Path:
-    return EXAMPLE.parents[1] / axle_type / EXAMPLE.name
 
 
 def write_nominal(axle: Axle, path: Path) -> Path:
     """The model as its own file; `read_axle(path)` gives the same values."""
     structure = axle.topology.structure
     known = structure is not None and structure.type in TYPE_BASES
-    return write_axle(axle, _example_of(structure.type) if known else EXAMPLE, path)
+    return write_axle(axle, example_folder(structure.type) / EXAMPLE.name if known else EXAMPLE, path)
 
 
 def _shifted(axle: Axle, seed: int) -> Axle:

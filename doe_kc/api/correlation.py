@@ -29,7 +29,7 @@ from doe_kc.study import Study
 from doe_kc.workflow.correlate import CorrelationChoices
 from doe_kc.workflow.correlate import correlate as run_correlation
 from doe_kc.workflow.measure import Reduced, study_records
-from doe_kc.workflow.reload_correlation import write_run
+from doe_kc.workflow.rebuild import write_run
 from doe_kc.workflow.write_correlation import write_correlation
 
 if TYPE_CHECKING:

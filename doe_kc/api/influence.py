@@ -7,8 +7,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
-import numpy as np
-
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import Progress, as_study, step_counter
 from doe_kc.ground.errors import InputError
@@ -73,29 +71,11 @@ class InfluenceResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Heat map of the percent matrix, blue negative, orange positive, numbers from 5 % on."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.influence_figures import ANNOTATE, diverging
+        from doe_kc.reports.matrix_plot import draw_matrix_plot, matrix_size
 
         frame = self.to_frame()
-        rows, columns = frame.shape
-        ax = axes_or_new(ax, (max(6.0, 2.6 + 0.36 * columns), max(3.6, 2.4 + 0.165 * rows)))
-        values = frame.to_numpy()
-        ax.set_facecolor("#D9DCDF")
-        mesh = ax.pcolormesh(
-            np.ma.masked_invalid(values),
-            cmap=diverging(),
-            vmin=-100.0,
-            vmax=100.0,
-            edgecolors="#E3E6E9",
-            lw=0.3,
-        )
-        for i, j in np.argwhere(np.abs(np.nan_to_num(values)) >= ANNOTATE):
-            ax.text(j + 0.5, i + 0.5, f"{values[i, j]:.0f}", ha="center", va="center", fontsize=5.5)
-        ax.set_xticks(np.arange(columns) + 0.5, list(frame.columns), rotation=90, fontsize=7)
-        ax.set_yticks(np.arange(rows) + 0.5, list(frame.index), fontsize=7)
-        ax.tick_params(length=0)
-        ax.invert_yaxis()
-        ax.set_title(f"Parameter influence: {self.study.name}", fontsize="medium")
-        ax.figure.colorbar(mesh, ax=ax, shrink=0.5, label="percent of the column's largest")
+        ax = axes_or_new(ax, matrix_size(frame))
+        draw_matrix_plot(ax, frame, f"Parameter influence: {self.study.name}")
         return ax
 
     def write(self, out: str | PathLike[str], *, workers: int | None = None) -> list[Path]:

@@ -18,6 +18,10 @@ MIN_DISTANCE = 1.0
 FARTHEST = 1e5
 """mm; no car is 100 m long: such a coordinate is in another unit."""
 
+NEAR_CENTRE_PLANE = 30.0
+"""mm; a joint this near to y = 0, as that of a cross-beam's halves, may be moved across by tuning. The
+wrong sign of a joint outside of it is refused."""
+
 
 def point(axle: Axle, name: str, side: str = "L") -> FloatArray:
     """(3,) hardpoint of a side in left-hand coordinates, mm; side empty: of a single one, as it is."""
@@ -40,7 +44,7 @@ def check_geometry(axle: Axle, source: str) -> None:
             _check_apart(axle, names, side, why, source)
     for side in "LR":
         for name in structure.design_points:
-            if point(axle, name, side)[1] > 0:
+            if point(axle, name, side)[1] > NEAR_CENTRE_PLANE:
                 raise InputError(
                     f"{source}: hardpoint {name}{OF_SIDE[side]} lies on the other side of the car; "
                     "expected y < 0 on the left (y to the right, in mm). Check its sign."

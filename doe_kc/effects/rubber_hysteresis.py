@@ -3,19 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar
+
+import numpy as np
 
 from doe_kc.axle.model import BUSHINGS, Axle
 from doe_kc.axle.places import Places, places_of
+from doe_kc.axle.sliders import yield_ratios
 from doe_kc.axle.structure import of_side
 from doe_kc.effects._base import Effect, Option, Part, effect
-from doe_kc.effects._dynamic_stiffness import dynamic_stiffness
 from doe_kc.effects._friction import SPREAD
 from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import checked_number, named_numbers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.errors import InputError, nearest
+
+
+@dataclass(frozen=True)
+class DynamicStiffness:
+    """ratio: secant stiffness, peak force over peak travel, over the elastic stiffness at zero; >= 1.
+    loss_angle: deg, its sine the work of a loop over pi times peak force times peak travel."""
+
+    ratio: float
+    loss_angle: float
+
+
+def dynamic_stiffness(
+    share: float, yield_mm: float, spread: float, amplitude: float, *, elastic: float = 1.0
+) -> DynamicStiffness:
+    """Of a steady loop of +-amplitude, mm, > 0, of one axis. elastic: secant stiffness of the elastic law
+    there over that at zero.
+
+    Slider j takes 4 k y (a - y) a loop beyond its yield distance y, nothing before.
+    """
+    yields = yield_mm * yield_ratios(spread)
+    strength = share * yield_mm / yields.size
+    ratio = elastic + float(np.sum(strength * np.minimum(1.0, amplitude / yields))) / amplitude
+    work = 4.0 * strength * float(np.sum(np.maximum(amplitude - yields, 0.0)))
+    return DynamicStiffness(ratio, float(np.degrees(np.arcsin(work / (np.pi * ratio * amplitude**2)))))
+
 
 NUMBERS = {"share": "share", "yield_mm": "yield", "spread": "spread"}
 """Key of the table -> last part of the axle value, as in `llr.rubber.share`."""

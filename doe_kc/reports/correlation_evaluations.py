@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,40 +96,31 @@ def evaluation_table(correlation: Correlation) -> Table[EvaluationRow]:
     )
 
 
+def _of_history(
+    key: str,
+    label: str,
+    values: Callable[[History], FloatArray],
+    digits: Callable[[float], str],
+    width: float,
+) -> Column[EvaluationRow]:
+    """values: (n,) of the whole run, of which a row shows its own."""
+
+    def value(row: EvaluationRow) -> float:
+        return float(values(row.past)[row.index])
+
+    return Column(key, label, value, lambda row: digits(value(row)), width)
+
+
 EVALUATION_FIGURES: tuple[Column[EvaluationRow], ...] = (
     Column("evaluation", "Evaluation", lambda r: r.index + 1, "0"),
     Column("origin", "Origin", lambda r: r.past.origin[r.index], width=23),
-    Column(
-        "merit",
-        "Merit",
-        lambda r: float(r.past.rating[r.index]),
-        lambda r: four_digits(float(r.past.rating[r.index])),
-        13,
-    ),
-    Column(
-        "best_so_far",
-        "Best so far",
-        lambda r: float(r.past.best[r.index]),
-        lambda r: four_digits(float(r.past.best[r.index])),
-        13,
-    ),
+    _of_history("merit", "Merit", lambda h: h.rating, four_digits, 13),
+    _of_history("best_so_far", "Best so far", lambda h: h.best, four_digits, 13),
     Column("feasible", "Feasible", lambda r: bool(r.past.feasible[r.index]), width=9),
     Column("chosen", "Chosen", lambda r: r.chosen, width=9),
     Column("failed_because", "Failed because", lambda r: r.evaluated.outcome.reason, width=34),
-    Column(
-        "predicted_merit",
-        "Predicted merit",
-        lambda r: float(r.past.predicted[r.index]),
-        lambda r: four_digits(float(r.past.predicted[r.index])),
-        13,
-    ),
-    Column(
-        "predicted_sd",
-        "Predicted sd",
-        lambda r: float(r.past.sd[r.index]),
-        lambda r: three_digits(float(r.past.sd[r.index])),
-        12,
-    ),
+    _of_history("predicted_merit", "Predicted merit", lambda h: h.predicted, four_digits, 13),
+    _of_history("predicted_sd", "Predicted sd", lambda h: h.sd, three_digits, 12),
     Column("seconds", "Seconds", lambda r: r.evaluated.outcome.seconds, "0.00", 9),
 )
 

@@ -28,10 +28,13 @@ SIZE_WORDS: Mapping[str, str] = {
     "offset_mm": "offset",
     "reference_N": "force at which it grows",
     "scale": "stiffness factor",
+    "shares": "share of slider",
+    "exponent": "exponent of the law",
+    "spread": "spread of the law",
 }
 """Option of an effect -> what it is called; others by their own names without the unit."""
 AXIS_LETTERS = "XYZ"
-"""Of a list option's components."""
+"""Of a list option's components; a shape's are numbered."""
 
 
 def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
@@ -54,12 +57,15 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
 
 
 def size_name(size: Size, location: str | None = None) -> str:
-    """`stiffness in camber`, `LLR, X`; without the location, which is said already."""
-    if size.index is not None and size.key == location:
-        return AXIS_LETTERS[size.index]
+    """`stiffness in camber`, `LLR, X`, `share of slider 4`; without the location, which is said already."""
     suffix = "_" + size.unit.replace("/", "_")
     name = SIZE_WORDS.get(size.key, size.key.removesuffix(suffix).replace("_", " "))
-    return name if size.index is None else f"{name}, {AXIS_LETTERS[size.index]}"
+    if size.index is None:
+        return name
+    if size.shape:
+        return f"{name} {size.index + 1}"
+    axis = AXIS_LETTERS[size.index]
+    return axis if size.key == location else f"{name}, {axis}"
 
 
 def sure_words(discovery: Discovery, finding: Finding) -> str:

@@ -16,7 +16,7 @@ from doe_kc.workflow.answer import Answer, write_answer
 from doe_kc.workflow.compare import write_comparison
 from doe_kc.workflow.influence import StudyInfluence, write_influence
 from doe_kc.workflow.measure import Reduced, write_reduced
-from doe_kc.workflow.reload_correlation import write_chain
+from doe_kc.workflow.rebuild import write_chain
 from doe_kc.workflow.twin_discovery import DiscoveryGround
 from doe_kc.workflow.write_correlation import write_correlation
 from doe_kc.workflow.write_discovery import write_discovery

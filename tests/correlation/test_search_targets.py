@@ -143,3 +143,19 @@ def test_the_misfit_is_tempered_by_what_no_design_explains(start: Outcome) -> No
     wild = replace(case.likelihood, curves=(odd, *case.likelihood.curves[1:]))
     other = misfit_term(wild, case.space, start, expansion)
     assert other is not None and other.weight < 0.01 * term.weight
+
+
+def test_a_default_interval_narrower_than_the_noise_is_widened_a_stated_one_is_not(start: Outcome) -> None:
+    noisy = CharacteristicOptions(match=CAMBER, sd=1.0)
+    stated = CharacteristicOptions(match=CAMBER, sd=1.0, low=0.0, high=0.5)
+    for option, low, high in ((noisy, -3.0, 3.0), (stated, 0.0, 0.5)):
+        plain = targets(option)
+        value = of(plain, CAMBER).value
+        measured_ = of(search_targets(plain, baseline(plain, start), objective="measured"), CAMBER).constraint
+        thesis = of(search_targets(plain, baseline(plain, start), objective="thesis"), CAMBER).constraint
+        shift = value if option is noisy else 0.0
+        assert (measured_.low, measured_.high) == pytest.approx((shift + low, shift + high))
+        assert (thesis.low, thesis.high) == (
+            of(plain, CAMBER).constraint.low,
+            of(plain, CAMBER).constraint.high,
+        )

@@ -7,7 +7,7 @@ import pytest
 
 from doe_kc.axle.sliders import yield_ratios
 from doe_kc.effects import EFFECTS
-from doe_kc.effects._dynamic_stiffness import dynamic_stiffness
+from doe_kc.effects.rubber_hysteresis import dynamic_stiffness
 
 STIFFNESS = 1450.0
 

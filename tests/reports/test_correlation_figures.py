@@ -9,11 +9,10 @@ import pytest
 
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.numbers import short
-from doe_kc.reports.correlation_bars import parameter_figure
 from doe_kc.reports.correlation_convergence import convergence_figure
 from doe_kc.reports.correlation_curves import case_views, curve_figure
 from doe_kc.reports.correlation_dna import DNA_REACH, dna_figure
-from doe_kc.reports.correlation_figures import write_correlation_figures
+from doe_kc.reports.correlation_figures import parameter_figure, write_correlation_figures
 from doe_kc.reports.panel import Panel
 from tests.correlation.cases import measured
 from tests.reports.correlations import CAR, all_three, odd, real, typed

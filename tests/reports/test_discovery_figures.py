@@ -12,10 +12,14 @@ from matplotlib.collections import PolyCollection
 from doe_kc.ground.errors import RunError
 from doe_kc.reports.discovery_curves import curve_figure, worst_views
 from doe_kc.reports.discovery_evidence import evidence_figure, evidence_steps
-from doe_kc.reports.discovery_figures import discovery_jobs, write_discovery_figures
+from doe_kc.reports.discovery_figures import (
+    discovery_jobs,
+    gain_words,
+    held_out_figure,
+    write_discovery_figures,
+)
 from doe_kc.reports.discovery_gaps import gap_figure
 from doe_kc.reports.discovery_heat_map import discovery_grids, heat_map_figure, signed
-from doe_kc.reports.discovery_held_out import gain_words, held_out_figure
 from doe_kc.reports.discovery_isolability import isolability
 from doe_kc.reports.discovery_isolability_figure import isolability_figure
 from doe_kc.reports.discovery_parameter_figure import moved_parameters, parameter_figure

@@ -7,8 +7,7 @@ from itertools import pairwise
 import pytest
 
 from doe_kc.reports.effect_words import effect_words, effect_words_table, size_name
-from doe_kc.reports.gap_steps import gap_steps
-from doe_kc.reports.gap_steps_figure import gap_steps_figure
+from doe_kc.reports.gap_steps import gap_steps, gap_steps_figure
 from tests.discovery.cases import discovery
 
 

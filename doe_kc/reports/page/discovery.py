@@ -34,8 +34,7 @@ from doe_kc.reports.discovery_parameter_figure import arrow_colour
 from doe_kc.reports.discovery_parameters import TunedParameter, tuned_table
 from doe_kc.reports.discovery_words import HEADLINES, contrast_words, own_sentences
 from doe_kc.reports.effect_words import effect_words, effect_words_table
-from doe_kc.reports.gap_steps import gap_steps
-from doe_kc.reports.gap_steps_figure import gap_steps_figure
+from doe_kc.reports.gap_steps import gap_steps, gap_steps_figure
 from doe_kc.reports.page.axle import svg_data
 from doe_kc.reports.page.discovery_candidates import (
     candidates_section,

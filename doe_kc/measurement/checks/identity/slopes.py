@@ -80,15 +80,15 @@ def measured_slopes(test: RigTest) -> SlopeTable:
 
 
 def model_slopes(curves: CurveSet | None) -> FloatArray:
-    """(8, 7) left wheel of a model; nan where it has no such curve."""
-    out = np.full((len(CASE_ORDER), len(RIG_RESPONSES)), np.nan)
+    """(8, 7, 2) by `CASE_ORDER`, `RIG_RESPONSES`, left and right; nan where the model has no such curve."""
+    out = np.full((len(CASE_ORDER), len(RIG_RESPONSES), 2), np.nan)
     for case in [] if curves is None else curves.cases.values():
         factor = COUNTER_PHASE_DEG if case.load_case == "roll" and case.input_unit == "mm" else 1.0
         near = np.abs(case.input) <= LOAD_CASES[case.load_case].window * factor * 1.001
         for response in RIG_RESPONSES:
             if response in case.mean and near.sum() > 1:
-                line = _line_slope(case.input[near], case.mean[response][:1][:, near])
-                out[row(case.load_case), column(response)] = line[0] * factor
+                line = _line_slope(case.input[near], case.mean[response][:, near])
+                out[row(case.load_case), column(response)] = line * factor
     return out
 
 

@@ -24,7 +24,7 @@ from doe_kc.study import Study, read_study
 from doe_kc.targets import CharacteristicOptions
 from doe_kc.true_solver.make import solver_for
 from doe_kc.workflow.measure import Reduced
-from doe_kc.workflow.reload_correlation import recall, write_run
+from doe_kc.workflow.rebuild import recall, write_run
 from tests.correlation.cases import measured
 from tests.reference import EXAMPLE
 from tests.reports.correlations import CAR, ODD_WEIGHTS, odd, real

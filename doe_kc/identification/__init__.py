@@ -1,0 +1,1 @@
+"""An axle from its influence matrix."""
