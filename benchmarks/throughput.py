@@ -134,16 +134,16 @@ def main() -> None:
             *sensitivity,
             "",
             f"Suites of {SIDE_BY_SIDE} designs over the default bounds, each alone and side by side in "
-            f"{own_instruction_set().lanes} lanes (wanted: 1 ms in a batch), CPU ms a design; handed on: what "
-            "has no solution side by side and is solved alone again:",
+            f"{own_instruction_set().lanes} lanes (wanted: 1 ms in a batch), CPU ms a design; handed on: "
+            "what has no solution side by side and is solved alone again:",
             "",
             "| axle | alone | side by side | ratio | handed on |",
             "|---|---|---|---|---|",
             *batches,
             "",
             f"Campaigns of {DESIGNS} designs over the default bounds, two processes: solved, reduced, "
-            "checked and stored, least of three (wanted on two idle cores: 10,000 in 8 s, with curves in 14 s, "
-            "that is 1.6 and 2.8 ms of CPU):",
+            "checked and stored, least of three (wanted on two idle cores: 10,000 in 8 s, with curves in "
+            "14 s, that is 1.6 and 2.8 ms of CPU):",
             "",
             "| axle | curves stored | CPU ms a design | wall ms a design | kB a design |",
             "|---|---|---|---|---|",

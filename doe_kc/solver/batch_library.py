@@ -16,7 +16,7 @@ from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect, c_sources
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.kernel import MARCHED, Kernel, kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of, stored_library
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 from doe_kc.solver.newton import NewtonSettings
 
 BATCH_SOURCE = Path(__file__).with_name("batch.c")
@@ -124,17 +124,6 @@ def _batch_sources(topology: Topology, instructions: InstructionSet) -> dict[str
 
 def _kind(instructions: InstructionSet) -> str:
     return f"batch kernel, {instructions.name}"
-
-
-def stored_batch_library(topology: Topology) -> bool:
-    """Whether the cache has the library of a topology for this processor."""
-    if os.environ.get(COMPILE_VARIABLE) == "0":
-        return False
-    own = own_instruction_set()
-    try:
-        return stored_library(topology, _kind(own), own.build_flags) is not None
-    except CompileError:
-        return False
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
