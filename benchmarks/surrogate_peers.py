@@ -1,20 +1,23 @@
 """Surrogates of the example axle beside SMT, scikit-learn, BoTorch and sparse polynomials.
 
-Peers that are not installed are left out; `python benchmarks/surrogate_peers.py`, one thread, half an hour.
+`python benchmarks/surrogate_peers.py [MODEL ...]`, one thread, half an hour. Peers that are not installed are
+left out. Rows are kept in results/surrogate_peers.csv as they come; one that is there is not measured again,
+except for the models named.
 """
 
 from __future__ import annotations
 
+import csv
 import sys
 import time
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, fields
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-from _common import example_axle, machine, publish
+from _common import RESULTS, example_axle, machine, publish
 
 import numpy as np  # isort: skip  # after the thread limits
 from scipy.stats import qmc
@@ -31,8 +34,10 @@ from doe_kc.surrogate_models.validation import NOMINAL_WIDTH
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import Space, VariableOptions, build_space
 
-SEEDS = {50: (1, 2, 3), 100: (1, 2), 200: (1,), 400: (1,)}
-TESTS = 500
+SEEDS = {50: (11, 12, 13), 100: (11, 12), 200: (11,), 400: (11,)}
+"""Designs that no setting of a model was chosen on; nor were the tests."""
+TESTS, TEST_SEED = 500, 199
+ROWS = RESULTS / "surrogate_peers.csv"
 FEW = slice(None, None, 6)
 """Five of the thirty characteristics, which everyone is measured on: some peers take minutes an output."""
 MOST_ROWS = {"SMT KRG": 50}
@@ -64,7 +69,7 @@ def truth() -> Truth:
         designs = {
             (n, s): (x := hypercube(space, n, seed=s), values(x)) for n, seeds in SEEDS.items() for s in seeds
         }
-        test = hypercube(space, TESTS, seed=99)
+        test = hypercube(space, TESTS, seed=TEST_SEED)
         started = time.process_time()
         tests = values(test)
         suite = (time.process_time() - started) / TESTS
@@ -183,9 +188,33 @@ def contenders(known: Truth) -> dict[str, Contender]:
     }
 
 
-def row(name: str, one: Contender, n: int, known: Truth) -> str:
-    """Means over seeds and outputs; the error's standard deviation over seeds."""
-    errors, every, covered, lowest, within, seconds = [], [], [], [], [], []
+@dataclass(frozen=True)
+class Row:
+    """Means over seeds and outputs. spread: standard deviation of the error over several seeds. every: error
+    over all characteristics, of models that are fitted to all. seconds: of a processor, an output.
+    """
+
+    model: str
+    designs: int
+    error: float
+    spread: float | None
+    every: float | None
+    coverage: float
+    lowest: float
+    within: float
+    seconds: float
+
+    def __str__(self) -> str:
+        spread = "" if self.spread is None else f" ± {self.spread:.3f}"
+        every = "" if self.every is None else f"{self.every:.4f}"
+        return (
+            f"| {self.model} | {self.designs} | {self.error:.4f}{spread} | {every} | {self.coverage:.3f} | "
+            f"{self.lowest:.2f} | {self.within:.2f} | {self.seconds:.3f} |"
+        )
+
+
+def measured(name: str, one: Contender, n: int, known: Truth) -> Row:
+    errors, every, inside, seconds = [], [], [], []
     x_test, y_test = known.test
     few = np.arange(y_test.shape[1])[FEW]
     for seed in SEEDS[n][: FEWER_SEEDS.get(name)]:
@@ -199,16 +228,43 @@ def row(name: str, one: Contender, n: int, known: Truth) -> str:
         missed = np.sqrt(np.square(true - mean).mean(axis=0) / true.var(axis=0))
         errors.append(float((missed[few] if one.whole else missed).mean()))
         every.append(float(missed.mean()))
-        inside = (np.abs(true - mean) <= NOMINAL_WIDTH * np.sqrt(variance)).mean(axis=0)
-        covered.append(float(inside.mean()))
-        lowest.append(float(inside.min()))
-        within.append(float((np.abs(inside - 0.95) <= 0.03).mean()))
-    spread = f" ± {np.std(errors, ddof=1):.3f}" if len(errors) > 1 else ""
-    whole = f"{np.mean(every):.4f}" if one.whole else ""
-    return (
-        f"| {name} | {n} | {np.mean(errors):.4f}{spread} | {whole} | {np.mean(covered):.3f} | "
-        f"{min(lowest):.2f} | {np.mean(within):.2f} | {np.mean(seconds):.3f} |"
+        inside.append((np.abs(true - mean) <= NOMINAL_WIDTH * np.sqrt(variance)).mean(axis=0))
+    covered = np.array(inside)
+    return Row(
+        model=name,
+        designs=n,
+        error=float(np.mean(errors)),
+        spread=float(np.std(errors, ddof=1)) if len(errors) > 1 else None,
+        every=float(np.mean(every)) if one.whole else None,
+        coverage=float(covered.mean()),
+        lowest=float(covered.min()),
+        within=float((np.abs(covered - 0.95) <= 0.03).mean()),
+        seconds=float(np.mean(seconds)),
     )
+
+
+def stored() -> dict[tuple[int, str], Row]:
+    """Rows of earlier runs by designs and model."""
+    if not ROWS.is_file():
+        return {}
+
+    def number(text: str) -> float | None:
+        return float(text) if text else None
+
+    with ROWS.open(encoding="utf-8", newline="") as file:
+        rows = [
+            Row(r["model"], int(r["designs"]), float(r["error"]), number(r["spread"]), number(r["every"]),
+                *(float(r[k]) for k in ("coverage", "lowest", "within", "seconds")))
+            for r in csv.DictReader(file)
+        ]  # fmt: skip
+    return {(r.designs, r.model): r for r in rows}
+
+
+def keep(rows: dict[tuple[int, str], Row]) -> None:
+    with ROWS.open("w", encoding="utf-8", newline="") as file:
+        table = csv.DictWriter(file, [f.name for f in fields(Row)])
+        table.writeheader()
+        table.writerows({k: "" if v is None else v for k, v in asdict(r).items()} for r in rows.values())
 
 
 def main() -> None:
@@ -219,12 +275,15 @@ def main() -> None:
     for module in ("smt.surrogate_models", "sklearn.gaussian_process", "botorch.models"):
         if find_spec(module.partition(".")[0]) is not None:
             import_module(module)  # seconds that are no model's
-    lines: list[str] = []
+    again = set(sys.argv[1:]) & set(field)
+    rows = {key: row for key, row in stored().items() if row.model not in again}
     for n in SEEDS:
         for name, one in field.items():
-            if name not in missing and n <= MOST_ROWS.get(name, 400):
-                lines.append(row(name, one, n, known))
-                sys.stderr.write(lines[-1] + "\n")
+            if name not in missing and n <= MOST_ROWS.get(name, 400) and (n, name) not in rows:
+                rows[n, name] = measured(name, one, n, known)
+                keep(rows)
+                sys.stderr.write(f"{rows[n, name]}\n")
+    lines = [str(rows[n, name]) for n in SEEDS for name in field if (n, name) in rows]
     d, m = known.trend.slope.shape[1], len(known.trend.value)
     publish(
         "surrogate_peers",

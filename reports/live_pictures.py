@@ -14,6 +14,7 @@ ROOT = Path(__file__).parents[1]
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 
+from tests.live.outside import outside_study  # noqa: E402
 from tests.live.served import serving  # noqa: E402
 from tests.reports.chromium import Page  # noqa: E402
 
@@ -37,6 +38,11 @@ WALK = {
     ],
 }
 """Picture -> what is done before it, one after the other."""
+DRAGGED = (
+    "(() => { const r = live.rows.get('RIB.z'); r.range.value = r.slider.start + 1.2; "
+    "r.range.dispatchEvent(new Event('input')); })()"
+)
+"""A slider that a hand still holds."""
 OTHERS = {"live_double_wishbone": "double_wishbone_front", "live_five_link": "five_link_rear"}
 
 
@@ -68,6 +74,13 @@ def main() -> None:
                 page.send("Page.navigate", url=served.address)
                 page.wait("document.body && document.body.dataset.seq && live.influence")
                 take(page, name)
+        outside = outside_study(folder / "outside", designs=14)
+        with serving(outside.out, "--port", "18690", study=outside.folder) as served:
+            page.send("Page.navigate", url=served.address)
+            page.wait("document.body && document.body.dataset.seq && live.influence")
+            page.run(DRAGGED)
+            page.wait("live.painted >= live.sent && document.body.classList.contains('approximate')")
+            take(page, "live_outside")
         page.close()
 
 

@@ -21,8 +21,9 @@ from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch, threshold
 from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
-from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.certainty import certain, name_doubt
+from doe_kc.discovery.verdict.exchange import exchanged, temper
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothesis_statuses
 from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.verdict.findings import findings
@@ -45,12 +46,11 @@ def discover(
     return_large_arrays()
     workers = workers or DiscoveryWorkers()
     search, widened = search_within_bounds(model, library, workers)
+    search, compared = exchanged(search, library, workers)
     nominal = model.residual(model.centre)
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
-    temper = max(1.0, residual_map.mean_square)
-    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper)
-    compared = alternatives(search, temper, workers)
+    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper(search))
     members = findings(search, compared)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
     predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()

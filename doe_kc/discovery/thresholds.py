@@ -165,9 +165,9 @@ effect 2, 3 and 10 gave the same verdict and sizes at the same time within a ten
 RIVAL_CORRELATION = 0.3
 """-, |correlation| of what two effects explain, from which they are rivals. Below, both would be needed."""
 REFIT_SHARE = 0.2
-"""-, share of the best screened gain below which a hypothesis is not refitted. In its refit it
-would have to win five times as much: on a car with one effect 0.5 and 0.05 gave the same verdict and
-sizes."""
+"""-, share of what the best explains, by screened gain and by squared correlation, below which a hypothesis
+is not refitted. In its refit it would have to win five times as much: on a car with one effect 0.5 and 0.05
+gave the same verdict and sizes."""
 PLACES_REFITTED = 2
 """-, places of the same effect that are refitted at most. So that one effect does not fill the list."""
 ABSORBED_SHARE = 0.95

@@ -177,8 +177,7 @@ def _told(
     rows.sort(key=lambda row: -row[0])
     leaning = sum(bool(s.note) for _, s in rows)
     sentence = (
-        f"The gap falls from {number(first.gap)} to {number(answer.gap)} standard deviations, "
-        "confirmed by the true model"
+        f"The gap falls from {number(first.gap)} to {number(answer.gap)} standard deviations, {_sure(answer)}"
     )
     if leaning:
         sentence += f"; {leaning} of {len(rows)} sliders end at a bound: widen it if the part allows"
@@ -190,6 +189,10 @@ def _told(
         if may
     }
     return Advised("best_step", f"{sentence}.", tuple(s for _, s in rows), adopt)
+
+
+def _sure(answer: LiveAnswer) -> str:
+    return "confirmed by the true model" if answer.true else "by the surrogate; the outside solver is asked"
 
 
 def most_helpful(slopes: LiveSlopes, space: Space, free: Sequence[bool]) -> Advised:

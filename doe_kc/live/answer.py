@@ -1,4 +1,4 @@
-"""What the true model answers to the sliders, and the exact slopes of that answer."""
+"""What the model answers to the sliders, and the slopes of that answer."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import with_values
 from doe_kc.axle.topology import Topology
 from doe_kc.correlation.linearization import Linearization, linearize
 from doe_kc.curves import CurveSet
@@ -19,19 +18,22 @@ from doe_kc.effects import observed
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.live.model import LiveModel
+from doe_kc.live.outside_model import half_track_of
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import library_for, solve
 from doe_kc.targets import Rating, rate, score
-from doe_kc.true_solver.outcome import from_curves
+from doe_kc.true_solver.outcome import Outcome, from_curves
 
 
 @dataclass(frozen=True)
 class LiveAnswer:
     """Of one design. point: (d,) its place in the model's space, which the sliders may leave.
 
-    characteristics: (all registered,). residual: (M,) whitened, empty without data. rating: None without
-    targets. seconds: wall time.
+    axle, solution: of the true model; of an outside solver those of the package's own, whose shape is drawn.
+    base: the twin's answer that a surrogate's is on top of. characteristics: (all registered,). residual:
+    (M,) whitened, empty without data. rating: None without targets. seconds: wall time. true: whether the
+    true model gave it, not a surrogate.
     """
 
     model: LiveModel
@@ -39,11 +41,13 @@ class LiveAnswer:
     values: Mapping[str, float]
     point: FloatArray
     solution: Solution
+    base: Outcome | None
     curves: CurveSet
     characteristics: FloatArray
     residual: FloatArray
     rating: Rating | None
     seconds: float
+    true: bool = True
 
     @property
     def gap(self) -> float:
@@ -83,18 +87,39 @@ class Compilation:
 
 
 def solve_live(model: LiveModel, values: Mapping[str, float], compilation: Compilation) -> LiveAnswer | str:
-    """The answer of the true model to slider values (absolute, those that moved), or why there is none."""
+    """The answer to slider values (absolute, those that moved), or why there is none: of the true model, of
+    an outside solver that of the surrogate of its stored designs."""
+    return _answer(model, values, compilation, None)
+
+
+def answer_from(
+    model: LiveModel, values: Mapping[str, float], compilation: Compilation, outcome: Outcome
+) -> LiveAnswer | str:
+    """The answer that an outside solver gave; outcome: its curves and characteristics."""
+    return outcome.reason or _answer(model, values, compilation, outcome)
+
+
+def _answer(
+    model: LiveModel, values: Mapping[str, float], compilation: Compilation, outside_outcome: Outcome | None
+) -> LiveAnswer | str:
     started = time.perf_counter()
     point = model.space.unit({v.path: values.get(v.path, v.start) for v in model.space.variables})
     everything = {**model.space.values(point), **values}
     try:
-        axle = with_values(model.axle, everything)
+        axle = model.axle_at(everything)
     except InputError as error:
         return str(error)
     solution = solve(axle, throw=False, compiled=compilation.use_now(axle.topology))
+    outside = model.outside
+    if solution.failure is not None and outside is not None and (outside_outcome or outside.twin is None):
+        axle, solution = model.axle, solve(model.axle, throw=False)  # nothing but a drawing depends on it
     if solution.failure is not None:
         return str(solution.failure)
-    outcome = from_curves(observed(axle, curve_set(solution)), model.windows, 0.0)
+    outcome = own = from_curves(observed(axle, curve_set(solution)), model.windows, 0.0)
+    base = None
+    if outside is not None:
+        base = None if outside.twin is None else own
+        outcome = outside_outcome or outside.outcome(point, half_track_of(outside, everything), base)
     if outcome.failed or outcome.curves is None:
         return outcome.reason
     residual = np.zeros(0)
@@ -109,11 +134,13 @@ def solve_live(model: LiveModel, values: Mapping[str, float], compilation: Compi
         values=everything,
         point=point,
         solution=solution,
+        base=base,
         curves=outcome.curves,
         characteristics=outcome.characteristics,
         residual=residual,
         rating=rating,
-        seconds=time.perf_counter() - started,
+        seconds=time.perf_counter() - started if outside_outcome is None else outside_outcome.seconds,
+        true=outside is None or outside_outcome is not None,
     )
 
 
@@ -134,11 +161,16 @@ class LiveSlopes:
 
 
 def slopes_of(answer: LiveAnswer) -> LiveSlopes:
-    """Exact sensitivities of an answer to all sliders; nothing is solved again."""
-    model = answer.model
-    expansion = linearize(
-        model.axle, model.space, answer.point, model.windows, solve=lambda _: answer.solution
-    )
+    """Sensitivities of an answer to all sliders, exact but for those of an outside solver, which are its
+    surrogate's; nothing is solved again."""
+    model, outside = answer.model, answer.model.outside
+    if outside is None:
+        expansion = linearize(
+            model.axle, model.space, answer.point, model.windows, solve=lambda _: answer.solution
+        )
+    else:
+        half_track = half_track_of(outside, answer.values)
+        expansion = outside.expansion(answer.point, half_track, answer.solution, answer.base)
     jacobian = np.zeros((0, model.space.dimension))
     if model.likelihood is not None and model.likelihood.size:
         jacobian = model.likelihood.jacobian(expansion.curves, expansion.characteristics)

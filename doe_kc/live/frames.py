@@ -55,13 +55,12 @@ class PageFrame:
 
 
 def drawn_curves(curves: CurveSet) -> FloatArray:
-    """All mean curves, then all half-widths: load cases in their order, responses, left and right."""
-    parts = [
-        branches[response].ravel()
-        for branches in (
-            *(case.mean for case in curves.cases.values()),
-            *(case.half_width for case in curves.cases.values()),
-        )
-        for response in RESPONSE_UNITS
-    ]
+    """All mean curves, then all half-widths: load cases in their order, responses, left and right; nan for
+    responses that an outside solver leaves out."""
+    parts = []
+    for half in (False, True):
+        for case in curves.cases.values():
+            branches = case.half_width if half else case.mean
+            nothing = np.full((2, case.input.size), np.nan)
+            parts += [branches.get(response, nothing).ravel() for response in RESPONSE_UNITS]
     return np.concatenate(parts)

@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, ValidationError
 
+from doe_kc.axle.parameters import with_values
 from doe_kc.axle_file.write import write_axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError
@@ -17,9 +18,12 @@ from doe_kc.ground.fields import Finite, Pair, Strict
 from doe_kc.ground.files import read_bytes
 from doe_kc.ground.output import write_json, write_whole
 from doe_kc.live.answer import LiveAnswer, solve_live
+from doe_kc.live.confirmation import stored_answer
+from doe_kc.live.effect_switches import EffectSizes, effect_switches
 from doe_kc.live.session import Session
 from doe_kc.live.state import MOST_SNAPSHOTS, LiveState, Snapshot
 from doe_kc.live.static_page import static_page
+from doe_kc.live.tasks import SavedSizes
 from doe_kc.reports.render.workbook import new_book, table_sheet, write_book
 from doe_kc.reports.table import Column, SheetLayout, Table, row_digits, three_digits
 
@@ -31,7 +35,7 @@ class SavedDesign(Strict):
 
     name: Annotated[str, Field(max_length=40)] = ""
     values: dict[str, Finite]
-    effects: dict[str, dict[str, Finite]]
+    effects: SavedSizes
 
 
 class SavedExploration(Strict):
@@ -42,6 +46,7 @@ class SavedExploration(Strict):
     bounds: dict[str, Pair]
     locked: list[str]
     held: list[str]
+    locked_effects: list[str] = Field(default=[])
     snapshots: Annotated[list[SavedDesign], Field(max_length=MOST_SNAPSHOTS)]
 
 
@@ -55,12 +60,13 @@ def save_state(session: Session) -> str:
     state = session.state
     document = {
         "schema": "doe_kc.live/1",
-        "present": {"values": dict(state.values), "effects": _effects(state)},
+        "present": {"values": dict(state.values), "effects": _effects(state.effects)},
         "bounds": {path: list(pair) for path, pair in state.bounds.items()},
         "locked": sorted(state.locked),
         "held": sorted(state.held),
+        "locked_effects": sorted(state.locked_effects),
         "snapshots": [
-            {"name": s.name, "values": dict(s.values), "effects": {k: dict(v) for k, v in s.effects.items()}}
+            {"name": s.name, "values": dict(s.values), "effects": _effects(s.effects)}
             for s in state.snapshots
         ],
     }
@@ -69,8 +75,8 @@ def save_state(session: Session) -> str:
     return f"Exploration saved: {path}"
 
 
-def _effects(state: LiveState) -> dict[str, dict[str, float]]:
-    return {name: dict(sizes) for name, sizes in state.effects.items()}
+def _effects(effects: EffectSizes) -> dict[str, dict[str, float] | None]:
+    return {name: None if sizes is None else dict(sizes) for name, sizes in effects.items()}
 
 
 def read_state(session: Session) -> LiveState:
@@ -102,6 +108,7 @@ def read_state(session: Session) -> LiveState:
         locked=frozenset(saved.locked),
         held=frozenset(saved.held),
         effects=present.effects,
+        locked_effects=frozenset(saved.locked_effects) & set(effect_switches(session.base.study)),
         snapshots=tuple(snapshots),
     )
 
@@ -135,19 +142,22 @@ def _check_rest(session: Session, path: Path, saved: SavedExploration) -> None:
             raise InputError(f"{path}: bounds.{name}: expected a lower bound above zero.")
 
 
-def _solved(
-    session: Session, values: Mapping[str, float], effects: Mapping[str, Mapping[str, float]]
-) -> LiveAnswer | str:
-    return solve_live(session.base.with_effects(effects), values, session.compilation)
+def _solved(session: Session, values: Mapping[str, float], effects: EffectSizes) -> LiveAnswer | str:
+    model = session.base.with_effects(effects)
+    known = stored_answer(model, values, session.compilation)
+    return known or solve_live(model, values, session.compilation)
 
 
 def export_axle(session: Session) -> str:
     """Write `axle.toml` of the present design, as designed (see `Study.as_designed`); says where."""
     if session.failure:
         raise InputError(f"the present design has no answer: {session.failure}")
-    study = session.base.study
+    study, present = session.base.study, session.present
     path = live_folder(session) / LIVE_AXLE
-    write_axle(study.as_designed(session.present.axle), study.axle_path, path, note="set on the live page")
+    # of an outside solver the drawn axle may be its twin
+    axle = with_values(study.axle, present.values) if session.model.outside else present.axle
+    note = "set on the live page" + ("" if present.true else ", not confirmed by the outside solver")
+    write_axle(study.as_designed(axle), study.axle_path, path, note=note)
     return f"Axle written: {path}"
 
 
@@ -230,9 +240,15 @@ def export_table(session: Session) -> str:
 
 
 def export_page(session: Session) -> str:
-    """Write `page.html`, see `static_page`; says where."""
+    """Write `page.html`, see `static_page`; says where. InputError beside an outside solver: the page is
+    checked by some hundred designs."""
     if session.failure:
         raise InputError(f"the present design has no answer: {session.failure}")
+    if session.model.outside is not None:
+        raise InputError(
+            "a page that still moves is checked by a hundred designs and more, too many for an outside "
+            "solver; doe-kc surrogates writes evaluators of the stored designs."
+        )
     html = static_page(session)
     path = live_folder(session) / LIVE_PAGE
     write_whole(path, lambda beside: beside.write_text(html, encoding="utf-8"))

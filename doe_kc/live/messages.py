@@ -67,6 +67,22 @@ class SwitchEffect(Strict):
     sizes: Annotated[dict[Name, Finite], Field(max_length=20)] | None
 
 
+class ResetEffect(Strict):
+    """An effect as it was at first: of the axle file as it is there, else off."""
+
+    kind: Literal["reset_effect"]
+    seq: MessageNumber = 0
+    name: Name
+
+
+class LockEffect(Strict):
+    """An effect that background tasks leave alone, or not."""
+
+    kind: Literal["lock_effect"]
+    name: Name
+    on: bool
+
+
 class TakeSnapshot(Strict):
     """Keep the present design to compare with."""
 
@@ -103,6 +119,19 @@ class Ask(Strict):
     kind: Literal["best_step", "helpers", "invisible"]
 
 
+class RunTask(Strict):
+    """A command in the background: its progress is told, its result waits to be adopted."""
+
+    kind: Literal["correlate", "discover"]
+
+
+class EndTask(Strict):
+    """Cancel the background task, adopt its result, or forget it."""
+
+    kind: Literal["cancel", "adopt", "forget"]
+    seq: MessageNumber = 0
+
+
 class Keep(Strict):
     """Write to, or read from, the study's own folder; no path comes from the page."""
 
@@ -110,8 +139,8 @@ class Keep(Strict):
 
 
 Message = Annotated[
-    Move | Reset | Lock | Hold | BoundsChange | SwitchEffect | TakeSnapshot | PlacedSnapshot | UndoStep | Look
-    | Ask | Keep,
+    Move | Reset | Lock | Hold | BoundsChange | SwitchEffect | ResetEffect | LockEffect | TakeSnapshot
+    | PlacedSnapshot | UndoStep | Look | Ask | RunTask | EndTask | Keep,
     Field(discriminator="kind"),
 ]  # fmt: skip
 _ADAPTER: TypeAdapter[Message] = TypeAdapter(Message)

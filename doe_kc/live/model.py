@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import cached_property
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.places import places_of
+from doe_kc.axle.parameters import ParameterMap
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.ground.errors import InputError
+from doe_kc.live.effect_switches import EffectSizes, effective_axle
+from doe_kc.live.outside_model import OutsideModel, outside_model
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study
 from doe_kc.targets import Targets
@@ -19,14 +18,12 @@ from doe_kc.variables import Space, VariableOptions, build_space
 from doe_kc.workflow.correlation_problem import study_problem
 from doe_kc.workflow.measure import Reduced
 
-EffectSizes = Mapping[str, Mapping[str, float]]
-"""Hypothesis name -> `Size.name` -> value in the size's unit: the effects that are switched on."""
-
 
 @dataclass(frozen=True)
 class LiveModel:
-    """axle: with the effects that are switched on, all sliders at their start. space: its sliders, all
-    parameters that the axle's model contains. targets, likelihood: None without a target to work on.
+    """axle: with the effects that are switched on, all sliders at their start; whose shape is drawn. space:
+    its sliders, all parameters that the axle's model contains, of an outside solver the study's variables.
+    targets, likelihood: None without a target to work on. outside: None for the package's own solver.
     """
 
     study: Study
@@ -35,30 +32,57 @@ class LiveModel:
     measurement: Measurement | None
     targets: Targets | None
     likelihood: Likelihood | None
+    outside: OutsideModel | None = None
 
     @property
     def windows(self) -> Mapping[str, float]:
         """Fit windows of the study."""
         return self.study.windows
 
+    @cached_property
+    def paths(self) -> tuple[str, ...]:
+        """Every path that a design of the space sets: variables, ties, fixed."""
+        return tuple(self.space.values(self.space.start))
+
+    @cached_property
+    def parameter_map(self) -> ParameterMap:
+        """Of the paths."""
+        return ParameterMap(self.axle, self.paths)
+
+    def axle_at(self, values: Mapping[str, float]) -> Axle:
+        """The axle at absolute values of every path; InputError as `with_values`."""
+        return self.parameter_map.axle([values[path] for path in self.paths])
+
     def with_effects(self, effects: EffectSizes) -> LiveModel:
         """The model whose axle has other effects: sliders appear and go with them.
 
         InputError when an effect is not one of the axle or a size is out of range.
         """
-        axle = effective_axle(self.study.axle, effects)
+        axle = effective_axle(self.study, effects)
+        if self.outside is not None:
+            return self
         return replace(self, axle=axle, space=slider_space(self.study, axle))
 
 
 def live_model(study: Study, reduced: Reduced | None) -> LiveModel:
-    """The model of a study without further effects; InputError as `read_study`."""
+    """The model of a study without further effects; InputError as `read_study`, and for an outside solver
+    whose store holds too few designs."""
     measurement = None if reduced is None else reduced.measurement
-    space = slider_space(study, study.axle)
+    outside = outside_model(study, study.space) if study.solver.command else None
+    space = slider_space(study, study.axle) if outside is None else study.space
     targets, likelihood = None, None
     if measurement is not None or any(c.target is not None for c in study.characteristics):
         problem = study_problem(study, reduced, space=space)
         targets, likelihood = problem.targets, problem.likelihood
-    return LiveModel(study, study.axle, space, measurement, targets, likelihood)
+    if outside is not None and targets is not None and likelihood is not None:
+        known = outside.form.told
+        asked = {(c.load_case, c.response) for c in likelihood.curves}
+        asked |= {("static", f.response) for f in likelihood.figures if f.row < 0}
+        likelihood = likelihood.without(asked - known)
+        curves = tuple(c for c in targets.curves if (c.load_case, c.response) in known)
+        targets = replace(targets, curves=curves)
+    axle = study.axle if outside is None else outside.drawn_axle
+    return LiveModel(study, axle, space, measurement, targets, likelihood, outside)
 
 
 def slider_space(study: Study, axle: Axle) -> Space:
@@ -66,42 +90,3 @@ def slider_space(study: Study, axle: Axle) -> Space:
     own = study.variables
     options = VariableOptions(use=["*"], change=own.change)
     return build_space(axle, options, str(study.source))
-
-
-def switches(axle: Axle) -> dict[str, Hypothesis]:
-    """Effects that can be switched on, by name: those in the car, absent from the axle file.
-
-    Faults of a measurement are none: they say nothing of the axle.
-    """
-    places = places_of(axle)
-    possible = [e for e in EFFECTS.values() if not e.on_rig and not e.present(axle) and e.possible(places)]
-    return {h.name: h for e in possible for h in e.hypotheses(places)}
-
-
-def effective_axle(axle: Axle, effects: EffectSizes) -> Axle:
-    """The axle with the effects applied; InputError naming the effect for what it cannot have."""
-    known = switches(axle)
-    for name, sizes in effects.items():
-        if name not in known:
-            raise InputError(f"effect {name!r}: is none that this axle can be given; choose one of the list.")
-        axle = apply_effect(axle, known[name].effect, effect_options(known[name], sizes), source="live")
-    return axle
-
-
-def effect_options(hypothesis: Hypothesis, sizes: Mapping[str, float]) -> dict[str, Any]:
-    """The effect's table at sizes in their units; what is not among `sizes` is typical."""
-    unknown = set(sizes) - {s.name for s in hypothesis.sizes}
-    if unknown:
-        raise InputError(f"effect {hypothesis.name!r}: has no size {min(unknown)!r}.")
-    out = hypothesis.options({s.name: _typical_amplitude(s.shape) for s in hypothesis.sizes})
-    for size in hypothesis.sizes:
-        value = sizes.get(size.name, size.typical)
-        if size.index is None:
-            out[size.key] = value
-        else:
-            out[size.key][size.index] = value
-    return out
-
-
-def _typical_amplitude(shape: bool) -> float:
-    return 0.0 if shape else 1.0

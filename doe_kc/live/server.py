@@ -16,9 +16,10 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from doe_kc.ground.errors import DoeKcError
-from doe_kc.live import keep, views
+from doe_kc.live import documents, keep, views
 from doe_kc.live import messages as says
 from doe_kc.live.advice import Advised
+from doe_kc.live.background_work import BackgroundWork
 from doe_kc.live.page_files import SERVED, asset
 from doe_kc.live.session import Session, SolveRequest, Update
 from doe_kc.live.worker import LiveWorker
@@ -78,7 +79,10 @@ class LiveServer:
         self.tabs: set[Tab] = set()
         self.last_open = time.monotonic()
         self._loop: asyncio.AbstractEventLoop | None = None
-        self.worker = LiveWorker(session, self._answered, self._quiet)
+        self.worker = LiveWorker(session, self._solved, self._quiet)
+        self.work = BackgroundWork(
+            session, self.worker.put, lambda: self._in_loop(self._tell_work), self._answer_told
+        )
         routes = [
             Route("/", self._page),
             Route("/assets/{name}", self._asset),
@@ -87,7 +91,8 @@ class LiveServer:
         self.application = Starlette(routes=routes)
 
     def close(self) -> None:
-        """End the solver's thread, and wait for a compiler that is still at work."""
+        """End what runs in the background and the solver's thread, and wait for a compiler at work."""
+        self.work.close()
         self.worker.close()
         self.session.compilation.wait()
 
@@ -143,6 +148,10 @@ class LiveServer:
             self.worker.put(partial(self._advise, tab, changes.advice))
         if changes.keep:
             self.worker.put(partial(self._keep, tab, changes.keep))
+        if isinstance(message, says.RunTask):
+            self.work.begin(message.kind)
+        elif changes.task:
+            {"cancel": self.work.cancel, "forget": self.work.forget}[changes.task]()
         self._spread(changes)
 
     def _spread(self, changes: Update) -> None:
@@ -152,7 +161,7 @@ class LiveServer:
         elif changes.state:
             self._tell_state(self.tabs)
         if changes.solve:
-            self.worker.ask(self.session.request())
+            self.worker.ask(self.session.request(at_rest=changes.at_rest))
 
     def _introduce(self, tabs: Iterable[Tab]) -> None:
         said = views.announcement(self.session)
@@ -161,13 +170,14 @@ class LiveServer:
             tab.tell("model", said)
             self._tell_state([tab])
             tab.tell("present", frame)
+            tab.tell("work", documents.work_document(self.work))
         self.worker.put(self._quiet)
 
     def _tell_state(self, tabs: Iterable[Tab]) -> None:
         """The state, and the curves to compare with where a tab does not have them yet."""
-        said = views.state_document(self.session)
+        said = documents.state_document(self.session)
         snapshots = self.session.state.snapshots
-        shown = (self.session.model, *(s.answer for s in snapshots))
+        shown = (self.session.model.space, self.session.nominal, *(s.answer for s in snapshots))
         frames: list[bytes] = []
         for tab in tabs:
             tab.tell("state", said)
@@ -183,9 +193,24 @@ class LiveServer:
         if self._loop is not None and not self._loop.is_closed():
             self._loop.call_soon_threadsafe(do)
 
-    def _answered(self, request: SolveRequest) -> None:
-        frame = views.present_frame(self.session, request.seq).encode()
-        shapes = {tab: self._shape(tab, request.seq) for tab in list(self.tabs)}
+    def _tell_work(self) -> None:
+        said = documents.work_document(self.work)
+        for tab in self.tabs:
+            tab.tell("work", said)
+
+    def _solved(self, request: SolveRequest) -> None:
+        self._tell_answer(request.seq)
+        self.work.confirm(request)
+
+    def _answer_told(self) -> None:
+        """The answer to what is set is another without a message: the outside solver has given it."""
+        self._tell_answer(self.session.seq)
+        self._in_loop(lambda: self._tell_state(self.tabs))
+        self._quiet()
+
+    def _tell_answer(self, seq: int) -> None:
+        frame = views.present_frame(self.session, seq).encode()
+        shapes = {tab: self._shape(tab, seq) for tab in list(self.tabs)}
 
         def tell() -> None:
             for tab in self.tabs:
@@ -202,10 +227,8 @@ class LiveServer:
         self._in_loop(partial(tab.tell, "shape", self._shape(tab, seq)))
 
     def _quiet(self) -> None:
-        if (
-            self.session.present.model is not self.session.model
-        ):  # its answer is still to come, or there is none
-            return
+        if self.session.present.model.space is not self.session.model.space:
+            return  # its answer is still to come, or there is none
         slopes = self.session.slopes()
         frame = views.influence_frame(self.session, slopes, self.session.seq).encode()
 
@@ -225,7 +248,7 @@ class LiveServer:
         self._in_loop(partial(self._advised, tab, advised))
 
     def _advised(self, tab: Tab, advised: Advised) -> None:
-        tab.tell("advice", views.advice_document(advised, self.session))
+        tab.tell("advice", documents.advice_document(advised, self.session))
         if advised.adopt:
             self._spread(self.session.adopt(advised.adopt))
 

@@ -1,4 +1,4 @@
-"""The state of a live page, on the server: what was set, what the true model answers, what is advised.
+"""The state of a live page, on the server: what was set, what the model answers, what is advised.
 
 One object for all tabs, driven by messages, without a browser or a socket: `Session.handle` changes the state
 and says what has to be told; `Session.solve` is called in another thread with what `Session.request` gave.
@@ -10,54 +10,64 @@ import threading
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from doe_kc.axle.parameters import check_value
-from doe_kc.ground.errors import InputError, RunError, nearest
+from doe_kc.ground.errors import InputError, RunError
 from doe_kc.live import messages as says
+from doe_kc.live import state_changes as changes
 from doe_kc.live.advice import Advised, best_step, most_helpful, not_visible
 from doe_kc.live.answer import Compilation, LiveAnswer, LiveSlopes, slopes_of, solve_live
-from doe_kc.live.model import LiveModel, effective_axle
+from doe_kc.live.confirmation import design_values, stored_answer
+from doe_kc.live.model import LiveModel
 from doe_kc.live.state import LiveState, Snapshot, StateHistory
+from doe_kc.live.tasks import TaskRequest, TaskResult, task_request
 from doe_kc.variables import Space
 
 
 @dataclass(frozen=True)
 class SolveRequest:
-    """What to solve. seq: of the message that asked, told back with the answer."""
+    """What to solve. seq: of the message that asked, told back with the answer. at_rest: no slider is being
+    dragged, so that an outside solver is worth its time."""
 
     seq: int
     model: LiveModel
     values: Mapping[str, float]
+    at_rest: bool = True
 
 
 @dataclass(frozen=True)
 class Update:
     """What a message did. solve: the answer is no longer that of the state. sliders: they are others now.
-    state: locks, bounds, snapshots or the like. advice: to be asked for. keep: to be written or read.
+    state: locks, bounds, snapshots or the like. at_rest: no slider is being dragged. advice: to be asked for.
+    task: to be cancelled or forgotten. keep: to be written or read.
     """
 
     solve: bool = False
     sliders: bool = False
     state: bool = True
+    at_rest: bool = False
     advice: str = ""
+    task: str = ""
     keep: str = ""
 
 
 class Session:
     """seq: of the last message that moved something. present: the last good answer. failure: why the state
-    that is set has none; empty when `present` is its answer.
+    that is set has none; empty when `present` is its answer. result: of the last background task.
     """
 
     def __init__(self, model: LiveModel) -> None:
         """Solves the study's axle; RunError when it has no equilibrium."""
         self.compilation = Compilation()
         self.compilation.compile(model.axle.topology)
-        answer = solve_live(model, {}, self.compilation)
+        answer = stored_answer(model, {}, self.compilation)
+        if not isinstance(answer, LiveAnswer):
+            answer = solve_live(model, {}, self.compilation)
         if isinstance(answer, str):
             raise RunError(f"{model.study.axle_path}: the axle cannot be solved: {answer}")
         self.base, self.model = model, model
-        self.nominal = self.present = answer
+        self.nominal = self.present = self._sure = answer
         self.failure = ""
         self.seq = 0
+        self.result: TaskResult | None = None
         self._history = StateHistory(LiveState())
         self._lock = threading.Lock()
         self._slopes: LiveSlopes | None = None
@@ -80,42 +90,34 @@ class Session:
     @property
     def space(self) -> Space:
         """The sliders with the bounds that hold now."""
-        return self.space_of(self.state)
-
-    def space_of(self, state: LiveState) -> Space:
-        """The sliders with the bounds of a state."""
-        variables = tuple(
-            replace(v, lower=state.bounds[v.path][0], upper=state.bounds[v.path][1])
-            if v.path in state.bounds
-            else v
-            for v in self.model.space.variables
-        )
-        return replace(self.model.space, variables=variables)
+        return changes.bounded_space(self.model, self.state)
 
     def values(self) -> dict[str, float]:
         """Path -> absolute value of every slider."""
-        set_now = self.state.values
-        return {v.path: set_now.get(v.path, v.start) for v in self.model.space.variables}
+        return changes.values_of(self.model, self.state)
 
     def handle(self, message: says.Message) -> Update:
         """Do what a message asks; InputError, and nothing done, for what cannot be."""
+        state, model, base = self.state, self.model, self.base
         match message:
             case says.Move():
                 return self._move(message)
             case says.Reset(path=path):
                 if path is not None:
-                    self._known(path)
-                state = self.state.without(path) if path else replace(self.state, values={})
-                return self._changed(state, message.seq)
+                    changes.slider(model.space, path)
+                return self._changed(state.without(path) if path else replace(state, values={}), message.seq)
             case says.Lock():
-                return self._locked(message)
+                return self._set(changes.with_locks(model, state, message))
             case says.Hold():
-                self._known_characteristic(message.characteristic)
-                return self._set(self.state.with_held(message.characteristic, held=message.on))
+                return self._set(changes.with_hold(model, state, message))
             case says.BoundsChange():
-                return self._bounds(message)
+                return self._set(changes.with_bounds(model, state, message))
             case says.SwitchEffect():
-                return self._switch(message)
+                return self._changed(changes.with_effect(base, state, message), message.seq)
+            case says.ResetEffect(name=name):
+                return self._changed(changes.without_effect(base, state, name), message.seq)
+            case says.LockEffect(name=name):
+                return self._set(changes.with_effect_lock(base, state, name, on=message.on))
             case says.TakeSnapshot(name=name):
                 return self._snapshot(name)
             case says.PlacedSnapshot():
@@ -124,36 +126,24 @@ class Session:
                 return self._step(message.seq, back=kind == "undo")
             case says.Ask(kind=kind):
                 return Update(state=False, advice=kind)
+            case says.RunTask():
+                return Update(state=False)
+            case says.EndTask(kind="adopt"):
+                return self._adopt_result(message.seq)
+            case says.EndTask(kind=kind):
+                return Update(state=False, task=kind)
             case says.Keep(kind=kind):
                 return Update(state=False, keep=kind)
             case says.Look():
                 return Update(state=False)
 
-    def _known(self, path: str) -> None:
-        paths = self.model.space.paths
-        if path not in paths:
-            raise InputError(f"{path}: is no slider of this axle.{nearest(path, paths)}")
-
-    def _known_characteristic(self, ident: str) -> None:
-        known = () if self.model.targets is None else self.model.targets.characteristics
-        names = [t.entry.id for t in known]
-        if ident not in names:
-            raise InputError(f"{ident}: has no target here, so it cannot be held.{nearest(ident, names)}")
-
     def _move(self, message: says.Move) -> Update:
-        self._known(message.path)
-        variable = next(v for v in self.space.variables if v.path == message.path)
-        if not variable.lower <= message.value <= variable.upper:
-            raise InputError(
-                f"{message.path} = {message.value:g}: outside its bounds {variable.lower:g} to "
-                f"{variable.upper:g} {variable.unit}; widen them first."
-            )
-        state = self.state.moved({message.path: message.value})
+        state = changes.with_move(self.model, self.state, message)
         self._history.change(state, gesture=f"move {message.path}")
         if message.last:
             self._history.finish_gesture()
         self.seq = max(self.seq, message.seq)
-        return Update(solve=True, state=message.last)
+        return Update(solve=True, state=message.last, at_rest=message.last)
 
     def _changed(self, state: LiveState, seq: int) -> Update:
         """A step of its own that has to be solved."""
@@ -162,7 +152,7 @@ class Session:
         self.seq = max(self.seq, seq)
         if sliders:
             self._remodel()
-        return Update(solve=True, sliders=sliders)
+        return Update(solve=True, sliders=sliders, at_rest=True)
 
     def _set(self, state: LiveState) -> Update:
         self._history.change(state)
@@ -171,36 +161,6 @@ class Session:
     def _remodel(self) -> None:
         with self._lock:
             self.model = self.base.with_effects(self.state.effects)
-
-    def _locked(self, message: says.Lock) -> Update:
-        for path in message.paths:
-            self._known(path)
-        paths = frozenset(message.paths or self.model.space.paths)
-        locked = self.state.locked | paths if message.on else self.state.locked - paths
-        return self._set(replace(self.state, locked=locked))
-
-    def _bounds(self, message: says.BoundsChange) -> Update:
-        self._known(message.path)
-        variable = next(v for v in self.model.space.variables if v.path == message.path)
-        where = f"bounds of {message.path}"
-        if not message.lower < message.upper:
-            raise InputError(f"{where}: {message.lower:g} to {message.upper:g}; the lower one comes first.")
-        value = self.values()[message.path]
-        if not message.lower <= min(value, variable.start) <= max(value, variable.start) <= message.upper:
-            raise InputError(f"{where}: must hold its start {variable.start:g} and its value {value:g}.")
-        if variable.logarithmic and message.lower <= 0.0:
-            raise InputError(f"{where}: equal steps are equal ratios, so the lower one must be above zero.")
-        for edge in (message.lower, message.upper):
-            check_value(message.path, edge, where)
-        bounds = {**self.state.bounds, message.path: (message.lower, message.upper)}
-        return self._set(replace(self.state, bounds=bounds))
-
-    def _switch(self, message: says.SwitchEffect) -> Update:
-        effects = {k: v for k, v in self.state.effects.items() if k != message.name}
-        if message.sizes is not None:
-            effects[message.name] = dict(message.sizes)
-        effective_axle(self.base.axle, effects)
-        return self._changed(replace(self.state, effects=effects), message.seq)
 
     def _snapshot(self, name: str) -> Update:
         if self.failure:
@@ -230,15 +190,22 @@ class Session:
         if sliders:
             self._remodel()
         # solved in any case: the page waits for an answer to its number
-        return Update(solve=True, sliders=sliders, state=moved)
+        return Update(solve=True, sliders=sliders, state=moved, at_rest=True)
 
     def adopt(self, values: Mapping[str, float], seq: int = 0) -> Update:
         """Go to values that were advised, as one step."""
         return self._changed(self.state.moved(values), seq)
 
+    def _adopt_result(self, seq: int) -> Update:
+        """Go to the result of the background task, as one step; InputError without one."""
+        result = self.result
+        if result is None or not result.adoptable:
+            raise InputError("there is no result to adopt; run correlate or discover first.")
+        return self._changed(changes.with_result(self.base, self.state, result.values, result.effects), seq)
+
     def replaced(self, state: LiveState, seq: int = 0) -> Update:
         """Go to a state that was saved, as one step; InputError when it is none of this axle."""
-        effective_axle(self.base.axle, state.effects)
+        self.base.with_effects(state.effects)
         return self._changed(state, seq)
 
     @property
@@ -249,30 +216,57 @@ class Session:
             return False
         return all(present.values.get(path) == value for path, value in self.values().items())
 
-    def request(self) -> SolveRequest:
+    def request(self, *, at_rest: bool = True) -> SolveRequest:
         """What has to be solved for the state as it is."""
         known = set(self.model.space.paths)
         values = {p: v for p, v in self.state.values.items() if p in known}
-        return SolveRequest(self.seq, self.model, values)
+        return SolveRequest(self.seq, self.model, values, at_rest)
+
+    def confirm_request(self, values: Mapping[str, float]) -> TaskRequest:
+        """For the outside solver to answer slider values (those that moved)."""
+        return task_request(self.model.study, "confirm", values=design_values(self.model, values))
 
     def solve(self, request: SolveRequest) -> LiveAnswer | str:
-        """Ask the true model, from any one thread; keeps the answer, or beside the last good one why not."""
-        answer = solve_live(request.model, request.values, self.compilation)
+        """Ask the model, from any one thread; keeps the answer, or beside the last good one why not.
+
+        Of an outside solver its own answer where its store has it and no slider is being dragged.
+        """
+        known = stored_answer(request.model, request.values, self.compilation) if request.at_rest else None
+        answer = known or solve_live(request.model, request.values, self.compilation)
+        self.keep(answer, request)
+        return answer
+
+    def keep(self, answer: LiveAnswer | str, request: SolveRequest) -> None:
+        """An answer to a request; nothing where the sliders or effects are others by now."""
         with self._lock:
             if request.model is not self.model:
-                return answer
+                return
             if isinstance(answer, str):
                 self.failure = answer
-            else:
-                self.present, self.failure = answer, ""
-        return answer
+                self.present = self.present if request.model.outside is None else self._sure
+                return
+            self.present, self.failure = answer, ""
+            if answer.true:
+                self._sure = answer
+                if not self.nominal.true and not request.values:
+                    self.nominal = answer
+
+    def refuse(self, reason: str) -> None:
+        """The outside solver has no answer to what is set: back to its last good one."""
+        with self._lock:
+            self.failure, self.present = reason, self._sure
+
+    def remodelled(self, model: LiveModel) -> None:
+        """Go on with a model of the same sliders that has learnt more."""
+        with self._lock:
+            self.base = self.model = model
 
     def solve_now(self) -> LiveAnswer | str:
         """Solve the state as it is."""
         return self.solve(self.request())
 
     def slopes(self) -> LiveSlopes:
-        """Exact sensitivities of the present answer, kept until there is another."""
+        """Sensitivities of the present answer, kept until there is another."""
         with self._lock:
             present, kept = self.present, self._slopes
         if kept is None or kept.answer is not present:

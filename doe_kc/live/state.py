@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 
 from doe_kc.live.answer import LiveAnswer
-from doe_kc.live.model import EffectSizes
+from doe_kc.live.effect_switches import EffectSizes
 
 MOST_SNAPSHOTS = 3
 """More curves in one chart are not told apart."""
@@ -27,6 +27,7 @@ class Snapshot:
 class LiveState:
     """values: absolute, of the sliders that were moved. bounds: (lower, upper) of those whose bounds were
     changed. locked: paths that advice leaves alone. held: characteristics that it must not move.
+    locked_effects: names of switches that background tasks leave alone.
     """
 
     values: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
@@ -34,6 +35,7 @@ class LiveState:
     locked: frozenset[str] = frozenset()
     held: frozenset[str] = frozenset()
     effects: EffectSizes = field(default_factory=lambda: MappingProxyType({}))
+    locked_effects: frozenset[str] = frozenset()
     snapshots: tuple[Snapshot, ...] = ()
 
     def moved(self, values: Mapping[str, float]) -> LiveState:
@@ -43,10 +45,6 @@ class LiveState:
     def without(self, path: str) -> LiveState:
         """With one slider at its start."""
         return replace(self, values={p: v for p, v in self.values.items() if p != path})
-
-    def toggled(self, path: str, *, locked: bool) -> LiveState:
-        """With one slider locked or free."""
-        return replace(self, locked=self.locked | {path} if locked else self.locked - {path})
 
     def with_held(self, characteristic: str, *, held: bool) -> LiveState:
         """With one characteristic held or free."""

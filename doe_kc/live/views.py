@@ -14,18 +14,16 @@ from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, SIDES, response_name
 from doe_kc.effects import EFFECTS
-from doe_kc.effects.hypothesis import Size
-from doe_kc.effects.words import hypothesis_label
 from doe_kc.ground.typing import FloatArray
-from doe_kc.live.advice import Advised, influence
+from doe_kc.live.advice import influence
 from doe_kc.live.answer import LiveAnswer, LiveSlopes
+from doe_kc.live.effect_switches import effect_switches
 from doe_kc.live.frames import INFLUENCE, PRESENT, REFERENCE, SHAPE, PageFrame, drawn_curves
-from doe_kc.live.model import LiveModel, switches
+from doe_kc.live.model import LiveModel
 from doe_kc.live.session import Session
 from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
 from doe_kc.reports.axle_views import MEMBER_COLOURS, OTHER_COLOURS
-from doe_kc.reports.effect_words import size_name
 from doe_kc.reports.names import input_label
 from doe_kc.reports.style import PALETTE
 from doe_kc.solver.curve_set import rising
@@ -56,6 +54,7 @@ def announcement(session: Session) -> dict[str, Any]:
         "characteristics": _characteristics(model),
         "measured": {} if model.measurement is None else _measured(model.measurement),
         "effects": _effects(session),
+        "outside": session.model.outside is not None,
         "shape": _lines(model.axle),
         "nominal_points": _design_points(session.nominal.axle).ravel().round(4).tolist(),
     }
@@ -147,22 +146,17 @@ def _rounded(values: FloatArray) -> list[Any]:
 def _effects(session: Session) -> list[dict[str, Any]]:
     return [
         {
-            "name": name,
-            "label": hypothesis_label(h),
-            "physics": EFFECTS[h.effect].physics,
-            "sizes": [_size(s, h.location) for s in h.sizes],
+            "name": switch.name,
+            "label": switch.label,
+            "physics": EFFECTS[switch.effect].physics,
+            "of_file": switch.of_file,
+            "law": switch.law,
+            "sizes": [
+                {"name": s.name, "label": s.label, "unit": s.unit, "value": s.value} for s in switch.sizes
+            ],
         }
-        for name, h in switches(session.base.axle).items()
+        for switch in effect_switches(session.base.study).values()
     ]
-
-
-def _size(size: Size, location: str | None) -> dict[str, Any]:
-    return {
-        "name": size.name,
-        "label": size_name(size, location),
-        "unit": size.unit,
-        "typical": size.typical,
-    }
 
 
 def _lines(axle: Axle) -> dict[str, Any]:
@@ -195,27 +189,13 @@ def _design_points(axle: Axle) -> FloatArray:
     return np.array(sides)
 
 
-def state_document(session: Session) -> dict[str, Any]:
-    """What is set, but the sliders' values, which come with every answer."""
-    state = session.state
-    return {
-        "kind": "state",
-        "locked": sorted(state.locked),
-        "held": sorted(state.held),
-        "bounds": {path: list(pair) for path, pair in state.bounds.items()},
-        "effects": {name: dict(sizes) for name, sizes in state.effects.items()},
-        "snapshots": [s.name for s in state.snapshots],
-        "undo": session.can_undo,
-        "redo": session.can_redo,
-    }
-
-
 def present_frame(session: Session, seq: int) -> PageFrame:
     """exact: sliders as they are set, all characteristics, their terms of the rating (nan without one), then
-    gap, rating, seconds. drawn: curves of the last good answer. text: failure, empty when it is the answer.
+    gap, rating, seconds. drawn: curves of the last good answer. text: failure, empty when it is the answer;
+    whether the true model gave it.
     """
     set_now = np.array(list(session.values().values()))
-    text = {"failure": session.failure}
+    text = {"failure": session.failure, "true": session.present.true}
     return _answer_frame(PRESENT, seq, session.present, set_now, text)
 
 
@@ -225,7 +205,7 @@ def reference_frames(session: Session) -> list[PageFrame]:
     frames = []
     for place, (name, answer) in enumerate(named):
         values = np.array([answer.values.get(p, math.nan) for p in session.model.space.paths])
-        frames.append(_answer_frame(REFERENCE, place, answer, values, {"name": name}))
+        frames.append(_answer_frame(REFERENCE, place, answer, values, {"name": name, "true": answer.true}))
     return frames
 
 
@@ -254,6 +234,9 @@ def shape_frame(answer: LiveAnswer, load_case: str, row: int, seq: int) -> PageF
     the wheels' spin axes. text: load case, row and input."""
     case = answer.solution.cases.get(load_case) or next(iter(answer.solution.cases.values()))
     grid = rising(case)
+    drawn = answer.curves.cases.get(case.load_case.id)
+    if drawn is not None and drawn.input.size != grid.size:  # an outside solver has inputs of its own
+        row = int(np.argmin(np.abs(grid - drawn.input[min(row, drawn.input.size - 1)])))
     row = min(row, grid.size - 1)
     states = [shape_at(answer.axle, *_rest(case)), shape_at(answer.axle, *_branch_row(case, row))]
     names = [f"{name}@{side}" for side in SIDES for name in drawn_points(answer.axle)]
@@ -275,21 +258,3 @@ def _branch_row(case: CaseSolution, row: int) -> tuple[BranchSolution, int]:
         return branches["load"], row
     steps = len(branches["neg"].input) - 1
     return (branches["neg"], steps - row) if row < steps else (branches["pos"], row - steps)
-
-
-def advice_document(advised: Advised, session: Session) -> dict[str, Any]:
-    """Sentence and rows: path, present value, value advised, unit, note."""
-    now = session.values()
-    units = {v.path: v.unit for v in session.model.space.variables}
-    labels = {v.path: v.parameter.label for v in session.model.space.variables}
-    return {
-        "kind": "advice",
-        "what": advised.what,
-        "sentence": advised.sentence,
-        "rows": [
-            {"path": r.path, "label": labels[r.path], "now": now[r.path], "value": r.value,
-             "unit": units[r.path], "note": r.note}
-            for r in advised.rows
-        ],
-        "adopted": bool(advised.adopt),
-    }  # fmt: skip

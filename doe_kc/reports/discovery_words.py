@@ -171,5 +171,10 @@ def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
 
 
 def size_words(discovery: Discovery, finding: Finding) -> str:
-    """All sizes of a finding in one line."""
-    return "; ".join(s.sentence for s in found_sizes(discovery, finding))
+    """The sizes of a finding in one line."""
+    return "; ".join(s.sentence for s in told_sizes(discovery, finding))
+
+
+def told_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
+    """Those that a reader can use: without the sliders of a free law, which mean nothing one by one."""
+    return (s for s in found_sizes(discovery, finding) if not (s.size.shape and s.size.index is not None))

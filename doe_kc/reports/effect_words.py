@@ -10,7 +10,7 @@ from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
 from doe_kc.reports.discovery_effects import kind_of
-from doe_kc.reports.discovery_words import found_sizes, physics_words
+from doe_kc.reports.discovery_words import physics_words, told_sizes
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 SIZE_WORDS: Mapping[str, str] = {
@@ -45,7 +45,7 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
         kind=kind_of(discovery, finding),
         sizes=[
             f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
-            for s in found_sizes(discovery, finding)
+            for s in told_sizes(discovery, finding)
         ],
         sure=sure_words(discovery, finding),
         physics=physics_words(finding),

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 import numpy as np
+from openpyxl.styles import PatternFill
 from openpyxl.utils import get_column_letter
 from openpyxl.worksheet.properties import PageSetupProperties
 from openpyxl.worksheet.worksheet import Worksheet
@@ -17,6 +18,8 @@ from doe_kc.reports.render.workbook import new_book, write_book
 from doe_kc.surrogate_models.formula import MeanFormula, mean_formulas
 from doe_kc.surrogate_models.saved import SavedSurrogate
 
+TYPED = PatternFill("solid", fgColor="FFF2CC")
+"""Of cells that values are typed into."""
 FIRST = 5
 """First row of inputs, outputs and numbers."""
 
@@ -144,9 +147,9 @@ def _listed(formula: MeanFormula, block: int | None) -> dict[str, object]:
 def write_book_evaluator(path: Path, saved: SavedSurrogate, formulas: list[MeanFormula]) -> Path:
     """Sheet Evaluator: values to type in, characteristics by live formulas; their numbers in other sheets.
 
-    Terms has a column an output and a row a design, Distances alike for a Matérn kernel, Rows the designs,
-    Numbers a column an output: level, then slope, centre and curvature of every variable. RunError as
-    `write_book`.
+    Those are hidden. Terms has a column an output and a row a design, Distances alike for a Matérn kernel,
+    Rows the designs, Numbers a column an output: level, then slope, centre and curvature of every variable.
+    RunError as `write_book`.
     """
     book = new_book(f"Surrogate: {saved.study}")
     blocks, which = _row_blocks(formulas)
@@ -171,30 +174,42 @@ def write_book_evaluator(path: Path, saved: SavedSurrogate, formulas: list[MeanF
         total = f"=Numbers!{column}$2+SUMPRODUCT(Numbers!{column}$3:{column}${2 + d},{z})"
         if which[j] is not None:
             total += f"+SUM(Terms!{column}$2:{column}${len(formulas[j].rows) + 1})"
-        front.cell(r, 9, total).number_format = "0.000000"
-        put(front, r, 10, clean(known.unit))
+        _put_formula(front, r, 9, total, "0.000000")
+        put(front, r, 10, clean(known.unit), indent=1)
         put(front, r, 11, _known(known.rmse), number="0.000E+00")
-        put(front, r, 12, clean(known.model))
+        put(front, r, 12, clean(known.model), indent=1)
+    for sheet in book.worksheets[1:]:
+        sheet.sheet_state = "hidden"  # numbers alone, 150 printed pages of them
     return write_book(path, book)
 
 
+def _put_formula(ws: Worksheet, row: int, column: int, formula: str, number: str) -> None:
+    """A live formula, looking as the numbers beside it."""
+    put(ws, row, column, 0.0, number=number)
+    ws.cell(row, column).value = formula
+
+
 def _put_inputs(ws: Worksheet, saved: SavedSurrogate) -> None:
-    title(ws, "Surrogate evaluator", f"{saved.study}: type values in column B; {saved.designs} designs")
+    title(
+        ws, "Surrogate evaluator", f"{saved.study}: type values in column B, shaded; {saved.designs} designs"
+    )
+    texts = {1, 3, 8, 10, 12}
     heads = ("Variable", "Value", "Unit", "Lowest", "Highest", "Place", None, "Characteristic", "Mean",
              "Unit", "Left-out RMSE", "Model")  # fmt: skip
     for c, head in enumerate(heads, start=1):
         if head is not None:
-            put(ws, FIRST - 1, c, head, bold=True)
+            side, indent = ("left", int(c in {3, 10, 12})) if c in texts else ("right", 0)
+            put(ws, FIRST - 1, c, head, bold=True, horizontal=side, indent=indent)
     for i, known in enumerate(saved.inputs):
         r = FIRST + i
         put(ws, r, 1, clean(known.path))
-        put(ws, r, 2, known.start)
-        put(ws, r, 3, clean(known.unit))
+        put(ws, r, 2, known.start, fill=TYPED)
+        put(ws, r, 3, clean(known.unit), indent=1)
         put(ws, r, 4, known.lower)
         put(ws, r, 5, known.upper)
         linear = f"=(B{r}-D{r})/(E{r}-D{r})"
-        ws.cell(r, 6, f"=LN(B{r}/D{r})/LN(E{r}/D{r})" if known.logarithmic else linear)
-        ws.cell(r, 6).number_format = "0.0000"
+        ratio = f"=LN(B{r}/D{r})/LN(E{r}/D{r})"
+        _put_formula(ws, r, 6, ratio if known.logarithmic else linear, "0.0000")
     widths(ws, (24, 14, 9, 12, 12, 10, 3, 32, 16, 10, 14, 12))
     ws.freeze_panes = f"A{FIRST}"
     ws.page_setup.orientation = "landscape"

@@ -119,7 +119,7 @@ class SurrogateModel(ABC):
     costly: takes longer than it is worth beside the others, so it is used on request only. interpolates:
     passes through the training values. exact_folds: `cross_validate` is leave-one-out in closed form with the
     model's hyper-parameters held. optimistic_loo: it learns so many of those that its left-out residuals come
-    out too small, and only refitting tells how good it is. most: rows above which it is used on request only.
+    out too small, and only refitting tells how good it is.
     uses_slopes: it is fitted about an exact first-order expansion, and cannot do without one.
     """
 
@@ -130,13 +130,17 @@ class SurrogateModel(ABC):
     interpolates: ClassVar[bool]
     exact_folds: ClassVar[bool]
     optimistic_loo: ClassVar[bool] = False
-    most: ClassVar[int | None] = None
     uses_slopes: ClassVar[bool] = False
 
     def fewest(self, variables: int) -> int:
         """Rows below which the model cannot be fitted."""
         del variables
         return 5
+
+    def worthwhile(self, rows: int, variables: int) -> bool:
+        """Whether it is tried by default with so many of them: it can be fitted, and is worth its time beside
+        the others."""
+        return not self.costly and rows >= self.fewest(variables)
 
     def of(self, outputs: np.ndarray) -> SurrogateModel:
         """The model for the outputs marked (m,): itself, unless it knows something of each."""

@@ -16,6 +16,9 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 
+COVARIANCE_BLOCK = 40_000
+"""Covariances that are worked on at once: what stays in a core's own memory."""
+
 
 @dataclass(frozen=True)
 class CovarianceKernel:
@@ -76,6 +79,18 @@ def bend(kernel: CovarianceKernel, z: FloatArray, other: FloatArray) -> Bend:
     damping = np.exp(half)
     value = full - damping * (1.0 + inner)
     return Bend(value, -value, full - damping)
+
+
+def bend_value(
+    kernel: CovarianceKernel, inner: FloatArray, square: FloatArray, other_square: FloatArray
+) -> FloatArray:
+    """E (p, n) of one output from the inner products under V: of points with rows (p, n), of points with
+    themselves (p, 1), of rows with themselves (n,)."""
+    both = square + other_square
+    if kernel.matern:
+        return matern(np.maximum(both - 2.0 * inner, 0.0))[0]
+    full = np.exp(np.minimum(inner - 0.5 * both, 0.0))
+    return full - np.exp(-0.5 * both) * (1.0 + inner) if kernel.pinned else full
 
 
 def matern(square: FloatArray) -> tuple[FloatArray, FloatArray]:

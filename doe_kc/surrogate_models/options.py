@@ -16,7 +16,7 @@ class SurrogateOptions(Strict):
     """models: ids of the registered models to choose from, none = those fit for the number of designs.
 
     folds: of the cross-validation, none = ten, five from 150 designs on. slopes: whether the package's own
-    solver gives exact sensitivities at the start for `gp_slopes`, at the cost of some ten designs.
+    solver gives exact sensitivities at the start for `gp_slopes`, at the cost of some five designs.
     goal: Q2 that the learning curve says the number of designs for.
     """
 

@@ -13,10 +13,12 @@ import numpy as np
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.cholesky import inverse_roots
 from doe_kc.surrogate_models.kernel import (
+    COVARIANCE_BLOCK,
     Bend,
     CovarianceKernel,
     bend,
     bend_at_itself,
+    bend_value,
     covariance,
     training_covariance,
 )
@@ -75,6 +77,23 @@ def cross(p: ProcessPosterior, z: FloatArray) -> Cross:
 def mean(p: ProcessPosterior, c: Cross) -> FloatArray:
     """(p, m), eq. 2.25."""
     return np.asarray((c.total @ p.alpha[:, :, None])[:, :, 0].T)
+
+
+def mean_alone(p: ProcessPosterior, z: FloatArray) -> FloatArray:
+    """`mean` of points z (p, d) without their `Cross`, in blocks that stay in a core's own memory: a fifth of
+    its time."""
+    k = p.kernel
+    level = k.constant * p.alpha.sum(axis=1)
+    out = np.asarray(z @ p.slope.T + level)
+    several = max(1, COVARIANCE_BLOCK // len(p.z))
+    for j, (curvature, variance, alpha) in enumerate(zip(k.curvature, k.bend, p.alpha, strict=True)):
+        weighted = (p.z * curvature).T
+        itself, other = (z * z) @ curvature, (p.z * p.z) @ curvature
+        for first in range(0, len(z), several):
+            rows = slice(first, first + several)
+            shape = bend_value(k, z[rows] @ weighted, itself[rows, None], other)
+            out[rows, j] += variance * (shape @ alpha)
+    return out
 
 
 def mean_gradient(p: ProcessPosterior, c: Cross) -> FloatArray:

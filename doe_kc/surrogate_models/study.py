@@ -81,9 +81,7 @@ def default_models(designs: int, variables: int, *, slopes: bool = False) -> lis
     return [
         k
         for k, kind in SURROGATES.items()
-        if not kind.costly
-        and kind().fewest(variables) <= designs <= (np.inf if kind.most is None else kind.most)
-        and (slopes or not kind.uses_slopes)
+        if kind().worthwhile(designs, variables) and (slopes or not kind.uses_slopes)
     ]
 
 
@@ -221,12 +219,13 @@ def _judged(parts: list[_Part], x: FloatArray, y: FloatArray, folds: int, seed: 
     # The variance is the model's own, hyper-parameters as in use: those of the folds are other ones, and
     # what they promise says nothing of what it promises (at 50 designs: 90 % covered instead of 94 %).
     held = LeftOut(residual, own.variance)
+    count = min(folds, len(x)) if refits else len(x)
     return Judged(
         whole.fitted,
         held,
         quality(y, held),
-        calibration_factors(held),
-        coverage_after(held),
-        coverage_interval(held),
+        calibration_factors(held, count),
+        coverage_after(held, count),
+        coverage_interval(held, count),
         whole.seconds,
     )

@@ -176,3 +176,11 @@ def test_bad_data_is_named(name: str) -> None:
 def test_an_unknown_name_is_corrected() -> None:
     with pytest.raises(InputError, match=r'study: models: \'krigin\' .* Did you mean "kriging"'):
         make("krigin", "study")
+
+
+@pytest.mark.parametrize("name", ["gp", "gp_ard", "gp_slopes"])
+def test_many_points_are_predicted_as_few(name: str) -> None:
+    """Outputs one by one for many points, all abreast for few."""
+    many = np.random.default_rng(8).random((90, P.x.shape[1]))
+    few = np.concatenate([fitted(name).predict(many[k : k + 30]) for k in (0, 30, 60)])
+    np.testing.assert_allclose(fitted(name).predict(many) / SPREAD, few / SPREAD, atol=1e-9)

@@ -9,12 +9,14 @@ from scipy.special import ndtr
 from doe_kc.axle.design_parameters import Parameter
 from doe_kc.ground.errors import InputError
 from doe_kc.surrogate_models.calibration import (
+    DEPENDENCE,
+    MODEL_ERROR,
     Calibrated,
     calibration_factors,
     coverage_after,
     coverage_interval,
     scaled,
-    student_width,
+    widening,
 )
 from doe_kc.surrogate_models.folds import fold_rows, refit_folds
 from doe_kc.surrogate_models.interface import LeftOut
@@ -61,35 +63,60 @@ def test_joined_models_predict_each_its_own() -> None:
     assert join(models, ["gp", "gp", "gp"]) is gp
 
 
+ROWS = 400
+
+
 def test_calibration_repairs_variances_that_are_too_small() -> None:
     rng = np.random.default_rng(0)
     sd = np.array([1.0, 4.0])
-    held = LeftOut(sd * rng.normal(size=(400, 2)), np.full((400, 2), 1.0))
-    factors = calibration_factors(held)
+    held = LeftOut(sd * rng.normal(size=(ROWS, 2)), np.full((ROWS, 2), 1.0))
+    factors = calibration_factors(held, ROWS)
     assert factors == pytest.approx([1.0, 16.0], rel=0.25)
-    before, after = quality(np.zeros((400, 2)), held), scaled(held, factors)
+    before, after = quality(np.zeros((ROWS, 2)), held), scaled(held, factors)
     assert before.coverage[1] < 0.5
     assert (np.abs(after.residual) <= 1.96 * np.sqrt(after.variance)).mean(axis=0) == pytest.approx(
         0.95, abs=0.02
     )
-    assert coverage_after(held) == pytest.approx(0.95, abs=0.03)
+    assert coverage_after(held, ROWS) == pytest.approx(0.95, abs=0.03)
+
+
+def test_residuals_of_folds_count_as_those_of_a_model_with_all_rows() -> None:
+    held = LeftOut(np.random.default_rng(1).standard_normal((50, 3)), np.ones((50, 3)))
+    single, five = calibration_factors(held, 50), calibration_factors(held, 5)
+    assert five / single == pytest.approx(np.full(3, (1.0 - 1.0 / 5.0) / (1.0 - 1.0 / 50.0)))
+
+
+@pytest.mark.parametrize("rows", [50, 200])
+def test_widened_intervals_cover_95_percent_in_the_mean(rows: int) -> None:
+    """The scale of each interval off by an error of the size that the widening is made for."""
+    error = np.hypot(MODEL_ERROR, DEPENDENCE * np.sqrt(0.5 / rows))
+    off = np.exp(error * np.random.default_rng(2).standard_normal(200_000))
+    covered = 2.0 * ndtr(1.959964 * widening(rows) * off) - 1.0
+    assert covered.mean() == pytest.approx(0.95, abs=0.003)
+    assert (2.0 * ndtr(1.959964 * off) - 1.0).mean() < 0.942
 
 
 def test_limits_of_the_coverage_hold_it() -> None:
     """2000 outputs of 40 independent Gaussian errors each: their true coverage is known."""
     held = LeftOut(np.random.default_rng(5).standard_normal((40, 2000)), np.ones((40, 2000)))
-    low, high = coverage_interval(held)
-    true = 2.0 * ndtr(1.959964 * np.sqrt(calibration_factors(held))) - 1.0
+    low, high = coverage_interval(held, 40)
+    true = 2.0 * ndtr(1.959964 * np.sqrt(calibration_factors(held, 40))) - 1.0
     assert ((low <= true) & (true <= high)).mean() > 0.95
     assert (low < 0.95).all()
     assert (high > 0.95).all()
-    sure = coverage_interval(LeftOut(np.ones((40, 1)), np.ones((40, 1))))
-    assert np.ravel(sure) == pytest.approx([0.95, 0.95])
+
+
+def test_limits_are_wider_where_the_errors_have_tails() -> None:
+    rng = np.random.default_rng(6)
+    held = LeftOut(np.column_stack([rng.standard_normal(60), rng.standard_t(2.5, 60)]), np.ones((60, 2)))
+    low, high = coverage_interval(held, 60)
+    assert low[1] < low[0]
+    assert high[1] > high[0]
 
 
 def test_an_exactly_known_output_keeps_its_variance() -> None:
-    wider = (student_width(9) / 1.959964) ** 2
-    assert calibration_factors(LeftOut(np.zeros((9, 1)), np.zeros((9, 1)))) == pytest.approx([wider])
+    known = LeftOut(np.zeros((9, 1)), np.zeros((9, 1)))
+    assert calibration_factors(known, 9) == pytest.approx([widening(9) ** 2])
 
 
 def test_a_calibrated_model_differs_in_variance_alone() -> None:
@@ -168,7 +195,8 @@ def test_too_few_designs_and_unknown_models_are_named() -> None:
         fit_study(P.x[:9], P.y[:9])
     with pytest.raises(InputError, match="'forest' is no surrogate"):
         fit_study(P.x, P.y, models=("forest",))
-    assert default_models(40, 72) == ["gp", "gp_ard", "linear", "rbf"]
+    assert default_models(40, 72) == ["gp_ard", "linear", "rbf"]
+    assert default_models(60, 6) == ["gp", "gp_ard", "linear", "rbf"]
     assert default_models(401, 72, slopes=True) == ["gp", "gp_slopes", "linear", "rbf"]
 
 

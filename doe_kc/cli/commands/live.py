@@ -42,11 +42,6 @@ def live(
     from doe_kc.live.session import Session
 
     chosen = read_study(study, measurement=measurement, out=out)
-    if chosen.solver.command:
-        raise InputError(
-            f"{chosen.source}: an outside solver answers too slowly to be moved by hand; remove [solver] "
-            "command from a copy of the study to explore its axle with the package's own solver."
-        )
     session = Session(live_model(chosen, study_records(chosen)))
     serve(session, port=port, idle=60.0 * idle, browser=browser, say=lambda line: typer.echo(line, err=True))
     typer.echo("the live page has ended", err=True)

@@ -25,6 +25,13 @@ def open_laws(member: Hypothesis) -> list[Hypothesis]:
     return sorted(more, key=lambda v: len(v.sizes))
 
 
+def other_laws(member: Hypothesis) -> list[Hypothesis]:
+    """The member by every other law of at most one number more than the default one has."""
+    default = _default(member)
+    variants = EFFECTS[member.effect].variants(default)
+    return [v for v in variants if v.law != member.law and len(v.sizes) <= len(default.sizes) + 1]
+
+
 def _default(member: Hypothesis) -> Hypothesis:
     """The member by the default law of its effect."""
     known = EFFECTS[member.effect].hypotheses()
@@ -37,7 +44,7 @@ def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     They go on even with a little less evidence: an effect that is still missing may ask for them.
     """
     for member in current.model.members:
-        for law in open_laws(member)[:1]:
+        for law in open_laws(member)[:1] if not member.law else ():
             if len(law.sizes) == len(_default(member).sizes) + 1:
                 current = _opened(current, member, law, LAW_WINDOW, workers)
     return current

@@ -47,7 +47,8 @@ def leaders(screened: Sequence[Screened], fit: Fit, least: float, *, decoy: bool
     """The best and its rivals, which would explain the same; with `decoy` one of another kind is among them.
 
     fit: the model that they were screened beside. Effects that explain something else are no rivals: they
-    have their own step.
+    have their own step. How much of the same a rival explains, its gain says, or its correlation: the gain of
+    an effect that is large is little where a trace of it, to first order, could be as large.
     """
     if not screened or screened[0].gain <= least:
         return []
@@ -55,10 +56,13 @@ def leaders(screened: Sequence[Screened], fit: Fit, least: float, *, decoy: bool
     out = [best]
     own = _explained(best, fit)
     for s in screened[1:]:
-        if s.gain <= max(least, REFIT_SHARE * best.gain) or len(out) == REFITS_MOST:
+        if s.gain <= least or len(out) == REFITS_MOST:
             break
-        kind = sum(o.hypothesis.effect == s.hypothesis.effect for o in out)
-        if kind < PLACES_REFITTED and abs(_correlation(own, _explained(s, fit), fit)) > RIVAL_CORRELATION:
+        if sum(o.hypothesis.effect == s.hypothesis.effect for o in out) == PLACES_REFITTED:
+            continue
+        alike = abs(_correlation(own, _explained(s, fit), fit))
+        share = max(s.gain / best.gain, alike**2)
+        if alike > RIVAL_CORRELATION and share > REFIT_SHARE:
             out.append(s)
     small = (
         best.amplitudes.size > 0 and float(np.abs(best.amplitudes[0])) < RELEVANT

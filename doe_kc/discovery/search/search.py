@@ -15,7 +15,12 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
-from doe_kc.discovery.search.law_discrepancy import fit_discrepancy, is_friction, without_own_discrepancy
+from doe_kc.discovery.search.law_discrepancy import (
+    fit_discrepancy,
+    is_friction,
+    marginal,
+    without_own_discrepancy,
+)
 from doe_kc.discovery.search.laws import with_free_laws, with_open_laws
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -123,7 +128,8 @@ class EffectSearch:
     steps: tuple[Step, ...]
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
     first: Decision
-    """The first step whole: all that the verdict on a single effect takes."""
+    """The first step whole, or after an exchange of effects the first one since: where it began without any
+    effect, all that the verdict on a single effect takes."""
     screened: tuple[Screened, ...]
     """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
     with_law_discrepancy: Fit
@@ -137,6 +143,12 @@ class EffectSearch:
     prior: SetPrior
     """Probabilities of sets before the records."""
 
+    @property
+    def log_posterior(self) -> float:
+        """ln of the last set's probability, relative to a constant that all sets and errors share."""
+        last = self.with_law_discrepancy
+        return marginal(last) + self.prior.log(last.model.members)
+
 
 def search(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
     """Tune, then add, exchange and take out effects as long as the evidence asks for it.
@@ -147,40 +159,116 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
     tuned = tune(model)
     workers.watch("re-tuning", 1)
     screened = workers.screenings(tuned, library)
-    current = with_clutter(tuned, screened)
-    steps: list[Step] = []
+    state = _SearchState(tuned, (), with_clutter(tuned, screened), tuple(screened), {}, {}, prior)
+    return _continued(state, library, workers)
+
+
+def search_from(
+    before: EffectSearch,
+    start: FitStart,
+    changed: Hypothesis,
+    gain: float,
+    library: Sequence[Hypothesis],
+    workers: DiscoveryWorkers,
+) -> EffectSearch:
+    """The search, gone on from another set than its last one; the same where that has no equilibrium.
+
+    start: of a fit of that set to the records' own errors. changed: its member that the last set does not
+    have, or not by that law. gain: ln of its posterior odds against the last set.
+    """
+    (other,) = workers.fits([start], "exchanging effects")
+    if other is None:
+        return before
+    last, own, prior = before.with_law_discrepancy, before.tuned.model, before.prior
+    candidates, temper = (HypothesisGain(changed, gain, True),), max(1.0, other.residual_map.mean_square)
+    step = Step(last.model.members, before.with_effects.rms, candidates, temper, (changed,))
+    taken, _ = _with_laws(other, step.added, own.axle, workers, loops_known=False)
+    following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
+    errors = last.model.likelihood, following.model.likelihood
+    screened = tuple(rewhitened_screenings(before.screened, *errors))
+    steps = (*before.steps, step)
+    state = _SearchState(before.tuned, steps, following, screened, shares, without_own, prior)
+    return _continued(state, library, workers)
+
+
+@dataclass(frozen=True)
+class _SearchState:
+    """A search under way."""
+
+    tuned: Fit
+    """See `EffectSearch`, as those below of the same names."""
+    steps: tuple[Step, ...]
+    current: Fit
+    """The set that it goes on from."""
+    screened: tuple[Screened, ...]
+    """Every hypothesis as it was screened last, in the errors of `current`."""
+    shares: Mapping[str, float]
+    without_own: Mapping[str, Likelihood]
+    prior: SetPrior
+
+
+def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
+    """The search from there to its end."""
+    model, prior, current = state.tuned.model, state.prior, state.current
     first: Decision | None = None
-    shares: dict[str, float] = {}
-    without_own: dict[str, Likelihood] = {}
-    loops_known = False
+    steps, loops_known = list(state.steps), False
+    shares, without_own = state.shares, state.without_own
+    screened: Sequence[Screened] = state.screened
     while True:
         decision = _decision(current, library, prior, workers, screened)
         first = first or decision
         steps.append(decision.step(model.likelihood))
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
-        if full or len(steps) == MOST_STEPS:
+        if full or len(steps) >= MOST_STEPS:
             break
         before = current.model.likelihood
         if decision.accepted:
-            current = decision.trials[0].fit
-            if not loops_known and any(is_friction(current, h) for h in steps[-1].added):
-                current, loops_known = with_conditioning(current, model.axle, workers)
-            current = with_open_laws(current, workers)
+            taken, added = decision.trials[0].fit, steps[-1].added
+            current, loops_known = _with_laws(taken, added, model.axle, workers, loops_known=loops_known)
         else:
             following = with_free_laws(current, workers)
             if following is current:
                 break
             current = following
-        current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
-        exact = refit_to_errors(own_loops(current, model.axle), model.likelihood)
-        current, shares = fit_discrepancy(exact)
-        without_own = without_own_discrepancy(exact, shares)
-        if current.model.likelihood is not before:
-            current = converged_fit(current, workers)
+        current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         screened = _latest(screened, decision, current)
     last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)
-    return EffectSearch(tuned, tuple(steps), first, last, current, with_effects, shares, without_own, prior)
+    return EffectSearch(
+        state.tuned, tuple(steps), first, last, current, with_effects, shares, without_own, prior
+    )
+
+
+def _with_laws(
+    taken: Fit, added: Sequence[Hypothesis], own: Axle, workers: DiscoveryWorkers, *, loops_known: bool
+) -> tuple[Fit, bool]:
+    """A set that was taken, with the loops and the laws that the records ask for, and whether the loops are
+    settled. own: the axle as given."""
+    if not loops_known and any(is_friction(taken, h) for h in added):
+        taken, loops_known = with_conditioning(taken, own, workers)
+    return with_open_laws(taken, workers), loops_known
+
+
+def _settled(
+    current: Fit,
+    before: Likelihood,
+    own: EffectModel,
+    without_own: Mapping[str, Likelihood],
+    prior: SetPrior,
+    workers: DiscoveryWorkers,
+) -> tuple[Fit, dict[str, float], dict[str, Likelihood]]:
+    """A set without what it makes needless, its laws' discrepancy among the errors, with that discrepancy's
+    shares and what `without_own_discrepancy` says.
+
+    before: the errors of the set before it. own: the model without effects, in the records' own errors.
+    without_own: of the set before it.
+    """
+    current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
+    exact = refit_to_errors(own_loops(current, own.axle), own.likelihood)
+    settled, shares = fit_discrepancy(exact)
+    if settled.model.likelihood is not before:
+        settled = converged_fit(settled, workers)
+    return settled, shares, without_own_discrepancy(exact, shares)
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
@@ -200,8 +288,8 @@ def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
     model = replace(tuned.model, nuisances=sides.with_traces(names, np.array(columns).T))
     z = np.concatenate([tuned.z, np.zeros(len(names))])
     jacobian = model.jacobian(tuned.jacobian.own)
-    begun = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
-    return chord_fit(begun, model)
+    state = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
+    return chord_fit(state, model)
 
 
 def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> tuple[Fit, bool]:

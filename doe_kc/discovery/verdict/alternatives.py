@@ -121,7 +121,8 @@ def _is_first(search: EffectSearch, base: Fit) -> bool:
     """Whether the first step began with exactly the set without the last member, in the same errors."""
     before = search.first.before.model
     errors = zip(before.likelihood.curves, base.model.likelihood.curves, strict=True)
-    return len(base.model.members) == 1 and all(a is b for a, b in errors)
+    alone = len(base.model.members) == 1 and not before.members
+    return alone and all(a is b for a, b in errors)
 
 
 def _from_first_step(

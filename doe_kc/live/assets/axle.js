@@ -16,7 +16,8 @@ class AxleView {
     this.picked = picked;
     this.chosen = "";
     this.listen();
-    new ResizeObserver(() => this.paint()).observe(canvas);
+    this.width = this.height = 0;
+    new ResizeObserver(([entry]) => { this.width = entry.contentRect.width; this.height = entry.contentRect.height; this.paint(); }).observe(canvas);
   }
 
   setModel(model) {
@@ -67,13 +68,11 @@ class AxleView {
   }
 
   paint() {
-    const ratio = devicePixelRatio || 1, box = this.canvas.getBoundingClientRect();
-    this.width = box.width;
-    this.height = box.height;
-    if (!this.shape || !this.lines || box.width < 10) return;
-    if (this.canvas.width !== Math.round(box.width * ratio) || this.canvas.height !== Math.round(box.height * ratio)) {
-      this.canvas.width = Math.round(box.width * ratio);
-      this.canvas.height = Math.round(box.height * ratio);
+    const ratio = devicePixelRatio || 1, across = Math.round(this.width * ratio), high = Math.round(this.height * ratio);
+    if (!this.shape || !this.lines || this.width < 10) return;
+    if (this.canvas.width !== across || this.canvas.height !== high) {
+      this.canvas.width = across;
+      this.canvas.height = high;
     }
     const ctx = this.ctx;
     ctx.setTransform(ratio, 0, 0, ratio, 0, 0);

@@ -1,7 +1,7 @@
 "use strict";
 // One chart a curve: measured with its band behind, nominal, snapshots and the present axle as uPlot series.
 const COLOURS = { nominal: "#e69f00", present: "#0072b2", snapshots: ["#009e73", "#cc79a7", "#8c5a2b"], measured: "#444444" };
-const LINE = 1.6, THIN = 0.8;
+const PRESENT_LINE = -1, LINE = 1.6, THIN = 0.8, DASH = [7, 4];
 
 function tickTexts(ticks, unit, at) {
   return ticks.map((v, i) => String(+v.toPrecision(6)).replace("-", "−") + (i === at ? ` ${unit}` : ""));
@@ -62,33 +62,44 @@ class CurveChart {
     return { input: found.input, ...found.responses[this.place.response] };
   }
 
-  // x, then left and right of: nominal, three snapshots, present (on top).
-  data() {
-    const { layout, present, references } = this.page;
-    const { loadCase, response } = this.place;
-    const rows = [this.loadCase.input];
-    for (const drawn of [...[0, 1, 2, 3].map((i) => references[i] && references[i].drawn), present && present.drawn]) {
-      for (const side of [0, 1]) {
-        rows.push(drawn && this.sides.includes(side) ? layout.curve(drawn, loadCase, response, side) : this.empty());
-      }
-    }
-    return rows;
+  // What is drawn, in this order: nominal, snapshots, present (on top), each for the sides shown.
+  lineup() {
+    const { references, side } = this.page, count = Math.min(references.length, 1 + COLOURS.snapshots.length);
+    const one = (of, stroke, width) => this.sides.map((s) => ({ of, side: s, stroke, width: s === 0 || side === "R" ? width : THIN }));
+    const lines = [];
+    for (let i = 0; i < count; i += 1) lines.push(...one(i, i ? COLOURS.snapshots[i - 1] : COLOURS.nominal, LINE));
+    return [...lines, ...one(PRESENT_LINE, COLOURS.present, LINE + 0.4)];
   }
 
-  empty() {
-    const n = this.loadCase.input.length;
-    if (!this.nothing || this.nothing.length !== n) this.nothing = new Array(n).fill(null);
-    return this.nothing;
+  frame(line) { return line.of === PRESENT_LINE ? this.page.present : this.page.references[line.of]; }
+
+  // x, then a row a line.
+  data() {
+    const { loadCase, response } = this.place;
+    return [this.loadCase.input, ...this.lines.map((line) => {
+      const frame = this.frame(line);
+      return frame ? this.page.layout.curve(frame.drawn, loadCase, response, line.side) : this.empty();
+    })];
   }
+
+  // Row of the present curve on one side, as the chart draws it.
+  presentRow(side) { return this.rows[1 + this.lines.findIndex((line) => line.of === PRESENT_LINE && line.side === side)]; }
+
+  empty() { return new Array(this.loadCase.input.length).fill(null); }
 
   limits() {
     let low = Infinity, high = -Infinity;
-    const see = (v) => { if (v !== null && Number.isFinite(v)) { if (v < low) low = v; if (v > high) high = v; } };
-    const [from, to] = this.zoom || [-Infinity, Infinity];
-    const rows = this.rows || this.data(), x = rows[0];
-    for (let k = 1; k < rows.length; k += 1) for (let i = 0; i < x.length; i += 1) if (x[i] >= from && x[i] <= to) see(rows[k][i]);
-    const m = this.measured;
-    if (m) for (const s of this.sides) m.input.forEach((v, i) => { if (v >= from && v <= to) see(m.mean[s][i]); });
+    const [from, to] = this.zoom || [-Infinity, Infinity], rows = this.rows, x = rows[0];
+    for (let k = 1; k < rows.length; k += 1) {
+      const row = rows[k];
+      for (let i = 0; i < x.length; i += 1) {
+        const v = row[i];
+        if (v === null || !(x[i] >= from && x[i] <= to)) continue;
+        if (v < low) low = v;
+        if (v > high) high = v;
+      }
+    }
+    for (const side of this.sides) for (const [x0, v] of this.record ? this.record.sides[side].points : []) if (x0 >= from && x0 <= to) { if (v < low) low = v; if (v > high) high = v; }
     if (low > high) return [-1, 1];
     const room = 0.06 * (high - low) || 0.1 * Math.abs(high) || 0.1;
     return [low - room, high + room];
@@ -101,21 +112,15 @@ class CurveChart {
     return [low, high];
   }
 
-  series() {
-    const dash = this.page.approximate ? [7, 4] : undefined;
-    const all = [{}];
-    const looks = [[COLOURS.nominal, undefined, LINE], ...COLOURS.snapshots.map((c) => [c, undefined, LINE]), [COLOURS.present, dash, LINE + 0.4]];
-    for (const [stroke, pattern, width] of looks) {
-      for (const side of [0, 1]) all.push({ stroke, dash: pattern, width: side === 0 || this.page.side === "R" ? width : THIN, points: { show: false }, spanGaps: false });
-    }
-    return all;
-  }
+  series() { return [{}, ...this.lines.map(({ stroke, width }) => ({ stroke, width, points: { show: false }, spanGaps: false }))]; }
 
   build() {
     if (this.plot) this.plot.destroy();
     const { width, height } = this.plotBox.getBoundingClientRect();
     const font = '11px system-ui, "DejaVu Sans", sans-serif';
     const axis = { font, labelFont: font, stroke: "#56616c", grid: { stroke: "#e6e9ec", width: 1 }, ticks: { size: 3, stroke: "#9aa4ad" } };
+    this.lines = this.lineup();
+    this.record = prepared(this.measured, this.loadCase.input);
     this.rows = this.data();
     this.plot = new uPlot({
       width: Math.max(80, Math.floor(width)), height: Math.max(70, Math.floor(height)),
@@ -127,6 +132,7 @@ class CurveChart {
       series: this.series(),
       cursor: { drag: { x: true, y: false, setScale: false }, points: { show: false }, y: false },
       select: { show: true },
+      legend: { show: false },
       hooks: {
         drawAxes: [(u) => this.drawMeasured(u)],
         setCursor: [(u) => this.readOut(u)],
@@ -138,6 +144,8 @@ class CurveChart {
         }],
       },
     }, this.rows, this.plotBox);
+    this.setDashes();
+    this.plot.redraw(false);
     this.plot.over.addEventListener("dblclick", () => { this.zoom = null; this.paint(); });
     this.plot.over.setAttribute("aria-hidden", "true");
     this.readOut(this.plot);
@@ -151,13 +159,23 @@ class CurveChart {
 
   paint() {
     if (!this.plot) return;
+    if (this.lines.length !== this.sides.length * (1 + Math.min(this.page.references.length, 4))) { this.build(); return; }
     this.rows = this.data();
+    this.setDashes();
     this.plot.setData(this.rows, true);
     this.readOut(this.plot);
   }
 
+  // Dashed is what the true model did not give: of an outside solver the surrogate's.
+  setDashes() {
+    this.lines.forEach((line, i) => {
+      const frame = this.frame(line), surrogate = (line.of === PRESENT_LINE && this.page.approximate) || (frame && frame.text.true === false);
+      this.plot.series[1 + i].dash = surrogate ? DASH : undefined;
+    });
+  }
+
   drawMeasured(u) {
-    const m = this.measured, ctx = u.ctx, ratio = devicePixelRatio;
+    const ctx = u.ctx, ratio = devicePixelRatio, one = this.page.side === "R";
     ctx.save();
     ctx.beginPath();
     ctx.rect(u.bbox.left, u.bbox.top, u.bbox.width, u.bbox.height);
@@ -165,30 +183,27 @@ class CurveChart {
     const path = (xs, ys) => {
       ctx.beginPath();
       let pen = false;
-      xs.forEach((x, i) => {
-        if (ys[i] === null || !Number.isFinite(ys[i])) { pen = false; return; }
-        ctx[pen ? "lineTo" : "moveTo"](u.valToPos(x, "x", true), u.valToPos(ys[i], "y", true));
+      for (let i = 0; i < xs.length; i += 1) {
+        if (!Number.isFinite(ys[i])) { pen = false; continue; }
+        const x = u.valToPos(xs[i], "x", true), y = u.valToPos(ys[i], "y", true);
+        if (pen) ctx.lineTo(x, y);
+        else ctx.moveTo(x, y);
         pen = true;
-      });
+      }
     };
-    for (const side of m ? this.sides : []) {
-      const mean = m.mean[side], half = m.half[side];
-      if (m.sd) {
-        const x = [...m.input, ...[...m.input].reverse()];
-        const y = [...mean.map((v, i) => v === null ? null : v + m.sd[side][i]), ...mean.map((v, i) => v === null ? null : v - m.sd[side][i]).reverse()];
-        path(x, y);
+    for (const side of this.record ? this.sides : []) {
+      const { mean, band, loops } = this.record.sides[side];
+      if (band) {
+        path(this.record.around, band);
         ctx.fillStyle = "rgba(120,128,136,0.38)";
         ctx.fill();
       }
       ctx.strokeStyle = "#9aa4ad";
       ctx.lineWidth = 0.7 * ratio;
-      if (half.some((v) => v !== null && Math.abs(v) > 0)) for (const sign of [1, -1]) {
-        path(m.input, mean.map((v, i) => v === null || half[i] === null ? null : v + sign * half[i]));
-        ctx.stroke();
-      }
+      for (const loop of loops) { path(this.record.input, loop); ctx.stroke(); }
       ctx.strokeStyle = COLOURS.measured;
-      ctx.lineWidth = (side === 0 || this.page.side === "R" ? 1.2 : 0.6) * ratio;
-      path(m.input, mean);
+      ctx.lineWidth = (side === 0 || one ? 1.2 : 0.6) * ratio;
+      path(this.record.input, mean);
       ctx.stroke();
     }
     this.drawLoop(u, path);
@@ -212,14 +227,13 @@ class CurveChart {
 
   // RMS between the present and the measured curve of the first side shown, in the response's unit.
   rms() {
-    const m = this.measured, { layout, present } = this.page;
-    if (!m || !present) return NaN;
-    const y = layout.curve(present.drawn, this.place.loadCase, this.place.response, this.sides[0]);
+    if (!this.record || !this.page.present) return NaN;
+    const side = this.sides[0], y = this.presentRow(side), { at, left, share } = this.record, { mean } = this.record.sides[side];
     let sum = 0, n = 0;
-    m.input.forEach((x, i) => {
-      const v = m.mean[this.sides[0]][i], mine = interpolate(x, this.loadCase.input, y);
-      if (v !== null && Number.isFinite(mine)) { sum += (mine - v) ** 2; n += 1; }
-    });
+    for (let k = 0; k < at.length; k += 1) {
+      const i = left[k], v = mean[at[k]], mine = y[i] + share[k] * (y[i + 1] - y[i]);
+      if (Number.isFinite(v) && Number.isFinite(mine)) { sum += (mine - v) ** 2; n += 1; }
+    }
     return n ? Math.sqrt(sum / n) : NaN;
   }
 
@@ -227,14 +241,42 @@ class CurveChart {
     const unit = this.response.unit, i = u.cursor.idx, side = this.sides[0];
     if (i === null || i === undefined || u.cursor.left < 0) {
       const rms = this.rms();
-      this.read.textContent = Number.isFinite(rms) ? `${short(rms, 3)} ${unit}` : unit;
+      put(this.read, Number.isFinite(rms) ? `${short(rms, 3)} ${unit}` : unit);
       return;
     }
-    const x = this.rows[0][i], now = this.rows[9 + side][i], m = this.measured;
-    const measured = m ? interpolate(x, m.input, m.mean[side]) : NaN;
+    const x = this.rows[0][i], now = this.presentRow(side)[i];
+    const measured = this.record ? interpolate(x, this.record.input, this.record.sides[side].mean) : NaN;
     const target = Number.isFinite(measured) ? `, measured ${short(measured, 3)}` : "";
-    this.read.textContent = `${short(x, 3)} ${this.loadCase.unit}: ${short(now, 3)}${target} ${unit}`;
+    put(this.read,  `${short(x, 3)} ${this.loadCase.unit}: ${short(now, 3)}${target} ${unit}`);
   }
+}
+
+// A measured curve as numbers, what does not change with the sliders computed once: band, loops, and where each
+// measured input lies among the model's: at[k] of the record is share[k] beyond left[k]. NaN where nothing is known.
+function prepared(measured, grid) {
+  if (!measured) return null;
+  const numbers = (row) => Float64Array.from(row, (v) => v === null ? NaN : v), input = numbers(measured.input), back = Float64Array.from(input).reverse();
+  const joined = (a, b) => { const out = new Float64Array(a.length + b.length); out.set(a); out.set(b, a.length); return out; };
+  const at = [], left = [], share = [];
+  input.forEach((x, k) => {
+    if (x < grid[0] || x > grid[grid.length - 1]) return;
+    let i = 0;
+    while (i < grid.length - 2 && grid[i + 1] < x) i += 1;
+    at.push(k);
+    left.push(i);
+    share.push((x - grid[i]) / (grid[i + 1] - grid[i]));
+  });
+  const sides = [0, 1].map((side) => {
+    const mean = numbers(measured.mean[side]), half = numbers(measured.half[side]), sd = measured.sd && numbers(measured.sd[side]);
+    const shifted = (sign, by) => mean.map((v, i) => v + sign * by[i]);
+    return {
+      mean,
+      band: sd ? joined(shifted(1, sd), shifted(-1, sd).reverse()) : null,
+      loops: half.some((v) => Math.abs(v) > 0) ? [shifted(1, half), shifted(-1, half)] : [],
+      points: Array.from(input, (x, i) => [x, mean[i]]).filter((p) => Number.isFinite(p[1])),
+    };
+  });
+  return { input, around: joined(input, back), sides, at, left, share };
 }
 
 // One curve a load case to begin with: where the nominal axle is farthest from the records, by their range.

@@ -41,6 +41,13 @@ class AnswerLayout {
   totals(exact) { const at = this.d + 2 * this.m; return { gap: exact[at], rating: exact[at + 1], seconds: exact[at + 2] }; }
 }
 
+// Text of a node, touched only where it is another: the browser lays out anew whatever is touched.
+function put(node, text) {
+  if (node.shownText === text) return;
+  node.shownText = text;
+  node.textContent = text;
+}
+
 function short(value, digits = 4) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "–";
   if (value === 0) return "0";

@@ -5,7 +5,7 @@ const CHARTS = 8, TOP = 10;
 const live = {
   model: null, layout: null, answers: null, state: null, present: null, references: [], influence: null,
   side: "L", approximate: false, seq: 0, sent: 0, painted: -1, shown: -1, shownAt: 0, arrivedAt: 0, order: [], rows: new Map(), charts: [], axle: null,
-  dragging: null, point: "", source: null, paints: 0,
+  dragging: null, point: "", source: null, paints: 0, work: null, rowsSeen: null,
 };
 
 function make(tag, attributes = {}, ...children) {
@@ -46,6 +46,7 @@ function onModel(model) {
   fillCases();
   live.axle.setModel(model);
   $("advice-box").hidden = !model.data;
+  if (!live.source.embedded) say(model.outside ? "connected; dashed curves are a surrogate's, solid ones the outside solver's" : "connected; every picture is the true model's");
 }
 
 function onState(state) {
@@ -76,6 +77,7 @@ function onFrame(frame) {
   if (frame.kind === PRESENT) {
     if (frame.seq < live.painted || frame.exact.length !== live.answers.d + 2 * live.answers.m + 3) return;
     live.present = frame;
+    if (live.model.outside) document.body.classList.toggle("approximate", frame.text.true === false);
     live.arrivedAt = performance.now();
     live.seq = Math.max(live.seq, frame.seq);
   } else if (frame.kind === REFERENCE) {
@@ -99,6 +101,7 @@ function onSaid(said) {
   else if (said.kind === "refused") { say(said.reason); document.body.dataset.refused = said.reason; snapBack(); }
   else if (said.kind === "kept") say(said.sentence);
   else if (said.kind === "advice") showAdvice(said);
+  else if (said.kind === "work") showWork(said);
 }
 
 // ---------------------------------------------------------------- painting
@@ -113,9 +116,9 @@ function paint() {
   if (live.shape) {
     live.axle.setShape(live.shape);
     const c = live.model.cases.find((k) => k.id === live.shape.text.load_case);
-    $("axle-input").textContent = `${short(live.shape.text.input, 3)} ${c ? c.unit : ""}`;
+    put($("axle-input"), `${short(live.shape.text.input, 3)} ${c ? c.unit : ""}`);
     const arrows = live.axle.arrows ? `; arrows: moved points ×${ARROW_FACTOR}` : "";
-    $("arrow-note").textContent = `drawn ×${live.axle.factor}${arrows}`;
+    put($("arrow-note"), `drawn ×${live.axle.factor}${arrows}`);
     live.shape = null;
   }
   if (!live.present || !live.built) return;
@@ -125,7 +128,7 @@ function paint() {
   paintSliders();
   const failure = live.present.text.failure;
   $("failure").hidden = !failure;
-  $("failure").textContent = failure ? `No answer: ${failure}. The last good design is shown.` : "";
+  put($("failure"), failure ? `No answer: ${failure}. The last good design is shown.` : "");
   live.painted = live.present.seq;
   live.paints += 1;
   document.body.dataset.seq = live.painted;
@@ -135,12 +138,12 @@ function paint() {
 
 function paintTotals() {
   const totals = live.answers.totals(live.present.exact);
-  $("gap").textContent = short(totals.gap, 4);
-  $("rating").textContent = short(totals.rating, 4);
-  $("seconds").textContent = Number.isFinite(totals.seconds) ? `${(1000 * totals.seconds).toFixed(0)} ms` : "–";
+  put($("gap"), short(totals.gap, 4));
+  put($("rating"), short(totals.rating, 4));
+  put($("seconds"), Number.isFinite(totals.seconds) ? `${(1000 * totals.seconds).toFixed(0)} ms` : "–");
   const values = live.answers.characteristics(live.present.exact), rated = live.model.characteristics.filter((c) => c.target !== null);
   const inside = rated.filter((c) => { const v = values[live.model.characteristics.indexOf(c)]; return v >= c.low && v <= c.high; });
-  $("inside").textContent = rated.length ? `${inside.length} of ${rated.length}` : "–";
+  put($("inside"), rated.length ? `${inside.length} of ${rated.length}` : "–");
 }
 
 // ---------------------------------------------------------------- sliders
@@ -325,29 +328,83 @@ function fillSelected() {
 }
 
 // ---------------------------------------------------------------- effects
+// Those of the axle file first; variants by another law are shown once they are on.
 function buildEffects() {
   $("effects-box").hidden = !live.model.effects.length;
-  $("effects").replaceChildren(...live.model.effects.map((e) => {
-    const on = make("input", { type: "checkbox", "aria-label": e.label });
-    const sizes = e.sizes.map((s) => {
-      const field = make("input", { type: "number", step: "any", value: s.typical, "aria-label": `${e.label}, ${s.label} in ${s.unit}`, "data-size": s.name });
-      return [field, make("label", {}, `${s.label} `, field, s.unit === "-" ? "" : s.unit)];
-    });
-    const tell = () => ask({ kind: "effect", name: e.name, sizes: on.checked ? Object.fromEntries(sizes.map(([f]) => [f.dataset.size, Number(f.value)])) : null });
-    on.addEventListener("change", tell);
-    for (const [field] of sizes) field.addEventListener("change", () => on.checked && tell());
-    return make("div", { class: "effect", "data-name": e.name, title: e.physics },
-      make("label", {}, on, ` ${e.label}`), make("div", { class: "sizes" }, ...sizes.map((s) => s[1])));
-  }));
+  $("effects").replaceChildren(...live.model.effects.map(effectRow));
+}
+
+function effectRow(e) {
+  const on = make("input", { type: "checkbox", "aria-label": e.label });
+  const sizes = e.sizes.map((s) => {
+    const field = make("input", { type: "number", step: "any", value: s.value, "aria-label": `${e.label}, ${s.label} in ${s.unit}`, "data-size": s.name });
+    return [field, make("label", {}, `${s.label} `, field, s.unit === "-" ? "" : s.unit)];
+  });
+  const back = make("button", { class: "back", title: e.of_file ? "As in the axle file" : "Off, sizes typical", "aria-label": `Reset ${e.label}`, text: "↺" });
+  const lock = make("input", { type: "checkbox", class: "keep", "aria-label": `Lock ${e.label}` });
+  const tell = () => ask({ kind: "effect", name: e.name, sizes: on.checked ? Object.fromEntries(sizes.map(([f]) => [f.dataset.size, Number(f.value)])) : null });
+  on.addEventListener("change", tell);
+  for (const [field] of sizes) field.addEventListener("change", () => on.checked && tell());
+  back.addEventListener("click", () => { for (const [i, s] of e.sizes.entries()) sizes[i][0].value = s.value; ask({ kind: "reset_effect", name: e.name }); });
+  lock.addEventListener("change", () => send({ kind: "lock_effect", name: e.name, on: lock.checked }));
+  const head = make("label", { class: "what" }, on, ` ${e.label}`, e.of_file ? make("small", { class: "soft", text: " of the axle file" }) : "");
+  return make("div", { class: "effect", "data-name": e.name, title: e.physics },
+    make("div", { class: "head" }, head, back, make("label", { class: "lock", title: "Lock: Discover does not look for it" }, lock)),
+    make("div", { class: "sizes" }, ...sizes.map((s) => s[1])));
 }
 
 function updateEffects() {
-  for (const node of document.querySelectorAll("#effects .effect")) {
-    const sizes = live.state.effects[node.dataset.name];
-    node.querySelector("input[type=checkbox]").checked = sizes !== undefined;
-    for (const field of node.querySelectorAll("[data-size]")) if (sizes && field.dataset.size in sizes) field.value = sizes[field.dataset.size];
+  for (const e of live.model.effects) {
+    const node = document.querySelector(`#effects .effect[data-name="${CSS.escape(e.name)}"]`), sizes = live.state.effects[e.name];
+    const on = sizes === undefined ? e.of_file : sizes !== null;
+    node.querySelector("input[type=checkbox]").checked = on;
+    node.querySelector(".keep").checked = live.state.locked_effects.includes(e.name);
+    node.querySelector(".back").disabled = sizes === undefined;
+    node.classList.toggle("on", on);
+    node.hidden = Boolean(e.law) && !on;
+    for (const [i, field] of node.querySelectorAll("[data-size]").entries()) {
+      if (sizes && field.dataset.size in sizes) field.value = sizes[field.dataset.size];
+      else if (e.of_file && sizes === undefined) field.value = e.sizes[i].value;
+    }
   }
 }
+
+// ---------------------------------------------------------------- beside the page
+function seconds(s) { return s < 90 ? `${Math.round(s)} s` : `${(s / 60).toFixed(1)} min`; }
+
+function showWork(work) {
+  const task = work.task, ended = task && ["done", "failed"].includes(task.state);
+  live.work = { ...work, at: performance.now() };
+  $("work").hidden = !task;
+  for (const what of ["correlate", "discover"]) $(what).disabled = Boolean(task) && !ended;
+  if (task) {
+    const name = task.name[0].toUpperCase() + task.name.slice(1);
+    document.body.dataset.task = `${task.name} ${task.state}`;
+    $("work").className = task.state;
+    $("work-bar").hidden = $("work-cancel").hidden = Boolean(ended);
+    $("work-cancel").disabled = task.state === "cancelling";
+    $("work-forget").hidden = !ended;
+    $("work-adopt").hidden = !task.adoptable;
+    if (task.total) { $("work-bar").max = task.total; $("work-bar").value = task.done; } else $("work-bar").removeAttribute("value");
+    const lines = task.state === "done" ? task.lines : [task.words];
+    const said = lines.map((line, i) => make("span", { text: i ? line : `${name}: ${line}` }));
+    if ($("work-words").textContent !== said.map((n) => n.textContent).join("")) $("work-words").replaceChildren(...said);
+    const left = task.left === null ? "" : `, ${seconds(task.left)} left`, rate = task.rate === null ? "" : `, ${short(task.rate, 2)} a second`;
+    $("work-left").textContent = ended ? seconds(task.seconds) : task.total ? `${task.done} of ${task.total}${rate}${left}` : "";
+  } else delete document.body.dataset.task;
+  showOutside();
+}
+
+// What is dashed, and for how long the outside solver has been asked.
+function showOutside() {
+  const outside = live.work && live.work.outside;
+  if (!outside) return;
+  const asked = outside.confirming === null ? "" : ` The outside solver is at work on this design: ${seconds(outside.confirming + (performance.now() - live.work.at) / 1000)}.`;
+  document.body.dataset.confirming = outside.confirming === null ? "no" : "yes";
+  $("approximation").hidden = false;
+  $("approximation").textContent = outside.sentence + asked;
+}
+setInterval(() => { if (live.work && live.work.outside && live.work.outside.confirming !== null) showOutside(); }, 1000);
 
 // ---------------------------------------------------------------- curves
 function buildCharts() {
@@ -363,6 +420,11 @@ function buildCharacteristics() {
   const body = document.querySelector("#characteristics tbody");
   body.replaceChildren();
   live.cells = [];
+  if (live.rowsSeen) live.rowsSeen.disconnect();
+  live.rowsSeen = new IntersectionObserver((changes) => {
+    for (const { target, isIntersecting } of changes) target.seen = isIntersecting;
+    wantPaint();
+  }, { root: body.closest(".scroll"), rootMargin: "60px" });
   let before = "";
   const order = live.model.characteristics.map((c, i) => [c, i]);
   const rank = (c) => c.load_case === "static" ? -1 : live.model.cases.findIndex((k) => k.id === c.load_case);
@@ -385,6 +447,7 @@ function buildCharacteristics() {
     row.addEventListener("click", () => { $("selected").value = String(1 + i); arrange(); markChosen(); });
     body.append(row);
     live.cells.push({ c, i, row, cells });
+    live.rowsSeen.observe(row);
   });
 }
 
@@ -392,17 +455,19 @@ function markChosen() {
   for (const { row, i } of live.cells) row.classList.toggle("chosen", $("selected").value === String(1 + i));
 }
 
-function paintCharacteristics() {
+// Rows out of sight are painted when they come into it: each one costs the browser a layout.
+function paintCharacteristics(all = false) {
   const values = live.answers.characteristics(live.present.exact), terms = live.answers.terms(live.present.exact);
   const last = live.references.at(-1) || live.references[0], before = last && last.exact.length ? live.answers.characteristics(referenceExact(last)) : null;
   for (const { c, i, row, cells } of live.cells) {
+    if (!all && row.seen === false) continue;
     const v = values[i], z = c.target === null ? NaN : (v - c.target) / c.sd;
-    cells[1].textContent = short(v, 3);
-    cells[2].textContent = Number.isFinite(z) ? (z > 0 ? "+" : "") + short(z, 2) : "";
-    cells[3].textContent = Number.isFinite(terms[i]) ? short(terms[i], 3) : "";
+    put(cells[1], short(v, 3));
+    put(cells[2], Number.isFinite(z) ? (z > 0 ? "+" : "") + short(z, 2) : "");
+    put(cells[3], Number.isFinite(terms[i]) ? short(terms[i], 3) : "");
     const change = before ? v - before[i] : NaN;
     const told = Number.isFinite(change) && Math.abs(change) > 5e-4 * Math.max(Math.abs(v), 0.01);
-    cells[4].textContent = told ? (change > 0 ? "+" : "") + short(change, 2) : "";
+    put(cells[4], told ? (change > 0 ? "+" : "") + short(change, 2) : "");
     const inside = c.target !== null && v >= c.low && v <= c.high;
     row.classList.toggle("inside", inside);
     row.classList.toggle("outside", c.target !== null && !inside);
@@ -479,7 +544,7 @@ function socketSource() {
   const waiting = [];
   const socket = new WebSocket(address);
   socket.binaryType = "arraybuffer";
-  socket.onopen = () => { for (const text of waiting.splice(0)) socket.send(text); say("connected; every picture is the true model's"); document.body.dataset.connected = "yes"; };
+  socket.onopen = () => { for (const text of waiting.splice(0)) socket.send(text); document.body.dataset.connected = "yes"; };
   socket.onmessage = (e) => { if (typeof e.data === "string") onSaid(JSON.parse(e.data)); else onFrame(decodeFrame(e.data)); };
   socket.onclose = () => { document.body.dataset.connected = "no"; document.body.classList.add("ended"); say("The connection has ended: start doe-kc live again and open its new address. What you see stays."); };
   return { embedded: false, send: (message) => { const text = JSON.stringify(message); if (socket.readyState === 0) waiting.push(text); else if (socket.readyState === 1) socket.send(text); } };
@@ -500,6 +565,9 @@ function wire() {
   $("unlock-shown").addEventListener("click", () => send({ kind: "lock", paths: shownPaths(), on: false }));
   $("lock-others").addEventListener("click", () => { const shown = shownPaths(); send({ kind: "lock", on: true }); send({ kind: "lock", paths: shown, on: false }); });
   for (const what of ["best_step", "helpers", "invisible"]) $(what).addEventListener("click", () => { say("computing …"); send({ kind: what }); });
+  for (const what of ["correlate", "discover"]) $(what).addEventListener("click", () => send({ kind: what }));
+  for (const what of ["cancel", "forget"]) $(`work-${what}`).addEventListener("click", () => send({ kind: what }));
+  $("work-adopt").addEventListener("click", () => ask({ kind: "adopt" }));
   $("side").addEventListener("change", () => { live.side = $("side").value; for (const c of live.charts) c.build(); });
   $("axle-case").addEventListener("change", () => setCase());
   $("axle-row").addEventListener("input", look);
@@ -514,6 +582,7 @@ function wire() {
   });
 }
 
+window.addEventListener("beforeprint", () => { if (live.present && live.built) paintCharacteristics(true); });
 live.axle = new AxleView($("axle"), (point) => { live.point = point; $("search").value = ""; showSliders(); });
 wire();
 live.source = window.embeddedSource ? window.embeddedSource() : socketSource();

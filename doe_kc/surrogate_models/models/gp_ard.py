@@ -11,12 +11,20 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models import posterior as gp
-from doe_kc.surrogate_models.ard_likelihood import Belief, Scales, best_start, even_scales, maximise
+from doe_kc.surrogate_models.ard_likelihood import (
+    Belief,
+    Pairs,
+    Scales,
+    best_start,
+    even_scales,
+    fixed_point,
+    maximise,
+)
 from doe_kc.surrogate_models.interface import Fitted, SurrogateModel
 from doe_kc.surrogate_models.kernel import CovarianceKernel
 from doe_kc.surrogate_models.learning import Sample
 from doe_kc.surrogate_models.models._base import register
-from doe_kc.surrogate_models.models.gp import FittedGaussianProcess
+from doe_kc.surrogate_models.models.gp import RELEVANCE_ROWS, FittedGaussianProcess
 from doe_kc.surrogate_models.training import Scaling
 
 LEAST_CURVATURE = 1e-12
@@ -34,13 +42,15 @@ FIRST_ROWS = 200
 class RelevanceProcess(SurrogateModel):
     """Matérn kernel of each output, its scales by `ard_likelihood`.
 
-    iterations: of each output by itself. shared: of the second maximisation, with a Gaussian prior of
-    precision `belief` about the logarithm of the mean over the outputs, weighted by their correlation with
-    it to the power `likeness`: what is relevant to one characteristic of an axle is likelier to be so to
-    another that varies with it. Twice as many where the first had not all rows.
+    steps: of the fixed point that it starts with. evaluations: of the likelihood of each output by itself.
+    shared: of the second maximisation, with a Gaussian prior of precision `belief` about the logarithm of the
+    mean over the outputs, weighted by their correlation with it to the power `likeness`: what is relevant to
+    one characteristic of an axle is likelier to be so to another that varies with it. Twice as many where
+    the first had not all rows.
     """
 
-    iterations: int = 30
+    steps: int = 8
+    evaluations: int = 16
     shared: int = 10
     belief: float = 0.3
     likeness: float = 4.0
@@ -51,7 +61,10 @@ class RelevanceProcess(SurrogateModel):
     interpolates: ClassVar[bool] = False
     exact_folds: ClassVar[bool] = True
     optimistic_loo: ClassVar[bool] = True
-    most: ClassVar[int | None] = 400
+
+    def worthwhile(self, rows: int, variables: int) -> bool:
+        """Up to `RELEVANCE_ROWS`."""
+        return self.fewest(variables) <= rows <= RELEVANCE_ROWS
 
     def _fit(self, x: FloatArray, y: FloatArray, seed: int) -> Fitted:
         del seed
@@ -62,12 +75,16 @@ class RelevanceProcess(SurrogateModel):
         return FittedGaussianProcess(centre, scaling, gp.condition(kernel, sample.z, sample.values), None)
 
     def _scales(self, sample: Sample, nugget: float) -> Scales:
-        z, values = sample.z[:FIRST_ROWS], sample.values[:FIRST_ROWS]
-        first = best_start(even_scales(sample.spread, values.shape[1]), z, values, nugget=nugget)
-        alone = maximise(first, z, values, nugget=nugget, iterations=self.iterations)
-        shared = self.shared if len(z) == len(sample.z) else 2 * self.shared
+        pairs = first_pairs = Pairs.of(sample.z)
+        values = sample.values
+        if len(sample.z) > FIRST_ROWS:
+            first_pairs, values = Pairs.of(sample.z[:FIRST_ROWS]), values[:FIRST_ROWS]
+        first = best_start(even_scales(sample.spread, values.shape[1]), first_pairs, values, nugget=nugget)
+        first = fixed_point(first, first_pairs, values, nugget=nugget, steps=self.steps)
+        alone = maximise(first, first_pairs, values, nugget=nugget, evaluations=self.evaluations)
+        shared = self.shared if first_pairs is pairs else 2 * self.shared
         return maximise(
-            alone, sample.z, sample.values, nugget=nugget, iterations=shared,
+            alone, pairs, sample.values, nugget=nugget, evaluations=shared,
             belief=Belief(self._expected(alone, sample.values), self.belief),
         )  # fmt: skip
 

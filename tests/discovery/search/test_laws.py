@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit, FitStart
-from doe_kc.discovery.search.laws import open_laws, with_free_laws, with_law, with_open_laws
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.laws import open_laws, other_laws, with_free_laws, with_law, with_open_laws
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
 
@@ -22,12 +24,14 @@ class Answers(DiscoveryWorkers):
         self.cost, self.laws = cost, [""] * 0
 
     def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
-        ((model, z),) = [(s.model, s.z) for s in starts]
-        self.laws.append(model.members[0].law)
+        self.laws += [s.model.members[0].law for s in starts]
+        return [self._fit(s.model, s.z) for s in starts]
+
+    def _fit(self, model: EffectModel, z: FloatArray) -> Fit:
         found = disagreeing()
         more = z.size - found.z.size
         jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
-        return [replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + self.cost)]
+        return replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + self.cost)
 
 
 def agreeing() -> Fit:
@@ -51,6 +55,13 @@ def test_a_law_has_its_default_numbers_and_its_own_at_typical() -> None:
     np.testing.assert_array_equal(z[: found.z.size], found.z)
     assert not z[found.z.size :].any()
     assert not open_laws(library("hub_compliance")[0])
+
+
+def test_other_laws_are_those_of_one_number_more_at_most() -> None:
+    (friction,) = agreeing().model.members
+    assert [law.law for law in other_laws(friction)] == ["iwan", "duhem", "lognormal"]
+    assert [law.law for law in other_laws(open_laws(friction)[0])] == ["", "iwan", "lognormal"]
+    assert not other_laws(library("hub_compliance")[0])
 
 
 def test_where_noise_explains_what_remains_no_law_is_asked_for() -> None:

@@ -14,6 +14,7 @@ from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     believable,
+    leaders,
     more_than_trace,
     overlooked,
     stiffer_first,
@@ -22,6 +23,8 @@ from doe_kc.discovery.search.search import with_conditioning
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Size
 from tests.discovery.cases import discovery, library
+from tests.discovery.search.test_proposals import ROWS, hypotheses, tuned
+from tests.discovery.search.test_proposals import screened as beside
 
 
 def trial(place: str, gain: float, amplitude: float) -> HypothesisFit:
@@ -54,6 +57,24 @@ def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
     assert believable([(replace(size, most=4.0), -3.5, 0.2)])
     assert more_than_trace([(size, 0.3, 0.09)]) and not more_than_trace([(size, 0.3, 0.11)])
     assert more_than_trace([])
+
+
+@pytest.mark.parametrize(("alike", "refitted"), [(0.8, True), (0.4, False)])
+def test_a_rival_that_explains_the_same_is_refitted_however_little_it_gains(
+    alike: float, refitted: bool
+) -> None:
+    """A trace of it, which a fit has, takes most of the gain to first order."""
+    rng = np.random.default_rng(3)
+    fit = tuned(rng.standard_normal(ROWS), rng)
+    every, _ = np.linalg.qr(np.hstack([fit.jacobian.own, rng.standard_normal((ROWS, 3))]))
+    first, second, third = 50.0 * every[:, -3:].T  # what no re-tuning absorbs
+    changes = (first, alike * first + np.sqrt(1.0 - alike**2) * second, third)
+    best, rival, other = (
+        replace(beside(h, c), gain=gain)
+        for h, c, gain in zip(hypotheses(3), changes, (1000.0, 30.0, 900.0), strict=True)
+    )
+    assert leaders([best, other, rival], fit, 10.0, decoy=False) == [best, *[rival] * refitted]
+    assert leaders([best, other, rival], fit, 40.0, decoy=False) == [best]
 
 
 class Asked(DiscoveryWorkers):
