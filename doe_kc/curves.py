@@ -84,6 +84,34 @@ class CurveSet:
     half_track: float
 
 
+@dataclass(frozen=True)
+class CurveBatch:
+    """Curves of d designs of one axle: as in `CurveSet`, with an axis of designs.
+
+    cases: mean and half_width (2, d, n); static: (2, d); half_track: (d, 1).
+    """
+
+    source: str
+    cases: Mapping[str, CaseCurves]
+    static: Mapping[str, FloatArray]
+    half_track: FloatArray
+
+    def design(self, i: int) -> CurveSet:
+        """Curves of one design."""
+        cases = {
+            ident: CaseCurves(
+                case.load_case,
+                case.input_unit,
+                case.input,
+                {name: curve[:, i] for name, curve in case.mean.items()},
+                {name: curve[:, i] for name, curve in case.half_width.items()},
+            )
+            for ident, case in self.cases.items()
+        }
+        static = {name: angles[:, i] for name, angles in self.static.items()}
+        return CurveSet(self.source, cases, static, float(self.half_track[i, 0]))
+
+
 def response_name(response: str) -> str:
     """Short name of a response within a sentence or an axis."""
     return RESPONSE_NAMES.get(response, response)

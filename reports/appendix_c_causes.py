@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from doe_kc.axle import Axle, with_values
-from doe_kc.axle.parameters import design_parameters
+from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.characteristics import Characteristic
 from doe_kc.parameter_influence.study import influence_study, percent_of_column
 

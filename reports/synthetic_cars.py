@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 from correlation_runs import measured, nominal
 
-from doe_kc.axle.parameters import Parameter, design_parameters, with_values
+from doe_kc.axle.design_parameters import Parameter, design_parameters
+from doe_kc.axle.parameters import with_values
 from doe_kc.curves import RIG_RESPONSES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, NoiseModel

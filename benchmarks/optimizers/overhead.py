@@ -9,7 +9,8 @@ from pathlib import Path
 from optimizers.peer import Peer
 from optimizers.running import CODE, PEERS, Result, problem, run
 
-from doe_kc.axle.parameters import design_parameters, parameter_value
+from doe_kc.axle.design_parameters import design_parameters
+from doe_kc.axle.parameters import parameter_value
 from doe_kc.correlation.methods.ego.method import WITH_SLOPES
 from doe_kc.correlation.modelled.archive import build_archive
 from doe_kc.correlation.problem import Candidate, Problem

@@ -12,116 +12,21 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
+
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import (
     PATHS,
-    PRODUCTION_SD,
-    PRODUCTION_SHARE,
     SIDE_PREFIXES,
     SWITCHES,
-    Group,
-    ParameterKind,
-    Quantity,
     is_lateral,
-    kind_of,
     must_be_positive,
     not_below_zero,
-    quantity_of,
     side_prefix,
 )
-from doe_kc.axle.structure_parameters import structure_kinds
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
-
-
-@dataclass(frozen=True, kw_only=True)
-class Parameter:
-    """A design variable of one axle.
-
-    nominal, lower, upper: absolute, in `unit` ("-" for factors). step: one-at-a-time change, absolute.
-    active: False when the axle's model does not contain it (for example the radius of a rigid arm).
-    """
-
-    path: str
-    label: str
-    group: Group
-    unit: str
-    nominal: float
-    lower: float
-    upper: float
-    step: float
-    active: bool
-
-    @property
-    def quantity(self) -> Quantity:
-        """What it measures; of a path that is not declared, by its group or last name."""
-        if self.group == "HARDPOINTS" and kind_of(self.path) is None:
-            return "coordinate"
-        return quantity_of(self.path)
-
-    @property
-    def one_sided(self) -> bool:
-        """Whether it is at its lower limit of zero, and can only be raised."""
-        return self.lower == 0.0 and self.nominal < self.step
-
-    @property
-    def mirrored(self) -> bool:
-        """Whether the right side has the opposite sign in the chassis frame."""
-        return is_lateral(self.path.removeprefix(side_prefix(self.path)))
-
-    @property
-    def in_model(self) -> bool:
-        """Whether the axle's model contains it: not where a zero value switches it off."""
-        return self.active and not (self.path in SWITCHES and self.nominal == 0.0)
-
-    @property
-    def production_sd(self) -> float:
-        """One standard deviation between cars of one design, in its unit; 0 for one that does not scatter."""
-        if not self.active:
-            return 0.0
-        share = PRODUCTION_SHARE.get(self.quantity, 0.0)
-        return PRODUCTION_SD.get(self.quantity, share * abs(self.nominal))
-
-
-def design_parameters(axle: Axle) -> list[Parameter]:
-    """Every design variable of Table 1 and Appendix A, in their order; followers only when freed."""
-    kinds = structure_kinds(axle.topology.structure, axle.labels)
-    return [
-        _parameter(axle, path, kind) for path, kind in kinds.items() if path.split(".")[0] not in axle.follow
-    ]
-
-
-def _parameter(axle: Axle, path: str, kind: ParameterKind) -> Parameter:
-    nominal = parameter_value(axle, path)
-    if kind.relative:
-        lower, upper = (nominal * s for s in kind.span)
-        step = abs(nominal) * kind.step
-    else:
-        lower, upper, step = nominal + kind.span[0], nominal + kind.span[1], kind.step
-    if kind.bounds == "absolute":
-        lower, upper = kind.span
-    return Parameter(
-        path=path,
-        label=kind.label,
-        group=kind.group,
-        unit=kind.unit,
-        nominal=nominal,
-        lower=lower,
-        upper=upper,
-        step=step,
-        active=is_active(axle, path),
-    )
-
-
-def is_active(axle: Axle, path: str) -> bool:
-    """Whether the axle's equations contain the parameter."""
-    if path in {"strut.bending", "strut.torsion"}:
-        return axle.topology.strut_bending
-    if path.startswith("steer_arm.") or path.split(".")[0] == "SAH":
-        return axle.topology.steer_arm
-    if path.startswith("arb.") and path != "arb.rate":
-        return axle.values["arb.rate"] > 0
-    return True
+from doe_kc.ground.typing import FloatArray
 
 
 def settable_paths(axle: Axle) -> list[str]:
@@ -171,6 +76,25 @@ class ParameterMap:
                 if rank > ranks.get(internal, -1):
                     result[internal], ranks[internal] = known[internal] + change * factor, rank
         return _with_matching_topology(self._axle.changed(result))
+
+    def changes(self, values: FloatArray) -> dict[str, FloatArray]:
+        """Internal values that differ between designs, or from the axle's: name -> (d,), as `axle` gives for
+        each row of the values (d, paths), one column a path in their order. InputError as `axle`."""
+        count = len(values)
+        out: dict[str, FloatArray] = {}
+        ranks: dict[str, FloatArray] = {}
+        for effect, column in zip(self._paths, values.T, strict=True):
+            for value in column[~(np.isfinite(column) & (column > effect.least))]:
+                check_value(effect.path, float(value), self._source)
+            sets = np.full(count, True) if effect.overrides else column != effect.value
+            change = effect.sign * column - effect.reference
+            for internal, factor, rank in effect.moves:
+                before = ranks.setdefault(internal, np.full(count, -1.0))
+                moves = sets & (rank > before)
+                known = out.setdefault(internal, np.full(count, self._axle.values[internal]))
+                known[moves] = (self._axle.values[internal] + change * factor)[moves]
+                before[moves] = rank
+        return out
 
 
 @dataclass(frozen=True)
@@ -224,8 +148,14 @@ def switched_topology(axle: Axle, path: str) -> Topology:
 
 def topology_with(axle: Axle, values: Mapping[str, float]) -> Topology:
     """The topology of `with_values`, by the values alone that can switch it."""
-    switching = {p: v for p, v in values.items() if p.removeprefix(side_prefix(p)) in SWITCHES}
+    switching = {path: values[path] for path in _switching_paths(tuple(values))}
     return with_values(axle, switching).topology if switching else axle.topology
+
+
+@lru_cache(maxsize=64)
+def _switching_paths(paths: tuple[str, ...]) -> tuple[str, ...]:
+    """Those that can switch the topology."""
+    return tuple(p for p in paths if p.removeprefix(side_prefix(p)) in SWITCHES)
 
 
 def _overrides(axle: Axle, path: str) -> bool:

@@ -6,8 +6,9 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from doe_kc.ground.errors import DoeKcError, InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
-from doe_kc.true_solver.protocol import TrueSolver, Values
+from doe_kc.true_solver.protocol import BatchSolver, TrueSolver, Values
 
 LEFT_OUT = b""
 """In place of curves that were not to be kept."""
@@ -33,12 +34,18 @@ def rounded(value: float) -> float:
 
 
 def design_key(values: Mapping[str, float]) -> str:
-    """SHA-256 of the sorted path/value pairs, 64 hex digits; InputError for a value that is not finite."""
+    """SHA-256 of the sorted path/value pairs in JSON, 64 hex digits; InputError for one not finite."""
     for path, value in values.items():
         if not math.isfinite(value):
             raise InputError(f"design: {path} = {value}, expected a finite number.")
-    pairs = [(path, repr(rounded(float(value)))) for path, value in sorted(values.items())]
-    return hashlib.sha256(json.dumps(pairs).encode()).hexdigest()
+    pairs = [f'[{_quoted(path)}, "{rounded(value)!r}"]' for path, value in sorted(values.items())]
+    return hashlib.sha256(f"[{', '.join(pairs)}]".encode()).hexdigest()
+
+
+@lru_cache(maxsize=4096)
+def _quoted(path: str) -> str:
+    """A path as JSON."""
+    return json.dumps(path)
 
 
 def run_one(solver: TrueSolver, values: Values, *, keep_curves: bool = True) -> Packed:
@@ -63,7 +70,10 @@ class BatchResult:
 
 
 def run_batch(solver: TrueSolver, keep_curves: bool, designs: Sequence[Values]) -> BatchResult:
-    """Designs one after the other; the failure of one is a value and leaves the others alone."""
+    """Designs at once or one after the other; the failure of one is a value and leaves the others alone."""
+    if isinstance(solver, BatchSolver) and len(designs) > 1:
+        with suppress(Exception):  # whose design it is, and what becomes of it, is found out one by one
+            return BatchResult(tuple(_run_together(solver, keep_curves, designs)))
     done: list[Packed] = []
     for values in designs:
         try:
@@ -72,6 +82,13 @@ def run_batch(solver: TrueSolver, keep_curves: bool, designs: Sequence[Values]) 
             return BatchResult(tuple(done), error)
         done.append(packed)
     return BatchResult(tuple(done))
+
+
+def _run_together(solver: BatchSolver, keep_curves: bool, designs: Sequence[Values]) -> list[Packed]:
+    packed = [packed_outcome(outcome) for outcome in solver.evaluate_all(designs, curves=keep_curves)]
+    if keep_curves or not solver.curves:
+        return packed
+    return [each if each.reason else replace(each, curves=LEFT_OUT) for each in packed]
 
 
 def task_for(solver: TrueSolver, *, keep_curves: bool = True) -> Task:

@@ -25,7 +25,7 @@ from doe_kc.true_solver.protocol import TrueSolver, Values
 Progress = Callable[[int], None]
 IN_PROCESS_DESIGNS = 2
 """Designs of a quick solver that are run in this process."""
-BATCH = 32
+BATCH = 64
 """Designs of a quick solver that a worker runs at most before they are stored: a tenth of a second."""
 BATCHES_A_WORKER = 4
 """At least, so that workers end together."""

@@ -7,6 +7,7 @@ import os
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,8 @@ from doe_kc.true_solver.outcome import Outcome
 from doe_kc.true_solver.protocol import TrueSolver
 
 EVALUATION_COLUMNS = "key, parameters, reason, characteristics, windows, seconds, origin, created, versions"
+OUTCOME_COLUMNS = "key, '{}', reason, characteristics, windows, seconds, origin, created, '{}'"
+"""The same without what outcomes do not hold."""
 VALUE_MARKS = ", ".join("?" * 11)
 """For the values of a row."""
 
@@ -85,10 +88,10 @@ class Store:
         return self.read(record, windows, curves=curves)
 
     def _record(self, key: str, curves: str) -> StoredEvaluation:
-        """curves: what to read of them, an expression of SQL."""
+        """Without its parameters and versions. curves: what to read of them, an expression of SQL."""
         with in_words(self._where):
             row = self._connection.execute(
-                f"SELECT {EVALUATION_COLUMNS}, {curves} FROM evaluations WHERE key = ?", (key,)
+                f"SELECT {OUTCOME_COLUMNS}, {curves} FROM evaluations WHERE key = ?", (key,)
             ).fetchone()
         if row is None:
             raise KeyError(key)
@@ -146,13 +149,19 @@ def _row(record: StoredEvaluation) -> tuple[object, ...]:
         record.status,
         packed.reason,
         json.dumps(dict(packed.characteristics), allow_nan=False),
-        json.dumps(dict(record.windows)),
+        _mapping_text(tuple(record.windows.items())),
         packed.curves,
         packed.seconds,
         record.origin,
         record.created,
-        json.dumps(dict(record.versions)),
+        _mapping_text(tuple(record.versions.items())),
     )
+
+
+@lru_cache(maxsize=64)
+def _mapping_text(items: tuple[tuple[str, object], ...]) -> str:
+    """JSON of a mapping that many records have in common."""
+    return json.dumps(dict(items))
 
 
 def _record(row: tuple[Any, ...]) -> StoredEvaluation:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.characteristics.registry import CHARACTERISTICS, Characteristic
-from doe_kc.curves import CaseCurves, CurveSet
+from doe_kc.curves import CaseCurves, CurveBatch, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LOAD_CASES
 
@@ -17,6 +17,8 @@ FEWEST_POINTS = 3
 """Solved points in a fit window below which there is no gradient."""
 
 LEFT_WHEEL = 0
+NOTHING = np.array(np.nan)
+"""Of a characteristic that the curves do not show."""
 
 
 def fit_window(case: CaseCurves, half_width: float | None = None) -> NDArray[np.bool_]:
@@ -34,8 +36,9 @@ def default_window(case: CaseCurves) -> float:
     return LOAD_CASES[case.load_case].window
 
 
-def pad_travel(case: CaseCurves, half_track: float) -> FloatArray:
-    """(n,) vertical travel in mm of the pad under the left wheel in the chassis frame, up +."""
+def pad_travel(case: CaseCurves, half_track: float | FloatArray) -> FloatArray:
+    """(n,) vertical travel in mm of the pad under the left wheel in the chassis frame, up +; (d, n) of many
+    designs whose half_track is (d, 1)."""
     if case.load_case != "roll":
         return case.input
     if case.input_unit == "mm":
@@ -43,8 +46,8 @@ def pad_travel(case: CaseCurves, half_track: float) -> FloatArray:
     return np.asarray(-half_track * np.tan(np.radians(case.input)))
 
 
-def abscissa(entry: Characteristic, case: CaseCurves, half_track: float) -> FloatArray:
-    """(n,) what the gradient is taken over: mm, N or deg."""
+def abscissa(entry: Characteristic, case: CaseCurves, half_track: float | FloatArray) -> FloatArray:
+    """(n,) what the gradient is taken over: mm, N or deg; (d, n) of many designs where it is their own."""
     if entry.abscissa == "wheel_travel":
         return np.asarray(case.mean["wc_z"][LEFT_WHEEL])
     if entry.abscissa == "pad_travel":
@@ -54,8 +57,14 @@ def abscissa(entry: Characteristic, case: CaseCurves, half_track: float) -> Floa
 
 def slope(x: FloatArray, y: FloatArray) -> float:
     """Slope of the least-squares line y = a + b x."""
-    dx = x - x.mean()
-    return float(dx @ (y - y.mean()) / (dx @ dx))
+    return float(slopes(x, y))
+
+
+def slopes(x: FloatArray, y: FloatArray) -> FloatArray:
+    """The same along the last axis of each, (n,) or (d, n)."""
+    dx = x - x.mean(axis=-1, keepdims=True)
+    dy = y - y.mean(axis=-1, keepdims=True)
+    return np.asarray((dx * dy).sum(axis=-1) / (dx * dx).sum(axis=-1))
 
 
 def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None = None) -> float:
@@ -76,12 +85,24 @@ def reduce_one(entry: Characteristic, curves: CurveSet, *, window: float | None 
 
 def reduce_all(curves: CurveSet, windows: Mapping[str, float] | None = None) -> dict[str, float]:
     """Every registered characteristic by id; windows: load case -> half-width in place of the default."""
-    chosen = windows or {}
-    out = {
-        ident: reduce_one(entry, curves) for ident, entry in CHARACTERISTICS.items() if entry.kind == "static"
-    }
+    return {ident: float(value) for ident, value in _values(curves, windows or {}).items()}
+
+
+def reduce_batch(curves: CurveBatch, windows: Mapping[str, float] | None = None) -> FloatArray:
+    """(d, characteristics) of d designs in the order of the registry; as `reduce_all`."""
+    values = _values(curves, windows or {}).values()
+    return np.stack([np.broadcast_to(value, len(curves.half_track)) for value in values], axis=1)
+
+
+def _values(curves: CurveSet | CurveBatch, windows: Mapping[str, float]) -> dict[str, FloatArray]:
+    """Id -> scalar, or (d,) of a batch."""
+    out: dict[str, FloatArray] = {}
+    for entry in CHARACTERISTICS.values():
+        if entry.kind == "static":
+            known = curves.static is not None and entry.response in curves.static
+            out[entry.id] = curves.static[entry.response][LEFT_WHEEL] if curves.static and known else NOTHING
     for entries in GRADIENTS:
-        out |= _slopes(entries, curves, chosen.get(entries[0].load_case))
+        out |= _slopes(entries, curves, windows.get(entries[0].load_case))
     return {ident: out[ident] for ident in CHARACTERISTICS}
 
 
@@ -97,9 +118,11 @@ GRADIENTS = _gradients()
 """Registered gradients that are fitted over the same abscissa of the same load case."""
 
 
-def _slopes(entries: Sequence[Characteristic], curves: CurveSet, window: float | None) -> dict[str, float]:
+def _slopes(
+    entries: Sequence[Characteristic], curves: CurveSet | CurveBatch, window: float | None
+) -> dict[str, FloatArray]:
     """Those of one group of `GRADIENTS`, as `reduce_one` gives them one by one."""
-    out = dict.fromkeys((e.id for e in entries), float("nan"))
+    out = dict.fromkeys((e.id for e in entries), NOTHING)
     case = curves.cases.get(entries[0].load_case)
     if case is None or (entries[0].abscissa == "wheel_travel" and "wc_z" not in case.mean):
         return out
@@ -107,8 +130,8 @@ def _slopes(entries: Sequence[Characteristic], curves: CurveSet, window: float |
     if not known:
         return out
     inside = fit_window(case, window)
-    x = abscissa(entries[0], case, curves.half_track)[inside]
-    return out | {e.id: e.scale * slope(x, case.mean[e.response][LEFT_WHEEL][inside]) for e in known}
+    x = abscissa(entries[0], case, curves.half_track)[..., inside]
+    return out | {e.id: e.scale * slopes(x, case.mean[e.response][LEFT_WHEEL][..., inside]) for e in known}
 
 
 def reduction_gradient(

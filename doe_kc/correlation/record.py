@@ -7,8 +7,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value
+from doe_kc.axle.parameters import parameter_value
 from doe_kc.campaign.record import design_key
 from doe_kc.campaign.store import Store
 from doe_kc.correlation.answer_record import AnswerRecord

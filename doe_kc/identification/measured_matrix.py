@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import Parameter, design_parameters
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, characteristics_of
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray

@@ -9,15 +9,10 @@ from fnmatch import fnmatchcase
 
 import numpy as np
 
+from doe_kc.axle.design_parameters import design_parameters, is_active
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import COORDINATES, kind_of, must_be_positive, not_below_zero
-from doe_kc.axle.parameters import (
-    ParameterMap,
-    design_parameters,
-    is_active,
-    parameter_value,
-    settable_paths,
-)
+from doe_kc.axle.parameters import ParameterMap, parameter_value, settable_paths
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 

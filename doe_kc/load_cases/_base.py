@@ -23,7 +23,8 @@ class Datum:
     """What load cases take over from the axle: where its static state left it, and two of its dimensions.
 
     pad, wheel_centre_z: left and right, mm. preload: of the springs, N. half_track: |y| of the left design
-    wheel centre, mm. rack_mm_per_rev: rack travel per steering-wheel turn, mm.
+    wheel centre, mm. rack_mm_per_rev: rack travel per steering-wheel turn, mm. Of d designs at once each is
+    (d, 1), and controls become (d, n).
     """
 
     pad: tuple[float, float]

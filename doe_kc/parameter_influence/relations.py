@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
 from doe_kc.parameter_influence.study import Influence

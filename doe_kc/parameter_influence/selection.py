@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.threads import one_thread

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 
 if TYPE_CHECKING:
     import pandas as pd

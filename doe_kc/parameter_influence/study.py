@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import Parameter, design_parameters
 from doe_kc.campaign.runner import Campaign
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, appendix_c
 from doe_kc.ground.errors import RunError

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import design_parameters
 from doe_kc.axle.places import places_of
 from doe_kc.curves import response_name
 from doe_kc.discovery.fit import amplitude_estimates

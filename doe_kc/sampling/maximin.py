@@ -22,8 +22,8 @@ STEPS_A_COLUMN = 60
 MOST_EXCHANGES = 12_000
 FIRST_THRESHOLD, LAST_THRESHOLD = 3e-4, 1e-7
 """Relative growth of the sum that a step may make, at the first and at the last step."""
-LEAST_SQUARE = 1e-12
-"""Squared distance that stands for a row's distance to itself and for equal rows."""
+LEAST_SQUARE = 1e-7
+"""Squared distance that stands for smaller ones and a row's to itself; its power fits single precision."""
 
 
 def spread_hypercube(points: FloatArray, rng: np.random.Generator, *, fixed: int = 0) -> FloatArray:
@@ -36,26 +36,31 @@ def spread_hypercube(points: FloatArray, rng: np.random.Generator, *, fixed: int
         return points.copy()
     search = _Search(points.copy(), fixed, rng)
     steps = min(MOST_EXCHANGES, STEPS_A_COLUMN * max(d, n))
-    best, least = search.x.copy(), search.total
     for threshold in np.geomspace(FIRST_THRESHOLD, LAST_THRESHOLD, steps):
         search.step(threshold)
-        if search.total < least:
-            best, least = search.x.copy(), search.total
-    return best
+    return search.best
 
 
 class _Search:
-    """x: (n, d). inverse: (n, n) squared distances to the power -p / 2, zero on the diagonal. total: their
-    sum, each pair once."""
+    """x: (n, d). square: (n, n) squared distances; inverse: their power -p / 2, zero on the diagonal;
+    both in single precision, which tells trials apart at half the time.
+
+    rows: (n,) sums of inverse by row, kept up to date as rows change; total: the sum of each pair once.
+    """
 
     def __init__(self, x: FloatArray, fixed: int, rng: np.random.Generator) -> None:
         self.x, self.fixed, self.rng = x, fixed, rng
         norm = (x**2).sum(axis=1)
-        self.square = np.maximum(norm[:, None] + norm - 2.0 * x @ x.T, LEAST_SQUARE)
-        self.inverse = self.square**-HALF_POWER
-        np.fill_diagonal(self.inverse, 0.0)
-        self.total = float(self.inverse.sum()) / 2.0
+        square = np.maximum(norm[:, None] + norm - 2.0 * x @ x.T, LEAST_SQUARE)
+        inverse = square**-HALF_POWER
+        np.fill_diagonal(inverse, 0.0)
+        self.rows = inverse.sum(axis=1)
+        self.total = float(self.rows.sum()) / 2.0
+        self.square, self.inverse = square.astype(np.float32), inverse.astype(np.float32)
         self.focus = False
+        self._least, self._best = self.total, self.x.copy()
+        # large arrays that are made anew at every step would cost more than what is computed in them
+        self._buffers = np.empty((6, TRIALS, len(x)), dtype=np.float32)
 
     def step(self, threshold: float) -> None:
         """The best of some exchanges of one row within one column, if it is good enough."""
@@ -65,46 +70,69 @@ class _Search:
         row = self._crowded() if self.focus else int(rng.integers(self.fixed, n))
         others = rng.integers(self.fixed, n, TRIALS)
         others = others[others != row]
-        if not len(others):
-            return
-        own = (column - column[row]) ** 2
-        theirs = (column - column[others][:, None]) ** 2
-        mine, yours = self.square[row] - own + theirs, self.square[others] - theirs + own
-        a, b = _powers(mine), _powers(yours)
-        places = np.arange(len(others))
-        for powers in (a, b):
-            powers[places, others] = 0.0
-            powers[:, row] = 0.0
-        change = (a + b).sum(axis=1) - self.inverse[row].sum() - self.inverse[others].sum(axis=1)
-        change += 2.0 * self.inverse[row, others]
-        k = int(np.argmin(change))
-        if change[k] <= threshold * self.total:
-            self._exchange(column, row, int(others[k]), mine[k], yours[k], float(change[k]))
+        if len(others):
+            k = int(np.argmin(self._changes(column.astype(np.float32), row, others)))
+            self._try_exchange(column, row, int(others[k]), threshold)
+
+    @property
+    def best(self) -> FloatArray:
+        """The points of the least total so far."""
+        return self.x.copy() if self.total < self._least else self._best
 
     def _crowded(self) -> int:
         """The movable row of the largest sum."""
-        return self.fixed + int(np.argmax(self.inverse[self.fixed :].sum(axis=1)))
+        return self.fixed + int(np.argmax(self.rows[self.fixed :]))
 
-    def _exchange(
-        self, column: FloatArray, row: int, other: int, mine: FloatArray, yours: FloatArray, change: float
-    ) -> None:
-        between = self.square[row, other]
-        column[row], column[other] = column[other], column[row]
-        for place, squares in ((row, mine), (other, yours)):
+    def _changes(self, column: np.ndarray, row: int, others: np.ndarray) -> FloatArray:
+        """(m,) growth of the total when a row exchanges its entry of a column with each of the others."""
+        m = len(others)
+        theirs, mine, yours, a, b, work = (buffer[:m] for buffer in self._buffers)
+        own = (column - column[row]) ** 2
+        np.subtract(column, column[others][:, None], out=theirs)
+        np.square(theirs, out=theirs)
+        np.add(theirs, self.square[row] - own, out=mine)
+        np.add(np.take(self.square, others, axis=0, out=yours), own, out=yours)
+        yours -= theirs
+        places = np.arange(m)
+        for squares, powers in ((mine, a), (yours, b)):
+            _powers(squares, powers, work)
+            powers[places, others] = 0.0
+            powers[:, row] = 0.0
+        after = a.sum(axis=1) + b.sum(axis=1)
+        return np.asarray(after - self.rows[row] - self.rows[others] + 2.0 * self.inverse[row, others])
+
+    def _try_exchange(self, column: FloatArray, row: int, other: int, threshold: float) -> None:
+        """Exchange two entries of a column, unless the total grows by more than the threshold."""
+        moved = (column - column[other]) ** 2 - (column - column[row]) ** 2
+        between, rows = self.square[row, other], []
+        for place, change in ((row, moved), (other, -moved)):
+            squares = np.maximum(self.square[place] + change, LEAST_SQUARE)
             squares[[row, other]] = between
-            squares[place] = LEAST_SQUARE
-            powers = _powers(squares)
+            squares = squares.astype(np.float32)
+            powers = _powers(squares, np.empty_like(squares), np.empty_like(squares))
             powers[place] = 0.0
-            self.square[place] = self.square[:, place] = np.maximum(squares, LEAST_SQUARE)
+            rows.append((place, squares, powers, float(powers.sum(dtype=float))))
+        growth = rows[0][3] + rows[1][3] - self.rows[row] - self.rows[other]
+        if growth > threshold * self.total:
+            return
+        if growth > 0.0 and self.total < self._least:
+            self._least, self._best = self.total, self.x.copy()
+        column[row], column[other] = column[other], column[row]
+        for place, squares, powers, total in rows:
+            self.rows += powers - self.inverse[place].astype(float)
+            self.rows[place] = total
+            self.square[place] = self.square[:, place] = squares
             self.inverse[place] = self.inverse[:, place] = powers
-        self.total += change
+        self.total += growth
 
 
-def _powers(squares: FloatArray) -> FloatArray:
-    """Squared distances to the power -p / 2."""
-    inverse = 1.0 / np.maximum(squares, LEAST_SQUARE)
-    twice = inverse * inverse
-    return np.asarray(twice * twice * inverse)
+def _powers(squares: np.ndarray, out: np.ndarray, work: np.ndarray) -> np.ndarray:
+    """Squared distances to the power -p / 2, into `out`."""
+    np.maximum(squares, LEAST_SQUARE, out=out)
+    np.reciprocal(out, out=out)
+    np.square(out, out=work)
+    np.square(work, out=work)
+    return np.asarray(np.multiply(out, work, out=out))
 
 
 def more_slices(points: FloatArray, more: int, rng: np.random.Generator) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.sampling._base import Request, Sampler, design_of, sampler
 from doe_kc.sampling.design import Design
 from doe_kc.variables import Space, Variable

@@ -6,7 +6,9 @@ times as long at -O1 as for the same statements in pieces of 300; at -O0 they ru
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -69,6 +71,31 @@ EXPRESSIONS = {
     ca.OP_FMOD: "fmod({0}, {1})",
 }
 """C of each operation of CasADi's, by its operands."""
+CALL = re.compile(r"\b(?=[a-z0-9]+\()")
+LANE_EXPRESSIONS = {
+    **{code: CALL.sub("lane_", text) for code, text in EXPRESSIONS.items()},
+    **{code: f"lane_truth({EXPRESSIONS[code]})" for code in (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE)},
+    ca.OP_AND: "lane_truth(({0} != 0.0) & ({1} != 0.0))",
+    ca.OP_OR: "lane_truth(({0} != 0.0) | ({1} != 0.0))",
+    ca.OP_NOT: "lane_truth({0} == 0.0)",
+    ca.OP_IF_ELSE_ZERO: "lane_where({0} != 0.0, {1})",
+    ca.OP_SIGN: "lane_sign({0})",
+}
+"""The same for several designs side by side, by the functions of lanes.h."""
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """How values are written. number: their C type; literal: of a constant, from the C of a double;
+    expressions: by operation; before: text at the head of every file."""
+
+    number: str
+    literal: str
+    expressions: Mapping[int, str]
+    before: str
+
+
+SCALAR = Dialect("double", "{0}", EXPRESSIONS, "#include <math.h>")
 
 
 @dataclass(frozen=True)
@@ -80,38 +107,41 @@ class _Statement:
     target: str = ""
 
 
-def c_sources(function: ca.Function) -> dict[str, str]:
+def c_sources(function: ca.Function, dialect: Dialect = SCALAR) -> dict[str, str]:
     """C sources by file name of a function of dense or sparse arguments, nonzeros column by column.
 
-    Of the interface that `casadi.external` loads. CompileError for an operation that `EXPRESSIONS` lacks.
+    Scalar ones are of the interface that `casadi.external` loads. CompileError for an operation that
+    `EXPRESSIONS` lacks.
     """
-    texts, room = _piece_texts(_pieces(_statements(function)))
-    name, inputs, outputs = function.name(), range(function.n_in()), range(function.n_out())
+    texts, room = _piece_texts(_pieces(_statements(function, dialect)), dialect)
+    number, name = dialect.number, function.name()
+    inputs, outputs = range(function.n_in()), range(function.n_out())
     parameters = [
-        *(f"const double *x{i}" for i in inputs),
-        *(f"double *restrict y{i}" for i in outputs),
-        "double *restrict w",
+        *(f"const {number} *x{i}" for i in inputs),
+        *(f"{number} *restrict y{i}" for i in outputs),
+        f"{number} *restrict w",
     ]
     arguments = [*(f"arg[{i}]" for i in inputs), *(f"res[{i}]" for i in outputs), "w"]
     heads = [f"{PIECE_ATTRIBUTES} void {name}_{i}({', '.join(parameters)})" for i in range(len(texts))]
     entry = [
+        dialect.before,
         *(f"{head};" for head in heads),
         _casadi_interface(function),
-        f"int {name}(const double **arg, double **res, long long *iw, double *memory, int instance) {{",
-        f"double w[{max(1, room)}];",
+        f"int {name}(const {number} **arg, {number} **res, long long *iw, {number} *memory, int instance) {{",
+        f"{number} w[{max(1, room)}];",
         *(f"{name}_{i}({', '.join(arguments)});" for i in range(len(texts))),
         "return 0;",
         "}",
     ]
     files = {name: entry}
     for first in range(0, len(texts), PIECES_A_FILE):
-        file = files.setdefault(f"{name}_{first}", ["#include <math.h>"])
+        file = files.setdefault(f"{name}_{first}", [dialect.before])
         for head, text in list(zip(heads, texts, strict=True))[first : first + PIECES_A_FILE]:
             file += [f"{head} {{", *text, "}"]
     return {part: "\n".join(lines) + "\n" for part, lines in files.items()}
 
 
-def _statements(function: ca.Function) -> dict[int, _Statement]:
+def _statements(function: ca.Function, dialect: Dialect) -> dict[int, _Statement]:
     """By number, in order; inputs and constants stand in the operands."""
     values: dict[int, str | int] = {}  # what CasADi's memory holds at each place
     out: dict[int, _Statement] = {}
@@ -119,15 +149,15 @@ def _statements(function: ca.Function) -> dict[int, _Statement]:
         code = function.instruction_id(k)
         places = function.instruction_output(k)
         if code == ca.OP_CONST:
-            values[places[0]] = _literal(function.instruction_constant(k))
+            values[places[0]] = dialect.literal.format(_literal(function.instruction_constant(k)))
             continue
         operands = function.instruction_input(k)
         if code == ca.OP_INPUT:
             values[places[0]] = f"x{operands[0]}[{operands[1]}]"
         elif code == ca.OP_OUTPUT:
             out[k] = _Statement("{0}", (values[operands[0]],), f"y{places[0]}[{places[1]}]")
-        elif code in EXPRESSIONS:
-            out[k] = _Statement(EXPRESSIONS[code], tuple(values[i] for i in operands))
+        elif code in dialect.expressions:
+            out[k] = _Statement(dialect.expressions[code], tuple(values[i] for i in operands))
             values[places[0]] = k
         else:
             raise CompileError(f"operation {code} of {function.name()} has no C expression in EXPRESSIONS")
@@ -146,7 +176,7 @@ def _pieces(statements: dict[int, _Statement]) -> list[list[tuple[int, _Statemen
     return [items[i : i + PIECE] for i in range(0, len(items), PIECE)]
 
 
-def _piece_texts(pieces: list[list[tuple[int, _Statement]]]) -> tuple[list[list[str]], int]:
+def _piece_texts(pieces: list[list[tuple[int, _Statement]]], dialect: Dialect) -> tuple[list[list[str]], int]:
     """Lines of each piece, and how many places values need that later pieces read."""
     piece_of = {k: i for i, piece in enumerate(pieces) for k, _ in piece}
     last = dict(piece_of)  # piece that reads a value last
@@ -168,7 +198,7 @@ def _piece_texts(pieces: list[list[tuple[int, _Statement]]]) -> tuple[list[list[
             if statement.target:
                 lines.append(f"{statement.target} = {value};")
                 continue
-            lines.append(f"const double v{k} = {value};")
+            lines.append(f"const {dialect.number} v{k} = {value};")
             if last[k] > i:
                 place[k] = free.pop() if free else room
                 room = max(room, place[k] + 1)

@@ -24,7 +24,7 @@ SUBSTEPS = 4
 DRIVER = Path(__file__).with_name("driver.c")
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
-    *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, INT, INT, INT, INT, ADDRESS,
+    *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
     INT, *(ADDRESS,) * 4, INT, *(ADDRESS,) * 9, INT, ADDRESS, ADDRESS,
 )  # fmt: skip
 """Of `march` in driver.c, in its order."""
@@ -79,7 +79,7 @@ class CompiledKernel:
             *(kernel.nx, active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
             *(jacobian_rows, jacobian_cols, tail, scale, c_in),
             *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
-            *(start.guess, len(kernel.slips), slips),
+            *(start.guess, kernel.coordinates, len(kernel.slips), slips),
             *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
             *(*out[:3], iterations_out, *out[3:], counts.ctypes.data),
             *(capacity, rows.ctypes.data, iterations_out + n * whole.itemsize),

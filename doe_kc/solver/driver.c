@@ -234,12 +234,13 @@ static int slips_back(problem *p, int slips, const int *slip, const double *x, c
     return 0;
 }
 
-/* Returns 0, or 1 + index of the step that failed. history: `known` points, newest last; with `guess` its
+/* Returns 0, or 1 + index of the step that failed. coordinates: unknowns, the first, that are displacements and
+   turns. history: `known` points, newest last; with `guess` its
    only point is no equilibrium. end: the last equilibrium's s, u, z and x, and how far off a solution was.
    between: with friction, `passed` rows of step, share, u, x, z of every equilibrium, at most `capacity`. */
 int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
           const int *tail_control, const double *scale, const double *c, double tol, double refresh,
-          int max_iterations, int max_halvings, int guess, int slips, const int *slip,
+          int max_iterations, int max_halvings, int guess, int coordinates, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
           int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
           int *iterations_out, double *level_out, double *end, long long *counts,
@@ -247,7 +248,7 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     problem p = {n, active, nu, nz, ny, row, col, nnz, tail_control, scale, c, tol, refresh,
                  max_iterations, max_halvings};
     double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, *u_on, snap = 0.0, wish = 1.0;
-    int points = known < HISTORY ? known : HISTORY, failed = 0, coordinates = 0;
+    int points = known < HISTORY ? known : HISTORY, failed = 0;
     double finest = ldexp(1.0, -max_halvings) * (1.0 + 1e-9);
     size_t doubles = 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
     memory = malloc(sizeof(double) * doubles);
@@ -268,7 +269,6 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     guessed = m; m += n;
     back = m; m += n;
     u_on = m;
-    while (coordinates < n && scale[coordinates] >= 1.0) coordinates++;
     for (int i = 0; i < points; i++) {
         hs[i] = s_known[known - points + i];
         memcpy(hx + i * n, x_known + (size_t)(known - points + i) * n, sizeof(double) * n);

@@ -13,6 +13,7 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
+from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.layout import EquationLayout, layout_of, layout_text, read_layout
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, store_text, stored_library, stored_text
 
@@ -80,6 +81,12 @@ class Kernel:
     @property
     def ny(self) -> int:
         return len(self.layout.output_names)
+
+    @cached_property
+    def coordinates(self) -> int:
+        """How many unknowns, the first, are displacements and turns; constraint forces and tail follow."""
+        moving = self.scale[: self.nx - self.layout.tail] >= FORCE_SCALE
+        return len(moving) if moving.all() else int(np.argmin(moving))
 
     def index(self, unknown: str) -> int:
         """Place of an unknown in x."""

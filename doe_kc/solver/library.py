@@ -180,18 +180,20 @@ def handwritten(file: Path) -> str:
 
 
 def _compile(compiler: str, scratch: Path, sources: dict[str, str], flags: Mapping[str, str]) -> Path:
-    """All parts side by side, then one link."""
+    """All parts side by side, then one link. flags: by part, "" for the others, "link" for the link."""
     running = []
     for part, text in sources.items():
         file = scratch / f"{part}.c"
         file.write_text(text)
-        command = [compiler, flags.get(part, DEFAULT_FLAGS), "-fPIC", "-c", str(file)]
+        own = flags.get(part, flags.get("", DEFAULT_FLAGS)).split()
+        command = [compiler, *own, "-fPIC", "-c", str(file)]
         running.append(_start([*command, "-o", str(file.with_suffix(".o"))]))
     messages = [_finish(process) for process in running]
     library = scratch / "library"
     if not any(messages):
         objects = [str(scratch / f"{part}.o") for part in sources]
-        messages.append(_finish(_start([compiler, "-shared", "-o", str(library), *objects, "-lm"])))
+        link = flags.get("link", "-lm").split()
+        messages.append(_finish(_start([compiler, "-shared", "-o", str(library), *objects, *link])))
     if failures := [m for m in messages if m]:
         raise CompileError(f"{compiler} failed: {failures[0][:200]}")
     return library

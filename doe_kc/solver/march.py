@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.compiled import CompiledKernel
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import Buffered, Kernel
@@ -194,7 +193,7 @@ class _Marcher:
 
 def distance(kernel: Kernel, a: FloatArray, b: FloatArray) -> float:
     """Largest difference of two states' coordinates (nx,) in mm; 100 mm per Gibbs unit."""
-    n = int(np.argmin(kernel.scale >= FORCE_SCALE))  # constraint forces and the tail come after them
+    n = kernel.coordinates
     return float(np.max(np.abs(a[:n] - b[:n]) * kernel.scale[:n]))
 
 

@@ -73,10 +73,11 @@ def _chosen(axle: Axle, cases: Sequence[str] | None) -> dict[str, LoadCase]:
                 f"{name!r} is not a load case of this axle; known are {', '.join(axle.load_cases)}."
                 f"{nearest(name, axle.load_cases)}"
             )
-    return {i: axle.load_cases[i] for i in (cases if cases is not None else _ordered(axle.load_cases))}
+    return {i: axle.load_cases[i] for i in (cases if cases is not None else ordered_cases(axle.load_cases))}
 
 
-def _ordered(cases: Mapping[str, LoadCase]) -> list[str]:
+def ordered_cases(cases: Mapping[str, LoadCase]) -> list[str]:
+    """Load cases in the order in which they are solved."""
     return [i for i in CASE_ORDER if i in cases] + [i for i in cases if i not in CASE_ORDER]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
-from doe_kc.curves import CaseCurves, CurveSet
+from doe_kc.curves import CaseCurves, CurveBatch, CurveSet
 from doe_kc.ground.typing import FloatArray
 
 
@@ -94,7 +94,7 @@ def _bad_characteristic(outcome: Outcome) -> str:
     return "" if np.isfinite(outcome.characteristics).any() else "no characteristic was given"
 
 
-def is_known(entry: Characteristic, curves: CurveSet) -> bool:
+def is_known(entry: Characteristic, curves: CurveSet | CurveBatch) -> bool:
     """Whether the curves hold what a characteristic is read from."""
     if entry.kind == "static":
         return curves.static is not None and entry.response in curves.static

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+
+import numpy as np
 
 from doe_kc import __version__
 from doe_kc.axle.model import Axle
@@ -16,24 +18,30 @@ from doe_kc.effects import observed
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import library_for, solve
 from doe_kc.true_solver.outcome import Outcome, failure, from_curves
+from doe_kc.true_solver.own_batch import batch_outcomes, can_batch
 from doe_kc.true_solver.protocol import Values, digest
 
 COMPILE_FROM = 50
 """Designs of one topology from which compiling it, some seconds, pays."""
+BATCH_FROM = 100
+"""Designs of one topology that are asked for at once from which they are solved side by side: a fifth of the
+time each, once another kernel has been compiled for some seconds. It decides by the designs asked for alone,
+so that the last digits do not depend on the number of workers or on what the cache holds."""
 
 
 @dataclass(frozen=True)
 class AxleSolver:
     """windows: as in `reduce_all`. curves: whether outcomes hold them, or characteristics alone.
 
-    compiled: topologies to run compiled where that is possible. asked: how many designs of each topology
-    have been announced by `prepare`.
+    compiled: topologies to run compiled where that is possible; batched: those of which many designs are
+    solved side by side. asked: how many designs of each topology have been announced by `prepare`.
     """
 
     axle: Axle
     windows: Mapping[str, float] = field(default_factory=dict)
     curves: bool = True
     compiled: frozenset[Topology] = frozenset()
+    batched: frozenset[Topology] = frozenset()
     asked: Mapping[Topology, int] = field(default_factory=dict)
 
     @property
@@ -59,12 +67,13 @@ class AxleSolver:
 
         In this process, so that forked workers inherit the equations and none compiles for itself.
         """
-        asked = Counter(self.asked)
-        asked.update(topology_with(self.axle, values) for values in designs)
+        now = Counter(topology_with(self.axle, values) for values in designs)
+        asked = Counter(self.asked) + now
         compiled = {self.axle.topology} | {t for t, n in asked.items() if n >= COMPILE_FROM}
         for topology in compiled - self.compiled:
             library_for(topology, None)
-        return replace(self, compiled=frozenset(compiled), asked=dict(asked))
+        batched = frozenset(t for t, n in now.items() if n >= BATCH_FROM and can_batch(t))
+        return replace(self, compiled=frozenset(compiled), batched=batched, asked=dict(asked))
 
     @cached_property
     def _maps(self) -> dict[tuple[str, ...], ParameterMap]:
@@ -86,6 +95,29 @@ class AxleSolver:
             return failure(str(solution.failure), seconds)
         outcome = from_curves(observed(changed, curve_set(solution)), self.windows, seconds)
         return outcome if self.curves else replace(outcome, curves=None)
+
+    def evaluate_all(self, designs: Sequence[Values], *, curves: bool) -> list[Outcome]:
+        """See `BatchSolver`; designs of `batched` topologies side by side, the others one by one."""
+        groups = defaultdict[tuple[Topology, tuple[str, ...]], list[int]](list)
+        for i, values in enumerate(designs):
+            groups[topology_with(self.axle, values), tuple(values)].append(i)
+        out: list[Outcome | None] = [None] * len(designs)
+        wanted = curves and self.curves
+        for (topology, paths), members in groups.items():
+            if topology not in self.batched:
+                continue
+            rows = np.array([[designs[i][path] for path in paths] for i in members], dtype=float)
+            table = rows.reshape(len(members), len(paths))
+            outcomes = batch_outcomes(
+                self.axle, topology, self._map(paths), table, self.windows, curves=wanted
+            )
+            for i, outcome in zip(members, outcomes, strict=True):
+                out[i] = outcome
+        single = replace(self, curves=wanted)
+        return [
+            outcome if outcome is not None else single.evaluate(values)
+            for outcome, values in zip(out, designs, strict=True)
+        ]
 
 
 def describe_axle(axle: Axle) -> dict[str, str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from doe_kc.true_solver.outcome import Outcome
 
@@ -51,6 +51,24 @@ class TrueSolver(Protocol):
         """One design: path -> absolute value. Failure is a value.
 
         InputError for a path that there is not; RunError when no design could be run.
+        """
+        ...
+
+
+@runtime_checkable
+class BatchSolver(TrueSolver, Protocol):
+    """A true solver that answers many designs faster at once than one by one."""
+
+    @property
+    def curves(self) -> bool:
+        """Whether outcomes of `evaluate` hold curves."""
+        ...
+
+    def evaluate_all(self, designs: Sequence[Values], *, curves: bool) -> list[Outcome]:
+        """What `evaluate` gives for each, up to rounding, every number checked. curves: whether outcomes
+        shall hold the curves that the solver has.
+
+        InputError when one of them has a path that there is not, or a value that no axle can have.
         """
         ...
 

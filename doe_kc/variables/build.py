@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
+from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import kind_of
-from doe_kc.axle.parameters import Parameter, design_parameters, parameter_value, with_values
+from doe_kc.axle.parameters import parameter_value, with_values
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.variables.options import Change, VariableOptions
 from doe_kc.variables.space import Space, Tie

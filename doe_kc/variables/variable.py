@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.ground.typing import FloatArray
 from doe_kc.variables.options import Distribution
 

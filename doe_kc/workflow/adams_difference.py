@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from doe_kc.adams.conversion import Conversion
+from doe_kc.axle.design_parameters import is_active
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import is_active, parameter_value
+from doe_kc.axle.parameters import parameter_value
 from doe_kc.effects import EFFECTS
 from doe_kc.workflow.import_adams import AdamsImport
 

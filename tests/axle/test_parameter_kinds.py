@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle.parameter_kinds import KINDS, SWITCHES, kind_of, quantity_of
-from doe_kc.axle.parameters import design_parameters, switched_topology, with_values
+from doe_kc.axle.parameters import switched_topology, with_values
 from tests.axle.test_parameters import nominal
 
 

@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from doe_kc.axle import Axle, design_parameters, parameter_value, with_values
-from doe_kc.axle.parameters import internal_gradient, settable_paths
+from doe_kc.axle.parameters import ParameterMap, internal_gradient, settable_paths
+from doe_kc.axle_file import read_axle
 from doe_kc.effects import apply_effect
+from doe_kc.examples import EXAMPLE_TYPES, example_folder
 from doe_kc.ground.errors import InputError
 from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 from tests.reference import nominal
@@ -264,3 +266,25 @@ def test_every_parameter_can_be_set_to_its_bounds() -> None:
     for p in design_parameters(nominal()):
         for value in (p.lower, p.upper):
             assert parameter_value(with_values(nominal(), {p.path: value}), p.path) == value
+
+
+@pytest.mark.parametrize("name", EXAMPLE_TYPES)
+def test_changes_of_many_designs_are_those_of_each(name: str) -> None:
+    axle = read_axle(example_folder(name) / "axle.toml")
+    paths = [p.path for p in design_parameters(axle)]
+    paths += [f"right.{p}" for p in paths[:4]] + [f"left.{paths[7]}"]
+    nominals = np.array([parameter_value(axle, p) for p in paths])
+    rng = np.random.default_rng(2)
+    values = nominals * rng.uniform(0.98, 1.02, (6, len(paths)))
+    values[1] = nominals
+    values[2, ::2] = nominals[::2]
+    parameters = ParameterMap(axle, paths)
+    changes = parameters.changes(values)
+    for i, row in enumerate(values):
+        expected = parameters.axle(list(row)).values
+        found = {**axle.values, **{internal: float(v[i]) for internal, v in changes.items()}}
+        assert found == pytest.approx(expected, rel=1e-15)
+    bad = values.copy()
+    bad[3, 2] = np.nan
+    with pytest.raises(InputError, match="expected a finite number"):
+        parameters.changes(bad)

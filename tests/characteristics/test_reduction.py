@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from doe_kc.characteristics import CHARACTERISTICS, reduce_all, reduce_one, reduction_gradient
+from doe_kc.characteristics import (
+    CHARACTERISTICS,
+    reduce_all,
+    reduce_batch,
+    reduce_one,
+    reduction_gradient,
+)
 from doe_kc.characteristics.reduction import fit_window, pad_travel, slope
-from doe_kc.curves import RESPONSE_UNITS, CaseCurves, CurveSet
+from doe_kc.curves import RESPONSE_UNITS, CaseCurves, CurveBatch, CurveSet
 from doe_kc.load_cases import LOAD_CASES
 
 HALF_TRACK = 790.0
@@ -133,3 +141,34 @@ def test_the_gradient_of_the_reduction_is_the_finite_difference(ident: str) -> N
                 values.append(reduce_one(entry, curve_set({case.load_case: moved})))
             found = (values[0] - values[1]) / (2 * h)
             assert slopes[i] == pytest.approx(found, rel=1e-5, abs=1e-6 * np.abs(slopes).max() + 1e-9)
+
+
+def test_many_designs_are_reduced_as_each_of_them() -> None:
+    rng = np.random.default_rng(3)
+    shift = {name: rng.normal(size=2) for name in ("toe", "camber", "spin", "caster")}
+
+    def single(factor: float, half_track: float) -> CurveSet:
+        slopes = {name: factor * (1.0 + 0.1 * i) for i, name in enumerate(RESPONSE_UNITS)}
+        cases = {
+            ident: case_curves(ident, slopes, bend=1e-5 * factor) for ident in ("vertical", "roll", "brake")
+        }
+        return CurveSet("test", cases, {n: factor * v for n, v in shift.items()}, half_track)
+
+    singles = [single(0.3, 780.0), single(0.7, 800.0), single(-0.2, 790.0)]
+    cases = {
+        ident: replace(
+            case,
+            mean={n: np.stack([c.cases[ident].mean[n] for c in singles], axis=1) for n in case.mean},
+            half_width={
+                n: np.stack([c.cases[ident].half_width[n] for c in singles], axis=1) for n in case.mean
+            },
+        )
+        for ident, case in singles[0].cases.items()
+    }
+    static = {n: np.stack([(c.static or {})[n] for c in singles], axis=1) for n in shift}
+    batch = CurveBatch("test", cases, static, np.array([[c.half_track] for c in singles]))
+    found = reduce_batch(batch, {"vertical": 12.0})
+    assert np.isnan(found).any() and not np.isnan(found).all(axis=0).all()
+    for i, (row, curves) in enumerate(zip(found, singles, strict=True)):
+        np.testing.assert_allclose(row, list(reduce_all(curves, {"vertical": 12.0}).values()), rtol=1e-12)
+        assert float(batch.half_track[i, 0]) == curves.half_track

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from doe_kc.axle.parameters import design_parameters
+from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.correlation.likelihood import CurveData, Likelihood

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import Axle
-from doe_kc.axle.parameters import design_parameters, settable_paths
+from doe_kc.axle.design_parameters import design_parameters
+from doe_kc.axle.parameters import settable_paths
 from doe_kc.curves import CurveSet
 from doe_kc.effects import EFFECTS as ALL_EFFECTS
 from doe_kc.effects import apply_effect, observed

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.axle.parameters import design_parameters
+from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.characteristics import appendix_c, reduce_all
 from doe_kc.effects import apply_effect
 from doe_kc.identification.matrix_model import in_windows, influence_matrix

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from doe_kc.axle.parameters import Parameter, design_parameters
+from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.parameter_influence.study import Influence, influence_study
 from tests.reference import nominal

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import design_parameters, with_values
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.ground.errors import InputError
 from doe_kc.sampling import SAMPLERS, Design, Sampler, sample
 from doe_kc.sampling._base import sampler

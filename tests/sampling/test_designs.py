@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.distance import pdist
 
 from doe_kc.axle import design_parameters, with_values
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.ground.errors import InputError
 from doe_kc.sampling import sample
 from doe_kc.sampling.latin_hypercube import SPREAD_UP_TO

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.ground.errors import InputError
 from doe_kc.surrogate_models.calibration import (
     DEPENDENCE,

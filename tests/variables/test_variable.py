@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.variables import Variable
 from doe_kc.variables.options import Distribution
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
