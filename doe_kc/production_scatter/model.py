@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from doe_kc.axle.parameters import Parameter
+from doe_kc.axle.design_parameters import Parameter
 from doe_kc.ground.typing import FloatArray
 from doe_kc.production_scatter.laws import DeviationLaw, normal_correlation
 
