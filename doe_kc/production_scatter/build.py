@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameter_kinds import must_be_positive, not_below_zero
-from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
