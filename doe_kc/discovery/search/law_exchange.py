@@ -34,7 +34,7 @@ def with_exchanged_laws(
     for member in last.model.members:
         starts = [FitStart(*with_law(last, member, law), last) for law in other_laws(member)]
         refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
-        gains = [f.evidence + promise(search, f) - last.evidence for f in refits]
+        gains = [f.evidence + promise(search, f) - search.evidence for f in refits]
         if max(gains, default=0.0) <= ACCEPTED_ODDS:
             continue
         best = refits[int(np.argmax(gains))]
