@@ -239,7 +239,7 @@ def _disagreements(result: GlobalSensitivity, method: MethodResult) -> Iterator[
         variable, entry = result.variables[i], result.characteristics[k]
         share, effect = float(result.shares[i, k]), abs(float(result.effects[i, k]))
         if method.id == "pawn":
-            chance, margin = float(method.index("dummy").values[i, k]), SIMULTANEOUS * error
+            chance, margin = float(method.index("chance").values[i, k]), SIMULTANEOUS * error
             hidden = overall - margin > chance and share < WEAK_SHARE
             if not hidden and not (overall + margin < chance and share > CLEAR_SHARE):
                 continue

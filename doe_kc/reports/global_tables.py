@@ -120,7 +120,7 @@ def _size(result: GlobalSensitivity, k: int) -> np.ndarray:
             values = values / max(float(values.max()), 1e-300)
         elif method.id == "pawn":
             margin = SIMULTANEOUS * main.error[:, k]
-            values = np.where(values - margin > method.index("dummy").values[:, k], values, 0.0)
+            values = np.where(values - margin > method.index("chance").values[:, k], values, 0.0)
         else:
             values = values - main.error[:, k]
         sizes.append(values)

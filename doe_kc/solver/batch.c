@@ -12,17 +12,6 @@ int outputs(const lane **, lane **, integer *, lane *, int);
 int state_update(const lane **, lane **, integer *, lane *, int);
 int constants(const double **, double **, integer *, double *, int);
 
-#define HISTORY 4
-#define NEAR 0.1                /* of the predicted step: see march.py for these eight */
-#define SMOOTH 0.03
-#define GROWTH 2.0
-#define CORNER 0.5              /* mm */
-#define UNSEEN 0.02             /* mm */
-#define RETURN 0.01
-#define SLIP 2e-3               /* mm */
-#define ONWARD 1e-3
-#define STALL_LEVEL 1e-4        /* N */
-#define STALL_STEP 1e-10        /* mm, Gibbs units */
 #define DULL 0.5                /* contraction above which a factorization is renewed at once, ... */
 #define SLOW 2                  /* as after more than so many slow ones of an equilibrium; ... */
 #define TOGETHER 2              /* else at the next multiple of so many steps, together with that of other lanes */
@@ -310,16 +299,16 @@ static int continues(const problem *p, design *t, const double *last) {
     int newest = t->points - 1;
     if (p->guess) return 1;
     gap = distance(p, t->x, t->guessed);
-    if (gap <= UNSEEN) return 1;
+    if (gap <= NEGLIGIBLE_DISTANCE) return 1;
     moved = distance(p, t->x, last);
     stride = distance(p, t->guessed, last);
     if (newest > 0)
         longest = GROWTH * distance(p, last, last - p->n) * fabs(t->here - t->hs[newest]) /
                   fabs(t->hs[newest] - t->hs[newest - 1]);
     t->smooth = gap <= SMOOTH * stride;
-    if (gap <= NEAR * stride && moved <= longest) return 1;
+    if (gap <= PREDICTION_SHARE * stride && moved <= longest) return 1;
     t->far = moved > gap ? moved : gap;
-    return gap <= CORNER ? -1 : 0;
+    return gap <= CORNER_DISTANCE ? -1 : 0;
 }
 
 #define RUN_NEWTON \

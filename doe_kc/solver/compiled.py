@@ -22,6 +22,8 @@ from doe_kc.solver.newton import NewtonSettings
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
 DRIVER = Path(__file__).with_name("driver.c")
+MARCH_HEADER = Path(__file__).with_name("march.h")
+"""The constants of march.py and newton.py, for the compiled marches."""
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
     *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
@@ -119,7 +121,7 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
 
     def sources() -> dict[str, str]:
         functions = kernel(topology).functions
-        out = {"driver": handwritten(DRIVER)}
+        out = {"driver": handwritten(MARCH_HEADER, DRIVER)}
         for name in (*MARCHED, "constants"):
             out |= c_sources(functions[name])
         return out

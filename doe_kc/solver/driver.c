@@ -10,17 +10,6 @@ int jacobian(const double **, double **, integer *, double *, int);
 int outputs(const double **, double **, integer *, double *, int);
 int state_update(const double **, double **, integer *, double *, int);
 
-#define HISTORY 4
-#define NEAR 0.1                /* of the predicted step: see march.py for these eight */
-#define SMOOTH 0.03
-#define GROWTH 2.0
-#define CORNER 0.5              /* mm */
-#define UNSEEN 0.02             /* mm */
-#define RETURN 0.01
-#define SLIP 2e-3               /* mm */
-#define ONWARD 1e-3
-#define STALL_LEVEL 1e-4        /* N: rounding of very stiff parts keeps the residual from falling below */
-#define STALL_STEP 1e-10        /* mm, Gibbs units: a step that no longer moves anything */
 
 typedef struct {
     int n, active, nu, nz, ny;          /* unknowns, solved ones, controls, states, outputs */
@@ -307,16 +296,16 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
             total += used;
             if (!bad && !guess) {
                 double gap = distance(x, guessed, scale, coordinates), moved = distance(x, last, scale, coordinates);
-                int near = gap <= UNSEEN;
+                int near = gap <= NEGLIGIBLE_DISTANCE;
                 if (!near) {
                     double stride = distance(guessed, last, scale, coordinates), longest = INFINITY;
                     if (points > 1)
                         longest = GROWTH * distance(last, last - n, scale, coordinates) * fabs(at - hs[points - 1]) /
                                   fabs(hs[points - 1] - hs[points - 2]);
                     smooth = gap <= SMOOTH * stride;
-                    near = gap <= NEAR * stride && moved <= longest;
+                    near = gap <= PREDICTION_SHARE * stride && moved <= longest;
                 }
-                if (!near && !(gap <= CORNER && returns(&p, x, moved > gap ? moved : gap, last, u_now, z, back, coordinates))) {
+                if (!near && !(gap <= CORNER_DISTANCE && returns(&p, x, moved > gap ? moved : gap, last, u_now, z, back, coordinates))) {
                     snap = gap;
                     bad = 1;
                 }

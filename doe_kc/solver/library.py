@@ -174,9 +174,9 @@ def fingerprint(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
 
 
-def handwritten(file: Path) -> str:
-    """C source of a file of the package, with what chooses a processor's vector instructions before it."""
-    return PROCESSOR_HEADER.read_text() + file.read_text()
+def handwritten(*files: Path) -> str:
+    """C source of files of the package, with what chooses a processor's vector instructions before it."""
+    return "".join(file.read_text() for file in (PROCESSOR_HEADER, *files))
 
 
 def _compile(compiler: str, scratch: Path, sources: dict[str, str], flags: Mapping[str, str]) -> Path:

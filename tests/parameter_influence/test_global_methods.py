@@ -100,8 +100,8 @@ def test_pawn_of_ishigami() -> None:
     """Ranked as in Pianosi and Wagener 2018; the third acts at the ends of its range alone, so that the
     median of its slices is that of chance."""
     done = indices("pawn", 800)
-    median, dummy = done["median"].values[:, 0], done["dummy"].values[:, 0]
-    assert np.all(median[:2] > 2.0 * dummy[:2]) and median[1] > median[0] > median[2]
+    median, chance = done["median"].values[:, 0], done["chance"].values[:, 0]
+    assert np.all(median[:2] > 2.0 * chance[:2]) and median[1] > median[0] > median[2]
     assert np.all((done["median"].error > 0.0) & (done["median"].error < 0.2))
 
 

@@ -23,7 +23,7 @@ PAWN_SLICES = 10
 """Of each variable's range, equally probable (the default of SALib)."""
 PAWN_RESAMPLES = 30
 """Bootstrap samples: half the width of an interval to 13 %."""
-DUMMIES = 40
+IRRELEVANT = 40
 """Columns of chance, whose index is what no influence looks like."""
 INTERVAL_WIDTH = 1.959963984540054
 """Standard deviations to either side that hold 95 % of a normal distribution."""
@@ -31,7 +31,7 @@ INTERVAL_WIDTH = 1.959963984540054
 
 @global_method
 class Pawn(GlobalMethod):
-    """median: of the Kolmogorov-Smirnov distances over the slices, in [0, 1]. dummy: the distance that 95 %
+    """median: of the Kolmogorov-Smirnov distances over the slices, in [0, 1]. chance: the distance that 95 %
     of variables without influence stay below with as many designs, the same for all."""
 
     id: ClassVar[str] = "pawn"
@@ -60,11 +60,11 @@ class Pawn(GlobalMethod):
             rows = rng.integers(n, size=n)
             again.append(pawn_medians(points[rows], values[rows]))
         error = INTERVAL_WIDTH * np.std(again, axis=0, ddof=1)
-        chance = np.percentile(pawn_medians(rng.random((n, DUMMIES)), values), 95.0, axis=0)
-        dummy = np.tile(chance, (d, 1))
+        chance = np.percentile(pawn_medians(rng.random((n, IRRELEVANT)), values), 95.0, axis=0)
+        chances = np.tile(chance, (d, 1))
         return (
             GlobalIndex("median", "shift of the distribution", median, np.asarray(error)),
-            GlobalIndex("dummy", "shift by chance", dummy, np.full_like(dummy, np.nan)),
+            GlobalIndex("chance", "shift by chance", chances, np.full_like(chances, np.nan)),
         )
 
 
