@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -42,7 +42,7 @@ class StudyFile(Strict):
     schema_: Literal["doe_kc.study/1"] = Field(default="doe_kc.study/1", alias="schema")
     name: str | None = None
     axle: str
-    measurement: str | None = None
+    measurement: str | Annotated[list[str], Field(min_length=1)] | None = None
     out: str = "out"
     seed: Annotated[int, Field(ge=0)] = 1
     pictures: PictureFormat = PNG
@@ -64,7 +64,8 @@ class Study:
     """A checked study.
 
     axle: in the state that it was measured in, `state`. hidden: values of the axle file that this state
-    hides, by internal name. windows: load case -> half-width of the fit window in the input's unit.
+    hides, by internal name. measurements: folder or `test.toml` of each measured car.
+    windows: load case -> half-width of the fit window in the input's unit.
     parameters: of the influence study. space: the variables on the unchanged axle, those of
     `use = "selection"` not yet narrowed. twin: the package's own model of the axle that an outside command
     solves, with the load cases that the command answers; None without a command or where it is switched off.
@@ -75,7 +76,7 @@ class Study:
     source: Path
     axle: Axle
     axle_path: Path
-    measurement: Path | None
+    measurements: tuple[Path, ...]
     out: Path
     seed: int
     pictures: PictureFormat
@@ -133,28 +134,33 @@ class Study:
         """An axle of this study with what the measurement's state hid: as it is written to a file."""
         return axle.changed(self.hidden) if self.hidden else axle
 
-    def measured(self) -> Path:
-        """The measurement's folder or `test.toml`; InputError when the study names none."""
-        if self.measurement is None:
+    @property
+    def measurement(self) -> Path | None:
+        """The first measured car's folder or `test.toml`, whose state is that of all; None without any."""
+        return self.measurements[0] if self.measurements else None
+
+    def measured(self) -> tuple[Path, ...]:
+        """`measurements`; InputError when the study names none."""
+        if not self.measurements:
             raise InputError(
                 f'{self.source}: names no measurement; add measurement = "FOLDER" (with its test.toml) '
                 "or give --measurement DIR."
             )
-        return self.measurement
+        return self.measurements
 
 
 def read_study(
     path: Path,
     *,
-    measurement: Path | None = None,
+    measurement: Path | Sequence[Path] | None = None,
     out: Path | None = None,
     seed: int | None = None,
     pictures: PictureFormat | None = None,
 ) -> Study:
     """Study from its file, or from the folder that holds `study.toml`.
 
-    measurement, out, seed, pictures: in place of the study's own. InputError naming file and key for
-    anything wrong.
+    measurement (one car's or several), out, seed, pictures: in place of the study's own. InputError naming
+    file and key for anything wrong.
     """
     source = path / "study.toml" if path.is_dir() else path
     file = validate(StudyFile, read_toml(source), str(source))
@@ -166,19 +172,19 @@ def read_study(
             )
     folder = source.parent
     designed = read_axle(folder / file.axle)
-    own = folder / file.measurement if file.measurement is not None else None
-    state = rig_state(measurement or own)
+    cars = _paths(measurement) or tuple(folder / name for name in _names(file.measurement))
+    state = rig_state(cars[0] if cars else None)
     axle = axle_in_state(designed, state)
     _check_windows(file.windows, axle, str(source))
     check_names(file.characteristics, file.curves, str(source))
     file.discovery.check_names(str(source))
-    _check_out(out or folder / file.out, folder, folder / file.axle, measurement or own, str(source))
+    _check_out(out or folder / file.out, folder, folder / file.axle, cars, str(source))
     study = Study(
         name=file.name or folder.resolve().name,
         source=source,
         axle=axle,
         axle_path=folder / file.axle,
-        measurement=measurement or own,
+        measurements=cars,
         out=out or folder / file.out,
         seed=file.seed if seed is None else seed,
         pictures=pictures or file.pictures,
@@ -199,6 +205,18 @@ def read_study(
         hidden=bar_values(designed, state),
     )
     return replace(study, twin=_twin(study))
+
+
+def _names(measurement: str | list[str] | None) -> list[str]:
+    if measurement is None:
+        return []
+    return [measurement] if isinstance(measurement, str) else measurement
+
+
+def _paths(measurement: Path | Sequence[Path] | None) -> tuple[Path, ...]:
+    if measurement is None:
+        return ()
+    return (measurement,) if isinstance(measurement, Path) else tuple(measurement)
 
 
 def _twin(study: Study) -> Axle | None:
@@ -233,21 +251,20 @@ def _twin(study: Study) -> Axle | None:
     return replace(twin, load_cases={k: c for k, c in twin.load_cases.items() if k in answered})
 
 
-def _check_out(out: Path, folder: Path, axle: Path, measurement: Path | None, source: str) -> None:
+def _check_out(out: Path, folder: Path, axle: Path, cars: Sequence[Path], source: str) -> None:
     """Results are not written over the axle file or among the records."""
     if "\0" in str(out):  # refused where it is written
         return
-    for key, path in (("axle", axle), ("measurement", measurement)):
-        if path is not None and "\0" in str(path):
+    for key, path in (("axle", axle), *(("measurement", car) for car in cars)):
+        if "\0" in str(path):
             raise InputError(f"{source}: {key} holds a null character, which no path can; correct it.")
     place = out.resolve()
     if place in (axle.resolve(), Path(source).resolve()):
         raise InputError(f"{source}: out is {out}, a file of the study; name a folder of its own.")
-    if measurement is None:
-        return
-    records = (measurement.parent if measurement.is_file() else measurement).resolve()
-    if place.is_relative_to(records) and not folder.resolve().is_relative_to(records):
-        raise InputError(f"{source}: out is {out}, inside the records' folder; name a folder beside it.")
+    for car in cars:
+        records = (car.parent if car.is_file() else car).resolve()
+        if place.is_relative_to(records) and not folder.resolve().is_relative_to(records):
+            raise InputError(f"{source}: out is {out}, inside the records' folder; name a folder beside it.")
 
 
 def _check_windows(windows: dict[str, float], axle: Axle, source: str) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
@@ -22,14 +22,15 @@ Progress = Callable[[str, int, int], None]
 def read_study(
     path: str | PathLike[str],
     *,
-    measurement: str | PathLike[str] | None = None,
+    measurement: str | PathLike[str] | Sequence[str | PathLike[str]] | None = None,
     out: str | PathLike[str] | None = None,
     seed: int | None = None,
     pictures: PictureFormat | None = None,
 ) -> Study:
     """The study of a file, or of a folder that holds `study.toml`; see docs/study.md.
 
-    measurement, out, seed, pictures ("png", "svg" or "none"): in place of the study's own.
+    measurement (folder of one car, or of each of several), out, seed, pictures ("png", "svg" or "none"): in
+    place of the study's own.
 
     Raises InputError naming file and key for anything wrong.
 
@@ -39,11 +40,20 @@ def read_study(
     """
     return study_file.read_study(
         Path(path),
-        measurement=None if measurement is None else Path(measurement),
+        measurement=_folders(measurement),
         out=None if out is None else Path(out),
         seed=seed,
         pictures=pictures,
     )
+
+
+def _folders(
+    measurement: str | PathLike[str] | Sequence[str | PathLike[str]] | None,
+) -> tuple[Path, ...] | None:
+    if measurement is None:
+        return None
+    several = isinstance(measurement, Sequence) and not isinstance(measurement, str)
+    return tuple(map(Path, measurement)) if several else (Path(measurement),)  # type: ignore[arg-type]
 
 
 def init(folder: str | PathLike[str], axle_type: str = DEFAULT_TYPE) -> Study:

@@ -27,7 +27,8 @@ StudyArgument = Annotated[
     Path, typer.Argument(metavar="STUDY", help="Study file, or the folder that holds study.toml.")
 ]
 MeasurementOption = Annotated[
-    Path | None, typer.Option(help="Folder of test.toml and its records, in place of the study's.")
+    list[Path] | None,
+    typer.Option(help="Folder of test.toml and its records, in place of the study's; again for each car."),
 ]
 OutOption = Annotated[Path | None, typer.Option(help="Folder for all results, in place of the study's.")]
 JsonOption = Annotated[Path | None, typer.Option("--json", help="Write the figures to this JSON file.")]

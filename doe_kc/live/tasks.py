@@ -27,7 +27,7 @@ class TaskRequest(Strict):
 
     task: TaskKind
     study: str
-    measurement: str | None
+    measurement: list[str]
     out: str
     seed: int
     effects: SavedSizes = Field(default={})
@@ -38,7 +38,7 @@ class TaskRequest(Strict):
 
     def read(self) -> Study:
         """The study; InputError as `read_study`."""
-        measurement = None if self.measurement is None else Path(self.measurement)
+        measurement = [Path(name) for name in self.measurement]
         return read_study(Path(self.study), measurement=measurement, out=Path(self.out), seed=self.seed)
 
 
@@ -90,7 +90,7 @@ def task_request(
     return TaskRequest(
         task=task,
         study=str(study.source),
-        measurement=None if study.measurement is None else str(study.measurement),
+        measurement=[str(path) for path in study.measurements],
         out=str(study.out),
         seed=study.seed,
         effects=sizes,

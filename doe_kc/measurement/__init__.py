@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from doe_kc.measurement.car_scatter import CarFigures, car_figures
+from doe_kc.measurement.cars import reduce_cars
 from doe_kc.measurement.gradients import Gradient, GradientEstimate
 from doe_kc.measurement.manifest import Manifest, load_manifest
 from doe_kc.measurement.noise import CaseNoise, ErrorComponents, NoiseModel
@@ -12,6 +14,7 @@ from doe_kc.measurement.trend import PolynomialTrend, fit_trends
 
 __all__ = [
     "HALF_TRACK",
+    "CarFigures",
     "CaseNoise",
     "Contribution",
     "ErrorComponents",
@@ -23,9 +26,11 @@ __all__ = [
     "PolynomialTrend",
     "RideHeight",
     "RigRecord",
+    "car_figures",
     "fit_trends",
     "infer_ride_height",
     "load_manifest",
     "read_record",
+    "reduce_cars",
     "reduce_measurement",
 ]

@@ -83,7 +83,7 @@ class NoiseModel:
         beyond white noise. components: run-to-run sd of the curve.
     input: (n,) grid. gram: (n, n) white-noise covariance of one run's mean curve per unit variance.
     slope: (2, n) response per input. signal: (2, n) change from static that the gain multiplies.
-    runs: number of runs averaged.
+    runs: number of runs averaged; of the mean of several cars, the number that would be as sure.
     """
 
     load_case: str
@@ -96,7 +96,7 @@ class NoiseModel:
     gram: FloatArray
     slope: FloatArray
     signal: FloatArray
-    runs: int
+    runs: float
 
     def run_covariance(self, side: int) -> FloatArray:
         """(n, n) covariance of one run's mean curve with its static value still in it."""
@@ -111,7 +111,7 @@ class NoiseModel:
         )
 
     def covariance(
-        self, input_grid: FloatArray | None = None, *, side: int = 0, runs: int | None = None
+        self, input_grid: FloatArray | None = None, *, side: int = 0, runs: float | None = None
     ) -> FloatArray:
         """(m, m) covariance of the mean curve of `runs` runs (default: those averaged), unit squared.
 
@@ -134,7 +134,7 @@ class NoiseModel:
     def _sample_sd(self, side: int) -> FloatArray:
         return np.asarray(np.sqrt(self.white**2 + (self.slope[side] * self.input_white) ** 2))
 
-    def half_width_covariance(self, *, side: int = 0, runs: int | None = None) -> FloatArray:
+    def half_width_covariance(self, *, side: int = 0, runs: float | None = None) -> FloatArray:
         """(n, n) covariance of the averaged half-width curve: white noise and the loop's own scatter."""
         level = self._sample_sd(side)
         relative = self.input / np.abs(self.input).max()

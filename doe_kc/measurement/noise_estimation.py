@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -131,24 +131,68 @@ Runs = Mapping[str, Sequence[RunCurves]]
 
 
 def estimate_noise(runs: Runs, resolution: Mapping[str, float]) -> dict[str, CaseNoise]:
-    """Load case -> response -> noise model.
+    """Load case -> response -> noise model of one car.
 
     runs: load case -> reduced runs, main run first. resolution: sensor kind -> deg, mm or N.
     White noise comes from each channel itself; offset, gain and smooth error from the repeats, pooled
     per sensor kind. A kind without any repeats gets them from the resolution, marked so in `source`.
     """
-    out: dict[str, dict[str, NoiseModel]] = {case: {} for case in runs}
+    return estimate_common_noise([runs], resolution)[0]
+
+
+def estimate_common_noise(
+    cars: Sequence[Runs], resolution: Mapping[str, float]
+) -> tuple[dict[str, CaseNoise], ...]:
+    """As `estimate_noise` for every car, the repeats of all pooled: they are errors of one rig, which more
+    repeats tell better."""
+    out: tuple[dict[str, dict[str, NoiseModel]], ...] = tuple({case: {} for case in runs} for runs in cars)
     for kind, responses in SENSOR_KINDS.items():
-        partial = {
-            case: {r: _uninformed(case, r, members, resolution[kind]) for r in responses if _has(members, r)}
-            for case, members in runs.items()
-        }
-        pooled = [c for case in runs for r in partial[case] for c in _repeats(partial[case][r], runs[case])]
+        partial = [
+            {
+                case: {
+                    r: _uninformed(case, r, members, resolution[kind]) for r in responses if _has(members, r)
+                }
+                for case, members in runs.items()
+            }
+            for runs in cars
+        ]
+        pooled = [
+            c
+            for runs, models in zip(cars, partial, strict=True)
+            for case in runs
+            for r in models[case]
+            for c in _repeats(models[case][r], runs[case])
+        ]
         components = error_components(pooled, resolution[kind]) if pooled else None
-        for case, members in runs.items():
-            for r in partial[case]:
-                out[case][r] = _informed(partial[case][r], members, components)
-    return dict(out)
+        for own, runs, models in zip(out, cars, partial, strict=True):
+            for case, members in runs.items():
+                for r in models[case]:
+                    own[case][r] = _informed(models[case][r], members, components)
+    return tuple(dict(own) for own in out)
+
+
+def mean_noise(models: Sequence[NoiseModel]) -> NoiseModel:
+    """Noise model of the mean of several cars' mean curves on one grid.
+
+    Its covariance is 1/n^2 times the sum of theirs: `runs` counts n^2 / sum(1 / R_i), and the white noise,
+    that of loops, slopes and signals are the means that make it so. The components are common to all.
+    """
+    shares = np.array([1.0 / m.runs for m in models])
+    weights = shares / shares.sum()
+
+    def mean(of: Callable[[NoiseModel], FloatArray | float]) -> FloatArray:
+        return np.asarray(sum(w * np.asarray(of(m)) for w, m in zip(weights, models, strict=True)))
+
+    return replace(
+        models[0],
+        white=float(np.sqrt(mean(lambda m: m.white**2))),
+        input_white=float(np.sqrt(mean(lambda m: m.input_white**2))),
+        loop=float(np.sqrt(mean(lambda m: m.loop**2))),
+        gram=mean(lambda m: m.gram),
+        slope=mean(lambda m: m.slope),
+        signal=mean(lambda m: m.signal),
+        runs=len(models) ** 2 / float(shares.sum()),
+    )
 
 
 def _has(runs: Sequence[RunCurves], response: str) -> bool:

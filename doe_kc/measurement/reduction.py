@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -47,6 +47,9 @@ class Measurement:
     noise: load case -> response -> noise model of the mean curve.
     gradients: over the load-case input, every response and side.
     characteristics: id -> value and standard error; nan where load case or alignment is missing.
+    cars: the single cars where this is the mean of several, on the same inputs; empty for one car.
+    curve_scatter: load case -> response -> (2, n) standard deviation between cars, of one car; empty for
+        one car. noise is without it, standard errors of characteristics are with it.
     """
 
     manifest: Manifest
@@ -56,14 +59,24 @@ class Measurement:
     noise: Mapping[str, CaseNoise]
     gradients: tuple[Gradient, ...]
     characteristics: Mapping[str, GradientEstimate]
+    cars: tuple[Measurement, ...] = ()
+    curve_scatter: Mapping[str, Mapping[str, FloatArray]] = field(default_factory=dict)
 
     def curve_sd(self, load_case: str) -> dict[str, FloatArray]:
         """Response -> (2, n) standard deviations of its mean curves, left and right, in its unit."""
-        noise = self.noise.get(load_case, {})
         return {
-            name: np.array([np.sqrt(np.maximum(np.diag(model.covariance(side=s)), 0.0)) for s in (0, 1)])
-            for name, model in noise.items()
+            name: np.sqrt(
+                np.maximum(np.array([self.curve_variance(load_case, name, s) for s in (0, 1)]), 0.0)
+            )
+            for name in self.noise.get(load_case, {})
         }
+
+    def curve_variance(self, load_case: str, response: str, side: int) -> FloatArray:
+        """(n,) variance of a mean curve as an estimate of the design's: noise, and scatter of the cars."""
+        noise = np.diag(self.noise[load_case][response].covariance(side=side))
+        if not self.cars:
+            return noise
+        return np.asarray(noise + self.curve_scatter[load_case][response][side] ** 2 / len(self.cars))
 
 
 @one_thread()
@@ -77,9 +90,10 @@ def reduce_measurement(
     """
     path = manifest_path / "test.toml" if manifest_path.is_dir() else manifest_path
     manifest = load_manifest(path)
-    _check_windows(windows or {})
+    check_windows(windows or {})
     runs = {case: reduce_case(case_records(path, manifest, case)) for case in measured_cases(manifest)}
-    return _assembled(manifest, measured_curves(manifest, runs, half_track), runs, windows or {})
+    noise = estimate_noise(runs, sensor_resolution(manifest))
+    return assembled(manifest, measured_curves(manifest, runs, half_track), runs, noise, windows or {})
 
 
 def measured_curves(
@@ -94,14 +108,15 @@ def measured_curves(
     )
 
 
-def _assembled(
+def assembled(
     manifest: Manifest,
     curves: CurveSet,
     runs: Mapping[str, tuple[RunCurves, ...]],
+    noise: Mapping[str, CaseNoise],
     windows: Windows,
 ) -> Measurement:
+    """The measurement of reduced curves with their noise; InputError for a window with too few points."""
     check_window_points(curves, windows)
-    noise = estimate_noise(runs, _resolution(manifest))
     angle_sd = static_sd(manifest.alignment)
     gradients = [case_gradients(curves.cases[case], noise[case], windows) for case in runs]
     return Measurement(
@@ -173,7 +188,8 @@ def _read(folder: Path, entry: str, load_case: str, channels: ChannelMap) -> Rig
     return read_record(folder / name, load_case, sheet=sheet if mark else None, channels=channels)
 
 
-def _resolution(manifest: Manifest) -> dict[str, float]:
+def sensor_resolution(manifest: Manifest) -> dict[str, float]:
+    """Sensor kind -> resolution in deg, mm or N."""
     r = manifest.sensor_resolution
     return {"angle": r.angle_deg, "displacement": r.displacement_mm, "tyre_load": r.tyre_load_N}
 
@@ -198,7 +214,8 @@ def _referred(run: RunCurves, response: str, grid: FloatArray) -> FloatArray:
     return out
 
 
-def _check_windows(windows: Windows) -> None:
+def check_windows(windows: Windows) -> None:
+    """InputError for a window of no load case, or no width."""
     for case, half_width in windows.items():
         if case not in LOAD_CASES:
             raise InputError(

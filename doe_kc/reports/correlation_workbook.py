@@ -12,6 +12,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 from doe_kc import __version__
 from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
+from doe_kc.reports.car_table import car_table
 from doe_kc.reports.correlation_characteristics import characteristic_table
 from doe_kc.reports.correlation_dna import DNA_REACH
 from doe_kc.reports.correlation_evaluations import evaluation_table
@@ -26,6 +27,7 @@ from doe_kc.reports.render.workbook import TABLE_FIRST_ROW, lines_sheet, new_boo
 from doe_kc.reports.style import BASELINE_COLOUR, FINAL_COLOUR
 from doe_kc.reports.table import four_digits
 from doe_kc.reports.twin_tables import twin_table
+from doe_kc.targets.comparison import CarComparison
 
 CORRELATION_LEGEND = {
     "Frame": "Chassis: X rearwards, Y to the right, Z up, ground z = 0. Characteristics: left wheel.",
@@ -60,10 +62,12 @@ def write_correlation_workbook(
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
     loops: Sequence[LoopWidth] = (),
+    cars: Sequence[CarComparison] = (),
     axle_picture: bytes | None = None,
 ) -> Path:
-    """Write sheets Summary, DNA, Axle, Characteristics, Parameters, Curves, Twin, Hysteresis, Evaluations,
-    Rating terms and Legend; Axle, Twin and Hysteresis where there is a picture, a twin, and are loops.
+    """Write sheets Summary, DNA, Axle, Characteristics, Cars, Parameters, Curves, Twin, Hysteresis,
+    Evaluations, Rating terms and Legend; Axle, Cars, Twin and Hysteresis where there is a picture, are
+    several cars, a twin and loops.
 
     study: name in titles and page headers. date: as it shall stand in the summary. notes: further lines of
     the summary, title -> text (axle file, measurement, ...). assessment: by default the correlation's own.
@@ -79,6 +83,8 @@ def write_correlation_workbook(
         remark = "How far each hardpoint of the left side moved; the factor is in the key."
         add_picture(chart_sheet(book, "Axle", "The axle before and after", remark, study), axle_picture)
     _dna_chart(dna, table_sheet(book, characteristic_table(correlation), study), correlation)
+    if cars:
+        table_sheet(book, car_table(cars), study)
     table_sheet(book, parameter_table(correlation), study)
     table_sheet(book, curve_table(correlation), study)
     if correlation.twin is not None:

@@ -200,8 +200,9 @@ def _curves(
         for response in case.mean:
             own = [o for o in options if fnmatchcase(f"{case.load_case}.{response}", o.match)]
             curve = np.asarray(case.mean[response])[:, inside]
-            noise = measurement.noise[case.load_case][response]
-            variance = [np.diag(noise.covariance(side=side))[inside].mean() for side in (0, 1)]
+            variance = [
+                measurement.curve_variance(case.load_case, response, side)[inside].mean() for side in (0, 1)
+            ]
             rms = math.sqrt(max(float(np.mean(variance)), 0.0))
             scale = max(float(np.ptp(curve, axis=1).max()), NOISE_FLOOR * rms)
             yield CurveTarget(

@@ -11,6 +11,7 @@ import numpy as np
 from doe_kc.characteristics import CHARACTERISTICS, Characteristic, reduce_all
 from doe_kc.curves import RIG_RESPONSES, SIDES, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
+from doe_kc.measurement import CarFigures, Measurement, car_figures
 
 INTERVAL_SHARE = 0.15
 """Of the target: the half width of its constraint interval (equation 5.1 of the thesis)."""
@@ -72,10 +73,44 @@ class CurveComparison:
 
 
 @dataclass(frozen=True)
+class CarComparison:
+    """One characteristic of the model beside several measured cars; value: the model's, in `entry.unit`."""
+
+    figures: CarFigures
+    value: float
+
+    @property
+    def entry(self) -> Characteristic:
+        """Which one."""
+        return self.figures.entry
+
+    @property
+    def difference(self) -> float:
+        """Model minus mean of the cars."""
+        return self.value - self.figures.mean
+
+    @property
+    def standard_errors(self) -> float:
+        """The difference in standard errors of the mean."""
+        return self.figures.standard_errors(self.value)
+
+    @property
+    def chance(self) -> float:
+        """See `CarFigures.chance`."""
+        return self.figures.chance(self.value)
+
+
+def compare_cars(measurement: Measurement, model: Mapping[str, float]) -> tuple[CarComparison, ...]:
+    """Every characteristic that all cars show; none of a single car. model: id -> value."""
+    return tuple(CarComparison(f, model.get(f.entry.id, math.nan)) for f in car_figures(measurement))
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Model and measurement; static angles are compared only where the measurement has them.
 
     curve_sd: load case -> response -> (2, n) standard deviations of the measured mean curves, where known.
+    cars: the model beside the single cars, where several were measured.
     """
 
     model: CurveSet
@@ -83,6 +118,7 @@ class Comparison:
     characteristics: tuple[CharacteristicComparison, ...]
     curves: tuple[CurveComparison, ...]
     curve_sd: Mapping[str, Mapping[str, FloatArray]] = field(default_factory=dict)
+    cars: tuple[CarComparison, ...] = ()
 
 
 def compare(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,7 +12,7 @@ from doe_kc.axle.plausibility import axle_warnings
 from doe_kc.correlation.methods import check_method
 from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import DoeKcError, InputError, RunError
-from doe_kc.measurement import Manifest, load_manifest
+from doe_kc.measurement import Manifest, Measurement, load_manifest, reduce_cars
 from doe_kc.measurement.branches import RunCurves, reduce_case
 from doe_kc.measurement.reduction import case_records, check_window_points, measured_cases, measured_curves
 from doe_kc.sampling._base import find_sampler
@@ -72,7 +72,9 @@ class _Collector:
         return True
 
 
-def check_study(path: Path, *, measurement: Path | None = None, out: Path | None = None) -> StudyCheck:
+def check_study(
+    path: Path, *, measurement: Path | Sequence[Path] | None = None, out: Path | None = None
+) -> StudyCheck:
     """Every fault of a study file that can be told without fitting anything.
 
     measurement, out: in place of the study's own. Of a study file or an axle that cannot be read, the first
@@ -105,7 +107,8 @@ def _fault(kind: str, message: str) -> Fault:
 
 
 def _check_measurement(study: Study, collect: _Collector) -> tuple[Manifest | None, CurveSet | None]:
-    """The manifest, and the measured curves of the load cases that have no fault."""
+    """The manifest, and the measured curves of the load cases that have no fault; of several cars without
+    fault those of their mean."""
     if study.measurement is None:
         if study.variables.use == "selection":
             sentence = 'variables: use = "selection" needs a measurement; name one, or use = ["*"].'
@@ -114,7 +117,19 @@ def _check_measurement(study: Study, collect: _Collector) -> tuple[Manifest | No
             sentence = "correlation.set_first needs a measurement; name one or drop the key."
             collect.errors.append(_fault("measurement", f"{study.source}: {sentence}"))
         return None, None
-    path = study.measurement / "test.toml" if study.measurement.is_dir() else study.measurement
+    cars = [_check_car(study, path, collect) for path in study.measurements]
+    if len(cars) == 1 or collect.errors:
+        return cars[0]
+    mean: list[Measurement] = []
+
+    def reduced() -> None:
+        mean.append(reduce_cars(study.measurements, windows=study.windows, half_track=study.axle.half_track))
+
+    return (mean[0].manifest, mean[0].curves) if collect("measurement", reduced) else cars[0]
+
+
+def _check_car(study: Study, folder: Path, collect: _Collector) -> tuple[Manifest | None, CurveSet | None]:
+    path = folder / "test.toml" if folder.is_dir() else folder
     try:
         manifest = load_manifest(path)
     except InputError as error:

@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from doe_kc.characteristics import reduce_all
 from doe_kc.curves import CurveSet
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
+from doe_kc.reports.car_table import cars_entry, write_cars
 from doe_kc.reports.comparison_tables import compared_characteristic_table, compared_curve_table
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
 from doe_kc.study import Study
-from doe_kc.targets.comparison import Comparison, compare
+from doe_kc.targets.comparison import Comparison, compare, compare_cars
 
 
 def compare_model(study: Study, model: CurveSet, measurement: Measurement) -> Comparison:
     """Model against measurement in the study's fit windows."""
     spread = {name: estimate.sd for name, estimate in measurement.characteristics.items()}
     noise = {case: measurement.curve_sd(case) for case in measurement.curves.cases}
-    return compare(model, measurement.curves, target_sd=spread, windows=study.windows, curve_sd=noise)
+    compared = compare(model, measurement.curves, target_sd=spread, windows=study.windows, curve_sd=noise)
+    return replace(compared, cars=compare_cars(measurement, reduce_all(model, study.windows)))
 
 
 def write_comparison(
@@ -37,6 +41,7 @@ def write_comparison(
         ),
         write_columns(folder / "curves.csv", table_columns(compared_curve_table(comparison))),
         write_comparison_page(folder / "report.html", comparison),
+        *write_cars(comparison.cars, folder),
     ]
     link_pages(folder.parent)
     if pictures == "none":
@@ -59,4 +64,5 @@ def comparison_document(comparison: Comparison) -> dict[str, Any]:
     return {
         "characteristics": table_records(compared_characteristic_table(comparison)),
         "curves": table_records(compared_curve_table(comparison)),
+        **cars_entry(comparison.cars),
     }

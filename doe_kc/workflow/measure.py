@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 
 from doe_kc.axle import Axle, design_parameters
+from doe_kc.characteristics import reduce_all
 from doe_kc.curves import RIG_RESPONSES, TYRE_LOAD, CurveSet
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement import Measurement, RideHeight, infer_ride_height, reduce_measurement
+from doe_kc.measurement import Measurement, RideHeight, infer_ride_height, reduce_cars
+from doe_kc.reports.car_table import cars_entry, write_cars
 from doe_kc.reports.measurement_tables import (
     gradient_table,
     measured_characteristic_table,
@@ -28,6 +30,7 @@ from doe_kc.solver.result import Solution
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from doe_kc.study import Study
+from doe_kc.targets.comparison import CarComparison, compare_cars
 from doe_kc.workflow.rig_checks import axle_curves, refuse_faulty, rig_findings
 from doe_kc.workflow.setup import setup_differences
 
@@ -57,10 +60,12 @@ log = logging.getLogger("doe_kc")
 
 @dataclass(frozen=True)
 class Reduced:
-    """ride_height: difference to the study's axle; None without a `vertical` record."""
+    """ride_height: difference to the study's axle; None without a `vertical` record. cars: that axle beside
+    the single cars, where several were measured."""
 
     measurement: Measurement
     ride_height: RideHeight | None
+    cars: tuple[CarComparison, ...] = ()
 
 
 def study_records(study: Study) -> Reduced | None:
@@ -69,19 +74,20 @@ def study_records(study: Study) -> Reduced | None:
 
 
 def study_measurement(study: Study, model: CurveSet | None = None) -> Measurement:
-    """The study's reduced records; InputError when it names none, or where physics says that they are wrong.
+    """The study's reduced records, of several cars their mean.
+
+    InputError when it names none, or where physics says that they are wrong.
 
     Warns where the set-up differs and of what looks wrong. model: curves of the study's axle, solved if None.
     """
-    measurement = reduce_measurement(
-        study.measured(), windows=study.windows, half_track=study.axle.half_track
-    )
-    for sentence in setup_differences(study.axle, measurement.manifest):
-        log.warning(sentence)
-    path = study.measured()
-    source = path / "test.toml" if path.is_dir() else path
+    paths = study.measured()
+    measurement = reduce_cars(paths, windows=study.windows, half_track=study.axle.half_track)
     model = axle_curves(study.axle) if model is None else model
-    refuse_faulty(rig_findings(source, measurement.manifest, measurement.runs, model))
+    for path, car in zip(paths, measurement.cars or (measurement,), strict=True):
+        for sentence in setup_differences(study.axle, car.manifest):
+            log.warning(sentence)
+        source = path / "test.toml" if path.is_dir() else path
+        refuse_faulty(rig_findings(source, car.manifest, car.runs, model))
     return measurement
 
 
@@ -98,13 +104,14 @@ def reduce_records(study: Study, solution: Solution) -> Reduced:
             measurement.noise["vertical"],
             scatter=vertical_scatter(study.axle, solution),
         )
-    return Reduced(measurement, height)
+    return Reduced(measurement, height, compare_cars(measurement, reduce_all(model, study.windows)))
 
 
 def write_reduced(
     reduced: Reduced, folder: Path, *, workers: int | None = None, pictures: PictureFormat = PNG
 ) -> list[Path]:
-    """curves.csv, characteristics.csv, gradients.csv, noise.csv, report.html and one picture a load case."""
+    """curves.csv, characteristics.csv, gradients.csv, noise.csv, cars.csv of several cars, report.html and
+    one picture a load case."""
     measurement = reduced.measurement
     tables = {
         "curves.csv": measured_curve_columns(measurement),
@@ -116,7 +123,8 @@ def write_reduced(
     from doe_kc.reports.page.measurement import write_measurement_page
 
     written = [write_columns(folder / name, table) for name, table in tables.items()]
-    written.append(write_measurement_page(folder / "report.html", measurement))
+    written += write_cars(reduced.cars, folder)
+    written.append(write_measurement_page(folder / "report.html", measurement, reduced.cars))
     link_pages(folder.parent)
     if pictures == "none":
         return written
@@ -145,4 +153,5 @@ def reduced_document(reduced: Reduced) -> dict[str, Any]:
             },
         },
         "noise": table_records(noise_table(reduced.measurement)),
+        **cars_entry(reduced.cars),
     }

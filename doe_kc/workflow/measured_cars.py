@@ -18,7 +18,7 @@ def car_folders(study: Study) -> list[Path]:
     """Folders of the measured cars; InputError for one that is not there, or was measured in another state
     than the study's axle has."""
     if study.tolerance.cars is None:
-        return [] if study.measurement is None else [study.measurement]
+        return list(study.measurements)
     folders = [study.folder / name for name in study.tolerance.cars]
     for folder in folders:
         where = f"{study.source}: tolerance.cars: {folder}"
@@ -34,7 +34,7 @@ def car_folders(study: Study) -> list[Path]:
 
 def measured_cars(study: Study) -> list[tuple[Path, Measurement]]:
     """The reduced records of every car."""
-    return [(f, study_measurement(replace(study, measurement=f))) for f in car_folders(study)]
+    return [(f, study_measurement(replace(study, measurements=(f,)))) for f in car_folders(study)]
 
 
 def named_cars(cars: Sequence[tuple[Path, Measurement]]) -> list[MeasuredCar]:

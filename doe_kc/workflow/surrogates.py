@@ -18,7 +18,7 @@ from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.output import write_csv
 from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement import reduce_measurement
+from doe_kc.measurement import reduce_cars
 from doe_kc.parameter_influence.study import influence_study
 from doe_kc.reports import surrogate_tables as tables
 from doe_kc.reports.render.csv import table_frame
@@ -205,7 +205,7 @@ def measured_values(study: Study) -> dict[str, float]:
     """Characteristic -> measured value, which the figures show; none without a measurement."""
     if study.measurement is None:
         return {}
-    measured = reduce_measurement(study.measurement, windows=study.windows, half_track=study.axle.half_track)
+    measured = reduce_cars(study.measurements, windows=study.windows, half_track=study.axle.half_track)
     values = {name: estimate.value for name, estimate in measured.characteristics.items()}
     return {name: value for name, value in values.items() if math.isfinite(value)}
 

@@ -73,7 +73,7 @@ def study_tolerance(
     """
     model = study_scatter(study)
     cars = measured_cars(study)
-    own = next((m for f, m in cars if f == study.measurement), None)
+    own = next((m for f, m in cars if (f,) == study.measurements), None)
     needed = own is None and study.measurement is not None and not study.tolerance.requirement
     requirements = study_requirements(study, study_measurement(study) if needed else own)
     return tolerance_study(

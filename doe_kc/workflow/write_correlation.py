@@ -13,6 +13,7 @@ from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
+from doe_kc.reports.car_table import cars_beside, write_cars
 from doe_kc.reports.correlation_characteristics import characteristic_table
 from doe_kc.reports.correlation_evaluations import evaluation_table
 from doe_kc.reports.correlation_parameters import parameter_table, remark_sentences
@@ -70,6 +71,7 @@ def write_correlation(
     page = write_correlation_page(folder / "report.html", correlation, measurement, **words)
     link_pages(folder.parent)
     loops = [] if measurement is None else loop_widths(correlation, measurement)
+    cars = cars_beside(correlation, measurement)
     figures = _write_figures(study, correlation, measurement, folder, workers)
     return [
         axle,
@@ -77,6 +79,7 @@ def write_correlation(
             write_columns(folder / name, table_columns(of(correlation)))
             for name, of in CORRELATION_TABLES.items()
         ),
+        *write_cars(cars, folder),
         write_columns(folder / "rating_terms.csv", term_columns(correlation)),
         *(
             [write_columns(folder / "twin.csv", table_columns(twin_table(correlation.twin)))]
@@ -93,6 +96,7 @@ def write_correlation(
             correlation,
             **words,
             loops=loops,
+            cars=cars,
             axle_picture=_axle_picture(figures),
         ),
         page,

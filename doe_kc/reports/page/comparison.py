@@ -7,6 +7,7 @@ from pathlib import Path
 
 from doe_kc.reports.characteristic_columns import by_load_case
 from doe_kc.reports.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.reports.page.cars import cars_section
 from doe_kc.reports.page.curves import curve_set_section
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, table_html, write_page
@@ -16,11 +17,12 @@ COMPARED_LEAD = "The model beside the measured car, and the interval in which a 
 
 
 def comparison_sections(comparison: Comparison) -> list[Section]:
-    """Characteristics, Curves, Deviation of every curve, Words."""
+    """Characteristics, Cars where there are several, Curves, Deviation of every curve, Words."""
     table = compared_characteristic_table(comparison)
     table = replace(table, rows=by_load_case(table.rows, lambda c: c.entry.load_case))
     return [
         Section("Characteristics", table_html(table), COMPARED_LEAD),
+        *cars_section(comparison.cars),
         curve_set_section(comparison.measured, comparison.curve_sd, comparison.model),
         Section("Deviation of every curve", table_html(compared_curve_table(comparison))),
         glossary_section("noise", "± uncertainty", "interval"),

@@ -15,6 +15,7 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.status import STATUS_LABELS
 from doe_kc.measurement import Measurement
 from doe_kc.reports import style
+from doe_kc.reports.car_table import cars_beside
 from doe_kc.reports.correlation_characteristics import CharacteristicRow, characteristic_table
 from doe_kc.reports.correlation_convergence import threshold
 from doe_kc.reports.correlation_dna import DNA_REACH
@@ -22,6 +23,7 @@ from doe_kc.reports.correlation_evaluations import history
 from doe_kc.reports.correlation_parameters import ParameterRow, parameter_table, remark_sentences
 from doe_kc.reports.correlation_summary import summary
 from doe_kc.reports.page.axle import axle_section
+from doe_kc.reports.page.cars import cars_section
 from doe_kc.reports.page.curves import curves_section
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, embedded, render, significant, table_html, write_page
@@ -157,7 +159,8 @@ def correlation_sections(
     notes: Mapping[str, str] | None = None,
     assessment: Assessment | None = None,
 ) -> list[Section]:
-    """Summary, Characteristics, Curves, Twin where an outside model has one, Convergence, Parameters, Axle.
+    """Summary, Characteristics, Cars where there are several, Curves, Twin where an outside model has one,
+    Convergence, Parameters, Axle.
 
     notes: further lines of the summary.
     """
@@ -165,6 +168,7 @@ def correlation_sections(
         _summary(correlation, notes or {}, assessment or assess(correlation)),
         characteristics_section(correlation),
     ]
+    sections += cars_section(cars_beside(correlation, measurement))
     sections += curves_section(correlation, measurement)
     sections += twin_section(correlation)
     return [
