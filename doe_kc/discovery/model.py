@@ -39,7 +39,7 @@ NO_CHARACTERISTICS = np.zeros(0)
 
 @dataclass(frozen=True)
 class EffectModel(FieldsOnly):
-    """An axle with effects of unknown size against the records of one car.
+    """An axle with effects of unknown size against the records of one car, or of the mean of several.
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides and traces of absent effects, which are linear), d together, then m
@@ -60,6 +60,9 @@ class EffectModel(FieldsOnly):
     nuisances: LinearNuisances | None = None
     """Differences between the sides and traces of all effects, of which those of absent ones count; None
     before they are known."""
+    scatter: float = 1.0
+    """Standard deviation of parameters and of differences between the sides before the records, over that of
+    one car: less of the mean of several."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
     """Solver of its axles, the same for all models that come of one another."""
 
@@ -122,7 +125,7 @@ class EffectModel(FieldsOnly):
     def prior_sd(self) -> FloatArray:
         """(d + m,) standard deviations before the measurement."""
         others = self.dimension - self.parameters + len(self.sizes)
-        return np.concatenate([self.space.prior_sd, np.ones(others)])
+        return np.concatenate([self.scatter * self.space.prior_sd, np.ones(others)])
 
     @cached_property
     def centre(self) -> FloatArray:

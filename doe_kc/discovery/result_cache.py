@@ -101,6 +101,8 @@ def fingerprint(model: EffectModel) -> str:
     axle = model.axle
     for text in (sorted(axle.values.items()), axle.topology, axle.load_cases, model.space, model.left_out):
         digest.update(repr(text).encode())
+    if model.scatter != 1.0:
+        digest.update(repr(model.scatter).encode())
     if model.nuisances is not None:
         digest.update(np.ascontiguousarray(model.nuisances.columns).tobytes())
         digest.update(model.weights.tobytes())

@@ -34,6 +34,10 @@ SIDE_BUSHING = 0.03
 """-, standard deviation of right minus left of a bushing's stiffness, relative. Rubber of one batch."""
 SIDE_RATE = 0.02
 """-, standard deviation of right minus left of a rate, relative. Springs are paired by rate."""
+COMMON_SHARE = 0.25
+"""-, share of the variance of a car's parameters that all measured cars are taken to have in common at least.
+A series is off its drawings by half of what one car is: tools, batches of rubber, an axle file of another
+stage."""
 
 # Fit
 

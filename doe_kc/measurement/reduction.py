@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +43,8 @@ class Measurement:
         polynomial over the whole travel rings around the bump-stop kink, which shifts the gradient at
         static.
     runs: load case -> runs, main run first, with the raw record and its branches for pictures.
-    trends: load case -> response -> (left, right) one-valued polynomial of all runs.
+    trends: load case -> response -> (left, right) one-valued polynomial of all runs; empty where there are
+        several cars.
     noise: load case -> response -> noise model of the mean curve.
     gradients: over the load-case input, every response and side.
     characteristics: id -> value and standard error; nan where load case or alignment is missing.
@@ -93,7 +94,8 @@ def reduce_measurement(
     check_windows(windows or {})
     runs = {case: reduce_case(case_records(path, manifest, case)) for case in measured_cases(manifest)}
     noise = estimate_noise(runs, sensor_resolution(manifest))
-    return assembled(manifest, measured_curves(manifest, runs, half_track), runs, noise, windows or {})
+    reduced = assembled(manifest, measured_curves(manifest, runs, half_track), runs, noise, windows or {})
+    return replace(reduced, trends={case: _trends(members) for case, members in runs.items()})
 
 
 def measured_curves(
@@ -115,7 +117,8 @@ def assembled(
     noise: Mapping[str, CaseNoise],
     windows: Windows,
 ) -> Measurement:
-    """The measurement of reduced curves with their noise; InputError for a window with too few points."""
+    """The measurement of reduced curves with their noise, without trends; InputError for a window with too
+    few points."""
     check_window_points(curves, windows)
     angle_sd = static_sd(manifest.alignment)
     gradients = [case_gradients(curves.cases[case], noise[case], windows) for case in runs]
@@ -123,7 +126,7 @@ def assembled(
         manifest=manifest,
         curves=curves,
         runs=runs,
-        trends={case: _trends(members) for case, members in runs.items()},
+        trends={},
         noise=noise,
         gradients=tuple(g for group in gradients for g in group),
         characteristics=characteristic_estimates(curves, noise, windows, static_sd=angle_sd),

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.correlation.result import Correlation
-from doe_kc.ground.numbers import at_sd, with_sd
+from doe_kc.ground.numbers import at_sd, number, with_sd
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.reports.characteristic_columns import CHARACTERISTIC_COLUMNS, by_load_case
@@ -22,7 +23,8 @@ FAR = 0.01
 CAR_REMARK = (
     "Scatter: standard deviation between the cars beyond the noise of their records, with its 95 % interval. "
     "Sd of the mean: noise and scatter over the root of the number of cars, how well these cars tell all of "
-    "their kind. Chance: of such a distance or more if the model were right (Student's t); shaded below 1 %."
+    "their kind; in sd: of the mean. Chance: of such a distance or more if the model were right (Student's "
+    "t); shaded below 1 %."
 )
 
 
@@ -35,7 +37,7 @@ def _text(value: float, row: CarComparison) -> str:
 
 
 CAR_COLUMNS: tuple[Column[CarComparison], ...] = (
-    *CHARACTERISTIC_COLUMNS,
+    *(replace(c, page=None) if c.key == "response" else c for c in CHARACTERISTIC_COLUMNS),
     Column("mean", "Mean", lambda r: r.figures.mean, _digits, json="mean", page=PageCell(
         "Mean ± sd", text=lambda r: with_sd(r.figures.mean, r.figures.mean_sd), strong=lambda r: True,
         order=lambda r: r.figures.mean, style="n")),
@@ -43,20 +45,20 @@ CAR_COLUMNS: tuple[Column[CarComparison], ...] = (
     Column("noise_of_mean", "of which noise", lambda r: r.figures.noise_of_mean, _digits, 14,
            json="noise_of_mean"),
     Column("noise_sd", "Noise sd, one car", lambda r: r.figures.noise_sd, _digits, 16, json="noise_sd",
-           page=PageCell(text=lambda r: _text(r.figures.noise_sd, r))),
+           page=PageCell("Noise sd", text=lambda r: _text(r.figures.noise_sd, r))),
     Column("scatter_sd", "Scatter sd, one car", lambda r: r.figures.scatter_sd, _digits, 17,
-           json="scatter_sd", page=PageCell(text=lambda r: _text(r.figures.scatter_sd, r))),
+           json="scatter_sd", page=PageCell("Scatter sd", text=lambda r: _text(r.figures.scatter_sd, r))),
     Column("scatter_low", "Scatter, low", lambda r: r.figures.scatter_low, _digits, 12, json="scatter_low"),
     Column("scatter_high", "Scatter, high", lambda r: r.figures.scatter_high, _digits, 12,
            json="scatter_high", page=PageCell(
-               "95 % interval", order=lambda r: r.figures.scatter_high, style="n",
-               text=lambda r: f"{_text(r.figures.scatter_low, r)} to {_text(r.figures.scatter_high, r)}")),
+               "95 %", order=lambda r: r.figures.scatter_high, style="n",
+               text=lambda r: f"{number(r.figures.scatter_low, 2)} to {number(r.figures.scatter_high, 2)}")),
     Column("model", "Model", lambda r: r.value, _digits, json="model",
            page=PageCell(text=lambda r: _text(r.value, r))),
     Column("difference", "Model less mean", lambda r: r.difference, _digits, 15, json="difference",
-           page=PageCell(text=lambda r: _text(r.difference, r))),
+           page=PageCell("Difference", text=lambda r: _text(r.difference, r))),
     Column("standard_errors", "in standard errors", lambda r: r.standard_errors, "0.0", 17,
-           json="standard_errors", page=PageCell(layout=".1f")),
+           json="standard_errors", page=PageCell("in sd", layout=".1f")),
     Column("chance", "Chance", lambda r: r.chance, "0.0%", json="chance", page=PageCell(
         text=lambda r: f"{100.0 * r.chance:.1f} %", order=lambda r: r.chance, style="n",
         attributes=lambda r: {"class": "flag" if _far(r) else ""})),

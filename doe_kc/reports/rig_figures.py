@@ -36,7 +36,8 @@ RIG_MARGINS = {"left": 0.09, "right": 0.988, "top": 0.948, "bottom": 0.078, "wsp
 
 
 def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
-    """A4 sheet of one load case: a row per response; left wheel, right wheel, residual about the trend.
+    """A4 sheet of one load case: a row per response; left wheel, right wheel, residual about the trend, or
+    of several cars each car minus their mean.
 
     Raises KeyError when the load case was not measured.
     """
@@ -53,15 +54,17 @@ def rig_figure(measurement: Measurement, load_case: str) -> Sheet:
         _residual(row[2], measurement, load_case, response)
         _same_scale(row[0], row[1], notes=2 if other else 1)
         row[0].set_labels(None, response_axis(response))
-        row[2].set_labels(None, f"residual [{RESPONSE_UNITS[response]}]")
+        words = "difference" if measurement.cars else "residual"
+        row[2].set_labels(None, f"{words} [{RESPONSE_UNITS[response]}]")
     for panel in panels.flat:
         panel.y.set_locator(ticks(5))
     for panel in panels[-1]:
         panel.set_labels(without_remark(input_label(load_case, case.input_unit)), None)
-    for panel, title in zip(panels[0], (*SIDE_TITLES, "Samples minus trend"), strict=True):
+    last = "Cars minus mean" if measurement.cars else "Samples minus trend"
+    for panel, title in zip(panels[0], (*SIDE_TITLES, last), strict=True):
         panel.set_title(title)
     page.set_heading(f"{measurement.manifest.name}: {run.record.case.label}", 0.985)
-    _legend(page, len(measurement.runs[load_case]))
+    page.add_legend(_legend(len(measurement.runs[load_case]), len(measurement.cars)), 4)
     return page
 
 
@@ -85,13 +88,21 @@ def write_rig_figures(
 def _panel(panel: Panel, measurement: Measurement, load_case: str, response: str, side: int) -> None:
     run = measurement.runs[load_case][0]
     case = measurement.curves.cases[load_case]
-    panel.plot(run.record.input, _changes(measurement, load_case, response, side), color=LOOP_COLOUR, lw=0.7)
+    if measurement.cars:
+        for car in measurement.cars:
+            panel.plot(
+                case.input, car.curves.cases[load_case].mean[response][side], color=LOOP_COLOUR, lw=0.7
+            )
+    else:
+        samples = _changes(measurement, load_case, response, side)
+        panel.plot(run.record.input, samples, color=LOOP_COLOUR, lw=0.7)
     half = case.half_width[response][side]
     mean = case.mean[response][side]
     panel.plot(case.input, mean + half, color=UNLOAD_COLOUR, lw=0.9)
     panel.plot(case.input, mean - half, color=LOAD_COLOUR, lw=0.9)
-    fit = measurement.trends[load_case][response][side]
-    panel.plot(case.input, fit(case.input), dash="--", color=TREND_COLOUR, lw=0.8)
+    if not measurement.cars:
+        fit = measurement.trends[load_case][response][side]
+        panel.plot(case.input, fit(case.input), dash="--", color=TREND_COLOUR, lw=0.8)
 
 
 def _changes(measurement: Measurement, load_case: str, response: str, side: int) -> FloatArray:
@@ -149,6 +160,9 @@ def _note(panel: Panel, content: str, color: str) -> None:
 
 
 def _residual(panel: Panel, measurement: Measurement, load_case: str, response: str) -> None:
+    if measurement.cars:
+        _car_differences(panel, measurement, load_case, response)
+        return
     run = measurement.runs[load_case][0]
     for side in (0, 1):
         fit = measurement.trends[load_case][response][side]
@@ -169,6 +183,15 @@ def _residual(panel: Panel, measurement: Measurement, load_case: str, response: 
     panel.y.set_limits(low, high + 0.15 * (high - low))
 
 
+def _car_differences(panel: Panel, measurement: Measurement, load_case: str, response: str) -> None:
+    mean = measurement.curves.cases[load_case]
+    for side in (0, 1):
+        for car in measurement.cars:
+            own = car.curves.cases[load_case].mean[response][side]
+            panel.plot(mean.input, own - mean.mean[response][side], color=RESIDUAL_COLOURS[side], lw=0.9)
+    panel.hline(0.0, color=TREND_COLOUR, lw=0.6)
+
+
 def _same_scale(left: Panel, right: Panel, notes: int) -> None:
     """notes: lines of text in the top edge."""
     limits = [*left.y.limits, *right.y.limits]
@@ -178,18 +201,24 @@ def _same_scale(left: Panel, right: Panel, notes: int) -> None:
         panel.y.set_limits(min(limits), max(limits))
 
 
-def _legend(page: Sheet, runs: int) -> None:
-    handles: list[Line2D | Patch] = [
-        Line2D([], [], color=LOOP_COLOUR, lw=1, label="main run, samples"),
-        Line2D([], [], color=UNLOAD_COLOUR, label=f"input falling, {_runs(runs)}"),
-        Line2D([], [], color=LOAD_COLOUR, label=f"input rising, {_runs(runs)}"),
-        Line2D([], [], color=TREND_COLOUR, ls="--", label="polynomial trend"),
+def _legend(runs: int, cars: int) -> list[Line2D | Patch]:
+    """Of the mean of several cars without samples and trend."""
+    of = f"mean of {cars} cars" if cars else _runs(runs)
+    first = "each car" if cars else "main run, samples"
+    last, mark, line = ("difference", "", "-") if cars else ("residual", ".", "")
+    trend = [] if cars else [Line2D([], [], color=TREND_COLOUR, ls="--", label="polynomial trend")]
+    return [
+        Line2D([], [], color=LOOP_COLOUR, lw=1, label=first),
+        Line2D([], [], color=UNLOAD_COLOUR, label=f"input falling, {of}"),
+        Line2D([], [], color=LOAD_COLOUR, label=f"input rising, {of}"),
+        *trend,
         Line2D([], [], color=GRADIENT_COLOUR, lw=1.6, label="gradient at static"),
         Patch(color=WINDOW_COLOUR, label="fit window"),
-        Line2D([], [], color=RESIDUAL_COLOURS[0], ls="", marker=".", label="residual left"),
-        Line2D([], [], color=RESIDUAL_COLOURS[1], ls="", marker=".", label="residual right"),
+        *(
+            Line2D([], [], color=colour, ls=line, marker=mark, label=f"{last} {side}")
+            for colour, side in zip(RESIDUAL_COLOURS, ("left", "right"), strict=True)
+        ),
     ]
-    page.add_legend(handles, 4)
 
 
 def _runs(runs: int) -> str:

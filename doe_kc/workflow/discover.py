@@ -12,7 +12,9 @@ from doe_kc.axle.places import places_of
 from doe_kc.campaign.executors import processes
 from doe_kc.campaign.processes import available_cores
 from doe_kc.correlation.likelihood import record_likelihood
+from doe_kc.discovery.car_scatter import series_scatter
 from doe_kc.discovery.discover import discover
+from doe_kc.discovery.mean_car import mean_car_records
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.result_cache import ResultCache
@@ -56,6 +58,7 @@ def discover_study(
             f"expected one of {', '.join(study.axle.load_cases)}."
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
+    model, remarks = mean_car(model, measurement)
     count = workers or available_cores()
     done, total = 0, expected_steps(study)
 
@@ -68,8 +71,19 @@ def discover_study(
     with processes(count) as executor, ResultCache(study.discovery_store) as cache:
         discovery = discover(model, library, DiscoveryWorkers(executor, cache, counted, workers=count))
     if study.discovery_remark:
-        discovery = replace(discovery, sentences=(*discovery.sentences, study.discovery_remark))
-    return discovery
+        remarks = (*remarks, study.discovery_remark)
+    return replace(discovery, sentences=(*discovery.sentences, *remarks))
+
+
+def mean_car(model: EffectModel, measurement: Measurement) -> tuple[EffectModel, tuple[str, ...]]:
+    """The model against the records of the mean of several cars, with what that may be off, and what their
+    scatter is, in a sentence; of one car the model as it is."""
+    if not measurement.cars:
+        return model, ()
+    series = series_scatter(model, measurement)
+    records = mean_car_records(model, measurement)
+    likelihood = record_likelihood(model.axle, records)
+    return replace(model, likelihood=likelihood, scatter=series.mean_sd), (series.sentence,)
 
 
 def recorded(axle: Axle, measurement: Measurement) -> Axle:
@@ -110,7 +124,7 @@ def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
 
 def discover_folder(
     axle_path: Path,
-    measurement_dir: Path,
+    measurement_dir: Path | Sequence[Path],
     *,
     variables: VariableOptions | None = None,
     exclude: Sequence[str] = (),
@@ -119,20 +133,21 @@ def discover_folder(
 ) -> dict[str, object]:
     """An axle file against a folder of records, without a study file; the answer as data.
 
-    variables: as in a study, by default all of the axle.
+    measurement_dir: of one car, or those of several. variables: as in a study, by default all of the axle.
     """
     from doe_kc.axle_file import read_axle
-    from doe_kc.measurement import reduce_measurement
+    from doe_kc.measurement import reduce_cars
     from doe_kc.measurement.rig_state import axle_in_state
     from doe_kc.workflow.discovery_document import discovery_document
 
     axle = read_axle(axle_path)
-    measurement = reduce_measurement(measurement_dir, half_track=axle.half_track)
+    folders = (measurement_dir,) if isinstance(measurement_dir, Path) else measurement_dir
+    measurement = reduce_cars(folders, half_track=axle.half_track)
     axle = axle_in_state(axle, measurement.manifest.state)
     axle = recorded(axle, measurement)
     library = effect_library(axle, exclude)
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
-    model = EffectModel(axle, space, record_likelihood(axle, measurement))
+    model, _ = mean_car(EffectModel(axle, space, record_likelihood(axle, measurement)), measurement)
     with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as cache:
         discovery = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
     return dict(discovery_document(discovery, None))

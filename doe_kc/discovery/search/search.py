@@ -362,7 +362,7 @@ def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
 def tune(model: EffectModel) -> Fit:
     """The best axle without a further effect, the differences between its sides linear about it."""
     first = fit(model, model.centre)
-    sides = side_differences(model.axle_at(first.z), model.space, model.likelihood)
+    sides = model.scatter * side_differences(model.axle_at(first.z), model.space, model.likelihood)
     sided = replace(model, nuisances=LinearNuisances(sides))
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
     return fit(sided, start, known=known_columns(first, sided), aged=0.0)

@@ -79,7 +79,7 @@ class _Tuning:
         hessian = fit.hessian[:count, :count]
         covariance = np.asarray(cho_solve(cho_factor(hessian), np.eye(count)))
         known = np.array([_known(v, float(u)) for v, u in zip(model.space.variables, fit.z, strict=False)])
-        precision = np.maximum(known**-2.0 - model.space.prior_sd**-2.0, 0.0)
+        precision = np.maximum(known**-2.0 - model.prior_sd[: model.parameters] ** -2.0, 0.0)
         return _Tuning(model.space.paths, covariance, precision, fit.jacobian)
 
 
