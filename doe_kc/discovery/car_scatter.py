@@ -81,21 +81,21 @@ def series_scatter(model: EffectModel, measurement: Measurement) -> SeriesScatte
         return np.asarray((rows - scales @ (scales.T @ rows)) / np.sqrt(len(cars)))
 
     columns = rest(np.hstack([own[:, : model.parameters] * model.space.prior_sd, sides]))
-    apart = rest(np.array([deviation(model.likelihood, car, measurement) for car in cars]).T)
-    return _most_likely(columns, apart)
+    apart = rest(np.array([deviation(model.likelihood, car) for car in cars]).T)
+    apart -= apart.mean(axis=1, keepdims=True)
+    return most_likely_scatter(columns, apart)
 
 
-def deviation(likelihood: Likelihood, car: Measurement, mean: Measurement) -> FloatArray:
-    """(M,) data of one car less those of the mean of all, in standard deviations of the mean's records."""
+def deviation(likelihood: Likelihood, car: Measurement) -> FloatArray:
+    """(M,) data of one car less those of a likelihood, in standard deviations of the latter."""
     parts = [
         c.whitened(_values(car.curves, c.load_case, c.response, c.side, c.branches, c.input) - c.value)
         for c in likelihood.curves
     ]
     statics = [
-        _static(car, f.response, f.side) - _static(mean, f.response, f.side) for f in likelihood.figures
+        (float((car.curves.static or {})[f.response][f.side]) - f.value) / f.sd for f in likelihood.figures
     ]
-    sds = np.array([f.sd for f in likelihood.figures])
-    return np.concatenate([*parts, np.array(statics) / sds])
+    return np.concatenate([*parts, np.array(statics)])
 
 
 def _values(
@@ -106,12 +106,11 @@ def _values(
     return np.asarray(np.interp(at, case.input, rows[response][side]))
 
 
-def _static(car: Measurement, response: str, side: int) -> float:
-    return float((car.curves.static or {})[response][side])
+def most_likely_scatter(columns: FloatArray, apart: FloatArray) -> SeriesScatter:
+    """By restricted maximum likelihood.
 
-
-def _most_likely(columns: FloatArray, apart: FloatArray) -> SeriesScatter:
-    """columns: G (M, l). apart: (M, n) differences of the cars, whitened."""
+    columns: G (M, l), l < M. apart: (M, n) differences of n cars from their mean, whitened.
+    """
     from scipy.optimize import minimize_scalar
 
     cars = apart.shape[1]

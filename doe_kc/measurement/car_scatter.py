@@ -74,11 +74,12 @@ def car_figures(measurement: Measurement) -> tuple[CarFigures, ...]:
         own = [car.characteristics[ident] for car in cars]
         values = np.array([e.value for e in own])
         if np.isfinite(values).all():
-            out.append(_figures(entry, values, float(np.sqrt(np.mean([e.sd**2 for e in own])))))
+            out.append(figures_of(entry, values, float(np.sqrt(np.mean([e.sd**2 for e in own])))))
     return tuple(out)
 
 
-def _figures(entry: Characteristic, values: FloatArray, noise_sd: float) -> CarFigures:
+def figures_of(entry: Characteristic, values: FloatArray, noise_sd: float) -> CarFigures:
+    """Scatter of the values (n,) of n cars; noise_sd: of one car, in their unit."""
     from scipy.stats import chi2
 
     dof, tail = values.size - 1, (1.0 - CONFIDENCE) / 2.0
