@@ -134,7 +134,7 @@ def test_the_readmes_shortest_study_is_one(tmp_path: Path) -> None:
     for study in studies:
         (tmp_path / "axle.toml").write_bytes((EXAMPLE / "axle.toml").read_bytes())
         (tmp_path / "study.toml").write_text(study, encoding="utf-8")
-        assert read_study(tmp_path).measured() == tmp_path / "rig"
+        assert read_study(tmp_path).measured() == (tmp_path / "rig",)
 
 
 def test_the_study_page_is_a_study(tmp_path: Path) -> None:

@@ -43,7 +43,7 @@ def test_the_example_has_every_key() -> None:
 def test_the_shortest_study(tmp_path: Path) -> None:
     study = read_study(written(tmp_path, 'axle = "axle.toml"\nmeasurement = "rig"\n'))
     assert study.name == tmp_path.name and study.seed == 1 and study.windows == {}
-    assert study.out == tmp_path / "out" and study.measured() == tmp_path / "rig"
+    assert study.out == tmp_path / "out" and study.measured() == (tmp_path / "rig",)
     assert len(study.parameters) == len(design_parameters(nominal())) >= 70
 
 
@@ -63,8 +63,24 @@ def test_paths_are_relative_to_the_study_and_may_be_absolute(
 def test_the_commands_options_take_the_place_of_the_studys(tmp_path: Path) -> None:
     path = written(tmp_path, 'axle = "axle.toml"\nmeasurement = "rig"\nout = "o"\nseed = 5\n')
     study = read_study(path, measurement=Path("m"), out=Path("n"), seed=0)
-    assert (study.measurement, study.out, study.seed) == (Path("m"), Path("n"), 0)
+    assert (study.measurements, study.out, study.seed) == ((Path("m"),), Path("n"), 0)
     assert read_study(path).seed == 5
+
+
+def test_a_study_names_one_measured_car_or_several(tmp_path: Path) -> None:
+    path = written(tmp_path, 'axle = "axle.toml"\nmeasurement = ["rig_1", "rig_2"]\n')
+    study = read_study(path)
+    assert study.measurements == (tmp_path / "rig_1", tmp_path / "rig_2")
+    assert study.measurement == tmp_path / "rig_1" and study.measured() == study.measurements
+    assert read_study(path, measurement=[Path("a"), Path("b")]).measurements == (Path("a"), Path("b"))
+    assert read_study(path, measurement=[]).measurements == study.measurements
+    (tmp_path / "rig_2").mkdir()
+    for wrong in ("[]", "3", '["rig_1", 2]'):
+        with pytest.raises(InputError, match="measurement"):
+            read_study(written(tmp_path, f'axle = "axle.toml"\nmeasurement = {wrong}\n'))
+    among = 'axle = "axle.toml"\nmeasurement = ["rig_1", "rig_2"]\nout = "rig_2/out"\n'
+    with pytest.raises(InputError, match="inside the records' folder"):
+        read_study(written(tmp_path, among))
 
 
 @pytest.mark.parametrize("out", ["axle.toml", "study.toml", "rig", "rig/out"])

@@ -21,7 +21,7 @@ from doe_kc.discovery.thresholds import COMMON_SHARE
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 
-RATIOS = (1e-6, 1e3)
+RATIO_RANGE = (1e-6, 1e3)
 """Of a variance to the assumed one, between which it is looked for."""
 SEEN = 1e-9
 """Share of the largest variance below which a direction of the parameters is not seen in the records."""
@@ -58,9 +58,9 @@ class SeriesScatter:
     def sentence(self) -> str:
         """What was found, for a reader."""
         return (
-            f"The {self.cars} cars scatter about each other by {self.sd:.2f} ± {self.sd_error:.2f} of the "
-            "scatter of parts that is assumed of one car; parameters of their mean are taken to be off by "
-            f"{self.mean_sd:.2f} of it."
+            f"The records are the mean of {self.cars} cars, whose parameters scatter about each other by "
+            f"{self.sd:.2f} ± {self.sd_error:.2f} of what the bounds leave to one car (standard deviations); "
+            f"those of their mean are taken to be off by {self.mean_sd:.2f} of it."
         )
 
 
@@ -126,7 +126,7 @@ def most_likely_scatter(columns: FloatArray, apart: FloatArray) -> SeriesScatter
         total = noise + np.exp(log_ratio) * variances
         return float(np.sum((cars - 1) * np.log(total) + squares / total))
 
-    best = minimize_scalar(deviance, bounds=tuple(np.log(RATIOS)), method="bounded")
+    best = minimize_scalar(deviance, bounds=tuple(np.log(RATIO_RANGE)), method="bounded")
     ratio = float(np.exp(best.x))
     information = (cars - 1) / 2.0 * np.sum((variances / (noise + ratio * variances)) ** 2)
     return SeriesScatter(cars, ratio, float(information**-0.5))

@@ -36,8 +36,8 @@ SIDE_RATE = 0.02
 """-, standard deviation of right minus left of a rate, relative. Springs are paired by rate."""
 COMMON_SHARE = 0.25
 """-, share of the variance of a car's parameters that all measured cars are taken to have in common at least.
-A series is off its drawings by half of what one car is: tools, batches of rubber, an axle file of another
-stage."""
+A choice: a series is off its axle file by half of what one car is, by tools, batches of rubber, another stage
+of the drawings."""
 
 # Fit
 

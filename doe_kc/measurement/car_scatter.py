@@ -10,7 +10,7 @@ from doe_kc.characteristics import CHARACTERISTICS, Characteristic
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.reduction import Measurement
 
-CONFIDENCE = 0.95
+SCATTER_LEVEL = 0.95
 """Of the interval of a scatter."""
 
 
@@ -82,7 +82,7 @@ def figures_of(entry: Characteristic, values: FloatArray, noise_sd: float) -> Ca
     """Scatter of the values (n,) of n cars; noise_sd: of one car, in their unit."""
     from scipy.stats import chi2
 
-    dof, tail = values.size - 1, (1.0 - CONFIDENCE) / 2.0
+    dof, tail = values.size - 1, (1.0 - SCATTER_LEVEL) / 2.0
     total = float(np.var(values, ddof=1)) * dof
     low, high = (float(np.sqrt(max(total / chi2.ppf(p, dof) - noise_sd**2, 0.0))) for p in (1.0 - tail, tail))
     return CarFigures(entry, values, noise_sd, float(scatter_sd(values, noise_sd**2)), low, high)

@@ -18,7 +18,7 @@ from doe_kc.reports.render.json import table_records
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table, row_digits
 from doe_kc.targets.comparison import CarComparison, compare_cars
 
-FAR = 0.01
+UNLIKE = 0.01
 """Chance below which a model is marked: no car of its kind scatters like that."""
 CAR_REMARK = (
     "Scatter: standard deviation between the cars beyond the noise of their records, with its 95 % interval. "
@@ -66,7 +66,7 @@ CAR_COLUMNS: tuple[Column[CarComparison], ...] = (
 
 
 def _far(row: CarComparison) -> bool:
-    return row.chance < FAR
+    return row.chance < UNLIKE
 
 
 def car_table(cars: Sequence[CarComparison]) -> Table[CarComparison]:

@@ -14,7 +14,7 @@ from doe_kc.campaign.processes import available_cores
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.car_scatter import series_scatter
 from doe_kc.discovery.discover import discover
-from doe_kc.discovery.mean_car import mean_car_records
+from doe_kc.discovery.mean_car import mean_car_likelihood
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.result_cache import ResultCache
@@ -81,8 +81,7 @@ def mean_car(model: EffectModel, measurement: Measurement) -> tuple[EffectModel,
     if not measurement.cars:
         return model, ()
     series = series_scatter(model, measurement)
-    records = mean_car_records(model, measurement)
-    likelihood = record_likelihood(model.axle, records)
+    likelihood = mean_car_likelihood(model, measurement)
     return replace(model, likelihood=likelihood, scatter=series.mean_sd), (series.sentence,)
 
 

@@ -10,10 +10,10 @@ import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.axle.model import Axle
-from doe_kc.correlation.likelihood import record_likelihood
+from doe_kc.correlation.likelihood import CurveData, Likelihood, record_likelihood
 from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.discovery.car_scatter import most_likely_scatter, series_scatter
-from doe_kc.discovery.mean_car import mean_car_records
+from doe_kc.discovery.mean_car import mean_car_likelihood, with_rounding
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import fingerprint
 from doe_kc.discovery.thresholds import COMMON_SHARE
@@ -72,16 +72,30 @@ def effect_model() -> EffectModel:
     return EffectModel(axle(), space, record_likelihood(axle(), fleet()))
 
 
-def load(curves: CurveSet) -> FloatArray:
-    case = curves.cases[CASE]
-    return np.asarray(np.interp(np.linspace(20.0, 60.0, 81), case.input, case.mean["tyre_load"][0]))
+def data(likelihood: Likelihood) -> CurveData:
+    return next(c for c in likelihood.curves if c.response == "tyre_load" and c.side == 0)
 
 
 def test_the_mean_of_bends_is_no_bend_of_the_mean_car() -> None:
-    true = load(measured(solved(0.0)).curves)
-    rounded = np.abs(load(fleet().curves) - true).max()
-    corrected = np.abs(load(mean_car_records(effect_model(), fleet()).curves) - true).max()
+    true = data(record_likelihood(axle(), measured(solved(0.0)))).value
+    rounded = np.abs(data(effect_model().likelihood).value - true).max()
+    corrected = np.abs(data(mean_car_likelihood(effect_model(), fleet())).value - true).max()
     assert rounded > 10.0 and corrected < 0.1 * rounded
+
+
+def test_what_parameters_do_not_explain_of_the_cars_counts_as_an_error_of_their_mean() -> None:
+    likelihood, rng = model("none", ("lateral",)).likelihood, np.random.default_rng(9)
+    left = rng.standard_normal((3, likelihood.size))
+    same = with_rounding(likelihood, left + 10.0 * rng.standard_normal(likelihood.size))
+    assert np.mean(same.curves[0].level / likelihood.curves[0].level) < 1.1, "common to all: no scatter"
+    assert same.figures == likelihood.figures
+    ends = next(likelihood.slices())[1]
+    left[:, ends.start : ends.start + 10] += 20.0 * rng.standard_normal((3, 1))
+    wide = with_rounding(likelihood, left).curves[0]
+    assert (wide.level[2:8] > 10.0 * likelihood.curves[0].level[2:8]).all()
+    left = 3.0 * rng.standard_normal((400, likelihood.size))
+    shares = np.diag(with_rounding(likelihood, left).curves[0].root) / np.diag(likelihood.curves[0].root)
+    assert np.mean(shares**2) == pytest.approx(1.0 + 400 * 8.0, rel=0.05)
 
 
 def test_scatter_of_parts_is_told_by_the_cars() -> None:
