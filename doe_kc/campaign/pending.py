@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections import deque
 from collections.abc import Iterator, Mapping
@@ -12,6 +13,7 @@ from doe_kc.campaign.record import BatchResult, Packed, Task
 from doe_kc.ground.errors import RunError
 from doe_kc.true_solver.protocol import Values
 
+log = logging.getLogger("doe_kc")
 LOST = "a worker process was ended from outside"
 REMEDY = "often for lack of memory; use fewer --workers"
 MOST_LOSSES = 3
@@ -41,6 +43,7 @@ class PendingRuns:
         self._flying: dict[Future[BatchResult], Batch] = {}
         self._interrupts = interrupts
         self._suspects: list[str] = []
+        self._faults: set[str] = set()
 
     def results(self) -> Iterator[list[Landed]]:
         """Keys and results of every batch as it lands.
@@ -68,9 +71,20 @@ class PendingRuns:
             suspects += batch
             return
         yield from self._sentences()
+        self._warn(result.fault)
         yield list(zip(batch, result.packed, strict=False))
         if result.error is not None:
             raise result.error
+
+    def _warn(self, fault: str) -> None:
+        """Of a fault of the solver of many designs, once: its results are right, only late."""
+        if fault and fault not in self._faults:
+            self._faults.add(fault)
+            log.warning(
+                "designs could not be solved side by side (%s); they are solved one by one, which takes "
+                "longer.",
+                fault,
+            )
 
     def finished(self) -> Iterator[list[Landed]]:
         """Those that have landed but were not asked for yet; does not wait."""

@@ -6,7 +6,6 @@ import hashlib
 import json
 import math
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
 
@@ -63,25 +62,34 @@ def run_one(solver: TrueSolver, values: Values, *, keep_curves: bool = True) -> 
 
 @dataclass(frozen=True)
 class BatchResult:
-    """packed: of the designs of a batch, in order, up to the one that ended the campaign by `error`."""
+    """packed: of the designs of a batch, in order, up to the one that ended the campaign by `error`.
+
+    fault: why they could not be solved at once although none of them is bad input; empty where they could.
+    """
 
     packed: tuple[Packed, ...]
     error: DoeKcError | None = None
+    fault: str = ""
 
 
 def run_batch(solver: TrueSolver, keep_curves: bool, designs: Sequence[Values]) -> BatchResult:
     """Designs at once or one after the other; the failure of one is a value and leaves the others alone."""
+    fault = ""
     if isinstance(solver, BatchSolver) and len(designs) > 1:
-        with suppress(Exception):  # whose design it is, and what becomes of it, is found out one by one
+        try:
             return BatchResult(tuple(_run_together(solver, keep_curves, designs)))
+        except DoeKcError:
+            pass  # whose design it is, and what becomes of it, is found out one by one
+        except Exception as error:
+            fault = f"{type(error).__name__}: {error}"
     done: list[Packed] = []
     for values in designs:
         try:
             packed = run_one(solver, values, keep_curves=keep_curves)
         except DoeKcError as error:
-            return BatchResult(tuple(done), error)
+            return BatchResult(tuple(done), error, fault)
         done.append(packed)
-    return BatchResult(tuple(done))
+    return BatchResult(tuple(done), fault=fault)
 
 
 def _run_together(solver: BatchSolver, keep_curves: bool, designs: Sequence[Values]) -> list[Packed]:

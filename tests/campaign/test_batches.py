@@ -7,7 +7,8 @@ import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from doe_kc.campaign.runner import BATCH, Campaign
 from doe_kc.campaign.store import open_store, read_store
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.true_solver.outcome import Outcome
+from doe_kc.true_solver.protocol import Values
 from tests.campaign.test_curves_codec import assert_same
 from tests.campaign.toys import Toy, bump_steer, designs, pids_of, runs_of
 
@@ -81,6 +83,35 @@ def test_bad_input_inside_a_batch_keeps_what_came_before(quick: Toy, tmp_path: P
         with pytest.raises(InputError, match="unknown parameter 'y'"):
             campaign.evaluate(wanted, "test")
         assert len(campaign.store) == COUNT
+
+
+@dataclass(frozen=True)
+class SideBySide(Toy):
+    """Solves many designs at once, or trips over it."""
+
+    curves: bool = True
+    fault: type[Exception] | None = None
+
+    def evaluate_all(self, designs: Sequence[Values], *, curves: bool) -> list[Outcome]:
+        if self.fault is not None:
+            raise self.fault("lanes out of step")
+        return [self.evaluate(values) for values in designs]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize(("fault", "told"), [(ValueError, 1), (InputError, 0), (None, 0)])
+def test_a_fault_of_solving_at_once_is_told_once_and_costs_time_alone(
+    tmp_path: Path,
+    caplog: pytest.LogCaptureFixture,
+    workers: int,
+    fault: type[Exception] | None,
+    told: int,
+) -> None:
+    outcomes = evaluated(SideBySide(tmp_path / "log", quick=True, fault=fault), workers)
+    assert bump_steer(outcomes) == bump_steer(evaluated(Toy(tmp_path / "other"), 1))
+    warnings = [r.getMessage() for r in caplog.records]
+    assert len(warnings) == told
+    assert all("ValueError: lanes out of step" in w and "one by one" in w for w in warnings)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
