@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from _common import machine, publish
@@ -18,6 +19,7 @@ from _common import machine, publish
 from doe_kc.axle import Axle, design_parameters
 from doe_kc.axle.parameters import ParameterMap, settable_paths
 from doe_kc.axle_file import read_axle
+from doe_kc.campaign.record import StoredCurves
 from doe_kc.campaign.runner import Campaign
 from doe_kc.effects import apply_effect
 from doe_kc.examples import EXAMPLE_TYPES, example_folder
@@ -31,7 +33,7 @@ from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import VariableOptions, build_space
 
 REPEATS = 9
-DESIGNS = 1000
+DESIGNS = 2000
 SIDE_BY_SIDE = 64
 """Designs of a batch."""
 CAMPAIGN_TYPES = ("mcpherson_front", "five_link_rear")
@@ -90,20 +92,19 @@ def cpu_seconds() -> float:
     return t.user + t.system + t.children_user + t.children_system
 
 
-def campaign_row(name: str, axle: Axle, *, keep_curves: bool) -> str:
+def campaign_row(name: str, axle: Axle, kept: StoredCurves) -> str:
     space = build_space(axle, VariableOptions(levels="continuous"), "benchmark")
     designs = list(sample(space, DESIGNS, seed=3, method="sobol").rows())
     rows = []
     for _ in range(3):
         with tempfile.TemporaryDirectory() as folder:
             path, before, started = Path(folder) / "store", cpu_seconds(), time.perf_counter()
-            with Campaign(AxleSolver(axle), path, workers=2, keep_curves=keep_curves) as campaign:
+            with Campaign(AxleSolver(axle), path, workers=2, stored_curves=kept) as campaign:
                 campaign.evaluate(designs, "benchmark", curves=False)
             wall = time.perf_counter() - started
             size = path.stat().st_size / DESIGNS / 1e3
             rows.append((1e3 * (cpu_seconds() - before) / DESIGNS, 1e3 * wall / DESIGNS, size))
     used, wall, size = min(rows)
-    kept = "all" if keep_curves else "none"
     return f"| {name} | {kept} | {used:.2f} | {wall:.2f} | {size:.1f} |"
 
 
@@ -117,7 +118,7 @@ def main() -> None:
     sensitivity = [sensitivity_row(name, axle) for name, axle in (axles | further).items()]
     batches = [batch_row(name, axle) for name, axle in axles.items()]
     campaigns = [
-        campaign_row(name, axles[name], keep_curves=keep) for name in CAMPAIGN_TYPES for keep in (True, False)
+        campaign_row(name, axles[name], kept) for name in CAMPAIGN_TYPES for kept in get_args(StoredCurves)
     ]
     publish(
         "throughput",

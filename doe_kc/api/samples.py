@@ -13,6 +13,7 @@ import numpy as np
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import Progress, as_study, step_counter, stored
 from doe_kc.campaign.export import designs_frame
+from doe_kc.campaign.record import StoredCurves
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.study import Study
@@ -107,7 +108,7 @@ def sample(
     method: str | None = None,
     out: str | PathLike[str] | None = None,
     extend: bool = False,
-    curves: bool = True,
+    curves: StoredCurves = "all",
     retry_failed: bool = False,
     workers: int | None = None,
     scheduler: str | None = None,
@@ -119,10 +120,10 @@ def sample(
     seed decides the designs. out: folder for what `doe-kc sample --out` writes, its store among it, whose
     designs are not run again; by default nothing is written (but an outside solver's answers always go to the
     study's store). extend: designs that the store in `out` has already count among the n, and only what is
-    missing is drawn, to complete them. curves: False keeps the characteristics of new designs alone in the
-    store. retry_failed: run stored failures again. workers: processes, one per
-    core by default. scheduler: address of a Dask scheduler. progress: called with (what, designs done, of how
-    many).
+    missing is drawn, to complete them. curves: what the store keeps of new designs beside characteristics:
+    "all" curves, their "fit" to a tenth of what a rig resolves, or "none". retry_failed: run stored failures
+    again. workers: processes, one per core by default. scheduler: address of a Dask scheduler. progress:
+    called with (what, designs done, of how many).
 
     A design without equilibrium is a row with status "failed" and its reason. Raises InputError for an
     unknown method, a table that does not fit, or extend without `out` or with nothing to add, RunError when
@@ -145,7 +146,7 @@ def sample(
             workers=workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
-            keep_curves=curves,
+            stored_curves=curves,
             progress=step_counter(progress, design.method, len(np.atleast_2d(design.values))),
         )
     result = SamplingResult(chosen, sampled)

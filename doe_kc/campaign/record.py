@@ -8,10 +8,11 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache, partial
+from typing import Literal
 
 import numpy as np
 
-from doe_kc.campaign.curves_codec import pack, unpack
+from doe_kc.campaign.curves_codec import pack, pack_fit, unpack
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.curves import CurveSet
 from doe_kc.ground.errors import DoeKcError, InputError
@@ -20,6 +21,8 @@ from doe_kc.solver.result import NotConverged
 from doe_kc.true_solver.outcome import Outcome, checked, failure, reduced
 from doe_kc.true_solver.protocol import BatchSolver, TrueSolver, Values
 
+StoredCurves = Literal["all", "fit", "none"]
+"""What is kept of the curves of an evaluation: all bits, a fit (see `curve_fit`), or nothing."""
 LEFT_OUT = b""
 """In place of curves that were not to be kept."""
 REGISTERED = frozenset(CHARACTERISTICS)
@@ -47,7 +50,7 @@ def _quoted(path: str) -> str:
     return json.dumps(path)
 
 
-def run_one(solver: TrueSolver, values: Values, *, keep_curves: bool = True) -> Packed:
+def run_one(solver: TrueSolver, values: Values, *, kept: StoredCurves = "all") -> Packed:
     """One design, packed. InputError, RunError and MemoryError end the campaign, all else is a failure."""
     try:
         outcome = checked(solver.evaluate(values))
@@ -57,7 +60,7 @@ def run_one(solver: TrueSolver, values: Values, *, keep_curves: bool = True) -> 
         raise
     except Exception as error:  # whatever an outside solver trips over
         outcome = failure(f"{solver.name} raised {type(error).__name__}: {error}")
-    return packed_outcome(outcome, keep_curves=keep_curves)
+    return packed_outcome(outcome, kept=kept)
 
 
 @dataclass(frozen=True)
@@ -72,12 +75,12 @@ class BatchResult:
     fault: str = ""
 
 
-def run_batch(solver: TrueSolver, keep_curves: bool, designs: Sequence[Values]) -> BatchResult:
+def run_batch(solver: TrueSolver, kept: StoredCurves, designs: Sequence[Values]) -> BatchResult:
     """Designs at once or one after the other; the failure of one is a value and leaves the others alone."""
     fault = ""
     if isinstance(solver, BatchSolver) and len(designs) > 1:
         try:
-            return BatchResult(tuple(_run_together(solver, keep_curves, designs)))
+            return BatchResult(tuple(_run_together(solver, kept, designs)))
         except DoeKcError:
             pass  # whose design it is, and what becomes of it, is found out one by one
         except Exception as error:
@@ -85,31 +88,32 @@ def run_batch(solver: TrueSolver, keep_curves: bool, designs: Sequence[Values]) 
     done: list[Packed] = []
     for values in designs:
         try:
-            packed = run_one(solver, values, keep_curves=keep_curves)
+            packed = run_one(solver, values, kept=kept)
         except DoeKcError as error:
             return BatchResult(tuple(done), error, fault)
         done.append(packed)
     return BatchResult(tuple(done), fault=fault)
 
 
-def _run_together(solver: BatchSolver, keep_curves: bool, designs: Sequence[Values]) -> list[Packed]:
-    packed = [packed_outcome(outcome) for outcome in solver.evaluate_all(designs, curves=keep_curves)]
-    if keep_curves or not solver.curves:
+def _run_together(solver: BatchSolver, kept: StoredCurves, designs: Sequence[Values]) -> list[Packed]:
+    outcomes = solver.evaluate_all(designs, curves=kept != "none")
+    packed = [packed_outcome(outcome, kept=kept) for outcome in outcomes]
+    if kept != "none" or not solver.curves:
         return packed
     return [each if each.reason else replace(each, curves=LEFT_OUT) for each in packed]
 
 
-def task_for(solver: TrueSolver, *, keep_curves: bool = True) -> Task:
+def task_for(solver: TrueSolver, *, kept: StoredCurves = "all") -> Task:
     """What to submit to an executor for each batch of designs."""
-    return partial(run_batch, solver, keep_curves)
+    return partial(run_batch, solver, kept)
 
 
 @dataclass(frozen=True)
 class Packed:
     """An outcome that is small to send and to store.
 
-    characteristics: id -> value of those that are known. curves: of `curves_codec.pack`, `LEFT_OUT`, or None
-    from a solver that gives none. seconds: of the run.
+    characteristics: id -> value of those that are known. curves: of `curves_codec`, `LEFT_OUT`, or None from
+    a solver that gives none. seconds: of the run.
     """
 
     reason: str
@@ -148,13 +152,13 @@ class StoredEvaluation:
 Task = Callable[[Sequence[Values]], BatchResult]
 
 
-def packed_outcome(outcome: Outcome, *, keep_curves: bool = True) -> Packed:
+def packed_outcome(outcome: Outcome, *, kept: StoredCurves = "all") -> Packed:
     """What to keep of an outcome."""
     pairs = zip(CHARACTERISTICS, map(float, outcome.characteristics), strict=True)
     known = {name: value for name, value in pairs if math.isfinite(value)}
     block = None
     if outcome.curves is not None and not outcome.failed:
-        block = pack(outcome.curves) if keep_curves else LEFT_OUT
+        block = LEFT_OUT if kept == "none" else (pack if kept == "all" else pack_fit)(outcome.curves)
     return Packed(outcome.reason, known, block, outcome.seconds)
 
 

@@ -16,7 +16,7 @@ from doe_kc.campaign.executors import executor_for, in_process
 from doe_kc.campaign.interrupts import Interrupts
 from doe_kc.campaign.pending import PendingRuns
 from doe_kc.campaign.processes import available_cores
-from doe_kc.campaign.record import Packed, StoredEvaluation, design_key, task_for
+from doe_kc.campaign.record import Packed, StoredCurves, StoredEvaluation, design_key, task_for
 from doe_kc.campaign.store import Store, open_store
 from doe_kc.ground.errors import DoeKcError, RunError
 from doe_kc.true_solver.outcome import Outcome
@@ -37,7 +37,7 @@ class Campaign:
     store: a store that stays the caller's, the path of one to open, or None for one in memory.
     executor: stays the caller's; by default worker processes, as many as `workers` (one per core), or the
     Dask cluster at the address `scheduler`. retry_failed: run stored failures again, once a campaign.
-    keep_curves: False stores the characteristics of new evaluations alone.
+    stored_curves: what is kept of the curves of new evaluations beside their characteristics.
     """
 
     def __init__(
@@ -49,11 +49,11 @@ class Campaign:
         workers: int | None = None,
         scheduler: str | None = None,
         retry_failed: bool = False,
-        keep_curves: bool = True,
+        stored_curves: StoredCurves = "all",
     ) -> None:
         self.solver = solver
         self.retry_failed = retry_failed
-        self.keep_curves = keep_curves
+        self.stored_curves = stored_curves
         self.runs = 0
         """True-solver runs made so far."""
         self.asked = 0
@@ -82,7 +82,7 @@ class Campaign:
         """
         keys = [design_key(values) for values in designs]
         self.asked += len(keys)
-        missing = self._missing(keys, designs, curves=curves and self.keep_curves)
+        missing = self._missing(keys, designs, curves=curves and self.stored_curves != "none")
         times = Counter(keys)
         progress(sum(n for key, n in times.items() if key not in missing))
         if missing:
@@ -106,7 +106,7 @@ class Campaign:
         few = self.solver.quick and len(missing) <= IN_PROCESS_DESIGNS
         executor = self._here if few else self.executor
         interrupts = Interrupts()
-        task = task_for(self.solver, keep_curves=self.keep_curves)
+        task = task_for(self.solver, kept=self.stored_curves)
         flight = PendingRuns(executor, task, missing, interrupts, self._batch_size(len(missing)))
         try:
             with interrupts:

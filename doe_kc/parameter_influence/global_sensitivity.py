@@ -132,7 +132,7 @@ def global_sensitivity(
     done: list[MethodResult] = []
     explained = np.full(len(characteristics), np.nan)
     solver = AxleSolver(axle, dict(windows or {}), curves=False)
-    with Campaign(solver, store, workers=workers, scheduler=scheduler, keep_curves=False) as campaign:
+    with Campaign(solver, store, workers=workers, scheduler=scheduler, stored_curves="none") as campaign:
         for method, size in methods.items():
             points = method.points(space.dimension, size, seed)
             places = space.snapped(space.drawn(points) if method.distributed else points)

@@ -14,6 +14,7 @@ import numpy as np
 
 from doe_kc.axle.parameters import parameter_value
 from doe_kc.campaign.export import Format, designs_frame, export_store, write_table
+from doe_kc.campaign.record import StoredCurves
 from doe_kc.campaign.runner import Campaign
 from doe_kc.campaign.store import read_store
 from doe_kc.characteristics import CHARACTERISTICS
@@ -118,12 +119,12 @@ def run_sample(
     workers: int | None = None,
     scheduler: str | None = None,
     retry_failed: bool = False,
-    keep_curves: bool = True,
+    stored_curves: StoredCurves = "all",
     progress: Callable[[int], None] = lambda _: None,
 ) -> SampleResult:
     """Every design of the sample evaluated, by the study's solver into the study's store.
 
-    keep_curves: False stores the characteristics of new designs alone.
+    stored_curves: what is kept of new designs beside their characteristics.
     """
     started = time.perf_counter()
     solver = solver_for(study.axle, study.solver, study.windows, study.folder)
@@ -133,7 +134,7 @@ def run_sample(
         workers=workers,
         scheduler=scheduler,
         retry_failed=retry_failed,
-        keep_curves=keep_curves,
+        stored_curves=stored_curves,
     ) as campaign:
         outcomes = campaign.evaluate(list(design.rows()), f"sample:{design.method}", progress, curves=False)
     return SampleResult(design, tuple(outcomes), campaign.runs, time.perf_counter() - started)

@@ -150,7 +150,7 @@ def test_a_transaction_stores_all_or_nothing(toy: Toy, tmp_path: Path) -> None:
 
 def test_curves_that_are_not_kept_are_run_again_when_asked_for(quick: Toy, tmp_path: Path) -> None:
     def campaign(solver: Toy, *, keep: bool) -> Campaign:
-        return Campaign(solver, tmp_path / "s", workers=1, keep_curves=keep)
+        return Campaign(solver, tmp_path / "s", workers=1, stored_curves="all" if keep else "none")
 
     with campaign(quick, keep=False) as running:
         slim = running.evaluate(designs(COUNT), "test", curves=False)

@@ -88,7 +88,7 @@ def test_a_topology_of_few_designs_and_a_machine_without_compiler_go_one_by_one(
 
 def test_bad_input_keeps_what_came_before_it(tmp_path: Path) -> None:
     designs: list[Values] = [*moved(10), {"LLF.q": 1.0, "spring.rate": 28.0}]
-    with Campaign(AxleSolver(axle()), tmp_path / "s", workers=1, keep_curves=False) as campaign:
+    with Campaign(AxleSolver(axle()), tmp_path / "s", workers=1, stored_curves="none") as campaign:
         assert campaign.runs == 0
         with pytest.raises(InputError, match=r"LLF\.q"):
             campaign.evaluate(designs, "test", curves=False)
@@ -103,7 +103,7 @@ def test_bad_input_keeps_what_came_before_it(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("keep", [True, False])
 def test_a_campaign_stores_what_was_asked_for(keep: bool) -> None:
-    with Campaign(AxleSolver(axle()), workers=1, keep_curves=keep) as campaign:
+    with Campaign(AxleSolver(axle()), workers=1, stored_curves="all" if keep else "none") as campaign:
         campaign.evaluate([*moved(20), IMPOSSIBLE], "test", curves=False)
         records = list(campaign.store.records())
     assert [r.status for r in records] == ["ok"] * 20 + ["failed"]

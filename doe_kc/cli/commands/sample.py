@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
 from doe_kc.campaign.export import require_format
+from doe_kc.campaign.record import StoredCurves
 from doe_kc.cli._app import app
 from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.cli.progress import progress_bar
@@ -30,8 +31,11 @@ def sample(
         str | None, typer.Option(help="Also export the whole store, curves included: csv or parquet.")
     ] = None,
     curves: Annotated[
-        Literal["none", "all"],
-        typer.Option(help="What to store of new designs beside characteristics: all curves, or none."),
+        StoredCurves,
+        typer.Option(
+            help="What to store of new designs beside characteristics: all curves, their fit to a tenth of "
+            "what a rig resolves, or none."
+        ),
     ] = "all",
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="Run stored failures again.")] = False,
 ) -> None:
@@ -46,7 +50,7 @@ def sample(
             workers=study_options.workers,
             scheduler=scheduler,
             retry_failed=retry_failed,
-            keep_curves=curves == "all",
+            stored_curves=curves,
             progress=advance,
         )
     if study_options.json is not None:
