@@ -8,7 +8,8 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import get_args
@@ -39,6 +40,11 @@ SIDE_BY_SIDE = 64
 CAMPAIGN_TYPES = ("mcpherson_front", "five_link_rear")
 FRICTION = ("steering_friction", "strut_friction")
 MOST_SUITES = 12.0
+SCALED = (1, 2, 4)
+"""Dask workers on this machine."""
+CLUSTER_SIZES = (2, 4, 8, 16, 32, 64)
+WARM_UP = 256
+"""Designs with which workers load the package and its kernels."""
 
 
 def least_ms(run: Callable[[], object], repeats: int = REPEATS) -> float:
@@ -108,6 +114,72 @@ def campaign_row(name: str, axle: Axle, kept: StoredCurves) -> str:
     return f"| {name} | {kept} | {used:.2f} | {wall:.2f} | {size:.1f} |"
 
 
+@dataclass(frozen=True)
+class Scaling:
+    """A campaign on Dask workers.
+
+    wall: ms a design. own: CPU ms a design of the process that asks and stores, the scheduler in it. theirs:
+    CPU ms a design of the workers together.
+    """
+
+    workers: int
+    wall: float
+    own: float
+    theirs: float
+
+    def rate(self, workers: int) -> float:
+        """Designs a second of workers that have a core each: all of them busy, or the asking process."""
+        return 1e3 * min(workers / self.theirs, 1.0 / self.own)
+
+
+def scaling(axle: Axle, workers: int) -> Scaling:
+    """Of designs with their characteristics alone, after some that start the workers."""
+    from distributed import Client, LocalCluster
+
+    space = build_space(axle, VariableOptions(levels="continuous"), "benchmark")
+    designs = list(sample(space, DESIGNS + WARM_UP, seed=3, method="sobol").rows())
+    options = {"n_workers": workers, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        LocalCluster(**options) as cluster,
+        Client(cluster) as client,
+        Campaign(AxleSolver(axle), scheduler=cluster.scheduler_address, stored_curves="none") as campaign,
+    ):
+        campaign.evaluate(designs[:WARM_UP], "warm up", curves=False)
+        theirs = sum(client.run(time.process_time).values())
+        own, wall = time.process_time(), time.perf_counter()
+        campaign.evaluate(designs[WARM_UP:], "benchmark", curves=False)
+        wall, own = time.perf_counter() - wall, time.process_time() - own
+        theirs = sum(client.run(time.process_time).values()) - theirs
+    return Scaling(workers, *(1e3 * seconds / DESIGNS for seconds in (wall, own, theirs)))
+
+
+def scaling_lines(runs: Sequence[Scaling]) -> list[str]:
+    """What was measured, and what a cluster would give."""
+    least = min(runs, key=lambda r: r.own + r.theirs)
+    cells = [
+        f"| {r.workers} | {r.wall:.2f} | {runs[0].wall / r.wall:.2f} | {r.own:.2f} | {r.theirs:.2f} |"
+        for r in runs
+    ]
+    share = 100.0 * least.own / (least.own + least.theirs)
+    return [
+        f"{DESIGNS} designs of {CAMPAIGN_TYPES[0]}, characteristics alone, on Dask workers of this machine, "
+        f"which has {os.cpu_count()} cores: more workers share them, and other work on the machine lengthens "
+        "wall times. The scheduler is in the asking process:",
+        "",
+        "| workers | wall ms a design | times one worker | CPU ms, asking process | CPU ms, workers |",
+        "|---|---|---|---|---|",
+        *cells,
+        "",
+        f"{share:.0f} % of the work is serial: naming designs, sending, storing, the scheduler. What a cluster "
+        "would give with such a core for every worker and one for the asking process, by the least CPU times "
+        "above (an estimate; the network is not in it):",
+        "",
+        "| workers | designs a second | 10,000 designs |",
+        "|---|---|---|",
+        *(f"| {n} | {least.rate(n):.0f} | {1e4 / least.rate(n):.1f} s |" for n in CLUSTER_SIZES),
+    ]
+
+
 def main() -> None:
     axles = {t: read_axle(example_folder(t) / "axle.toml") for t in EXAMPLE_TYPES}
     rubbing = axles["mcpherson_front"]
@@ -120,6 +192,7 @@ def main() -> None:
     campaigns = [
         campaign_row(name, axles[name], kept) for name in CAMPAIGN_TYPES for kept in get_args(StoredCurves)
     ]
+    runs = [scaling(axles[CAMPAIGN_TYPES[0]], workers) for workers in SCALED]
     publish(
         "throughput",
         [
@@ -149,6 +222,8 @@ def main() -> None:
             "| axle | curves stored | CPU ms a design | wall ms a design | kB a design |",
             "|---|---|---|---|---|",
             *campaigns,
+            "",
+            *scaling_lines(runs),
         ],
     )
 
