@@ -170,9 +170,9 @@ def scaling_lines(runs: Sequence[Scaling]) -> list[str]:
         "|---|---|---|---|---|",
         *cells,
         "",
-        f"{share:.0f} % of the work is serial: naming designs, sending, storing, the scheduler. What a cluster "
-        "would give with such a core for every worker and one for the asking process, by the least CPU times "
-        "above (an estimate; the network is not in it):",
+        f"{share:.0f} % of the work is serial: naming designs, sending, storing, the scheduler. What a "
+        "cluster would give with such a core for every worker and one for the asking process, by the least "
+        "CPU times above (an estimate; the network is not in it):",
         "",
         "| workers | designs a second | 10,000 designs |",
         "|---|---|---|",

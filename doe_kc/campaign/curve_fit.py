@@ -53,13 +53,13 @@ def fitted(inputs: FloatArray, curves: FloatArray, steps: FloatArray) -> CurveFi
     coefficients = curves @ basis
     half = steps * np.sqrt(n) / 2.0
     counts = np.full(len(curves), n)
-    open_ = np.arange(len(curves))
+    places, left, before = np.arange(len(curves)), curves, 0
     for count in (c for c in DEGREES if c < n):
-        missed = np.abs(curves[open_] - coefficients[open_, :count] @ basis[:, :count].T).max(axis=1)
-        enough = missed <= half[open_]
-        counts[open_[enough]] = count
-        open_ = open_[~enough]
-        if not open_.size:
+        left = left - coefficients[places, before:count] @ basis[:, before:count].T
+        more = np.abs(left).max(axis=1) > half[places]
+        counts[places[~more]] = count
+        places, left, before = places[more], left[more], count
+        if not places.size:
             break
     kept = np.arange(n) < counts[:, None]
     rounded = np.rint(coefficients / steps[:, None])[kept]
@@ -84,6 +84,12 @@ def polynomials(inputs: FloatArray) -> FloatArray:
 
     At others unit vectors, with which a fit is rounding alone.
     """
+    return _polynomials(inputs.tobytes())
+
+
+@lru_cache(maxsize=64)
+def _polynomials(content: bytes) -> FloatArray:
+    inputs = np.frombuffer(content)
     n = inputs.size
     even = np.linspace(inputs[0], inputs[-1], n)
     if n < 2 or np.abs(inputs - even).max() > UNIFORM * abs(inputs[-1] - inputs[0]):

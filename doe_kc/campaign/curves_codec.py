@@ -12,6 +12,7 @@ import json
 import struct
 import zlib
 from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -33,36 +34,43 @@ class DamagedCurves(ValueError):
 
 def pack(curves: CurveSet) -> bytes:
     """Curves as bytes."""
-    numbers = [n for case in curves.cases.values() for n in (case.input, *(c for _, c in _stored(case)))]
-    return _block(MAGIC, curves, _planes(numbers, "<f8"))
+    there = {name: _stored(case) for name, case in curves.cases.items()}
+    numbers = [n for name, case in curves.cases.items() for n in (case.input, *there[name].values())]
+    return _block(MAGIC, curves, there, _planes(numbers, "<f8"))
 
 
 def pack_fit(curves: CurveSet) -> bytes:
     """Their fit as bytes; those of `pack` where they cannot be fitted."""
     cases = list(curves.cases.values())
+    there = {name: _stored(case) for name, case in curves.cases.items()}
     try:
-        fits = [_fit(case) for case in cases]
+        fits = [_fit(case.input, there[name]) for name, case in curves.cases.items()]
     except OverflowError:
         return pack(curves)
     content = _planes([case.input for case in cases], "<f8")
     content += _planes([f.counts for f in fits], "<u2") + _planes([f.steps for f in fits], "<i4")
-    return _block(FIT_MAGIC, curves, content)
+    return _block(FIT_MAGIC, curves, there, content)
 
 
-def _fit(case: CaseCurves) -> CurveFit:
-    there = _stored(case)
-    rows = np.concatenate([c for _, c in there]) if there else np.zeros((0, case.input.size))
-    return fitted(case.input, rows, _steps([name for name, _ in there], case.input.size))
+Stored = dict[tuple[str, str], FloatArray]
+"""(mean or half_width, response) -> curves (2, n) that are not zero throughout."""
 
 
-def _steps(responses: list[str], n: int) -> FloatArray:
+def _fit(inputs: FloatArray, there: Stored) -> CurveFit:
+    rows = np.concatenate(list(there.values())) if there else np.zeros((0, inputs.size))
+    return fitted(inputs, rows, _steps(tuple(response for _, response in there), inputs.size))
+
+
+@lru_cache(maxsize=64)
+def _steps(responses: tuple[str, ...], n: int) -> FloatArray:
     """(2 k,) of k responses, left and right."""
     return np.repeat([coefficient_step(name, n) for name in responses], 2)
 
 
-def _stored(case: CaseCurves) -> list[tuple[str, FloatArray]]:
-    """Response and curves (2, n) of all that is not zero throughout: mean curves, then half-widths."""
-    return [(r, c) for curves in (case.mean, case.half_width) for r, c in curves.items() if c.any()]
+def _stored(case: CaseCurves) -> Stored:
+    """Mean curves, then half-widths."""
+    kinds = (("mean", case.mean), ("half_width", case.half_width))
+    return {(kind, r): c for kind, curves in kinds for r, c in curves.items() if c.any()}
 
 
 def _planes(arrays: list[FloatArray] | list[NDArray[Any]], kind: str) -> bytes:
@@ -71,7 +79,7 @@ def _planes(arrays: list[FloatArray] | list[NDArray[Any]], kind: str) -> bytes:
     return flat.view(np.uint8).reshape(-1, flat.itemsize).T.tobytes()
 
 
-def _block(magic: bytes, curves: CurveSet, content: bytes) -> bytes:
+def _block(magic: bytes, curves: CurveSet, there: Mapping[str, Stored], content: bytes) -> bytes:
     header = {
         "source": curves.source,
         "half_track": float(curves.half_track),
@@ -83,10 +91,10 @@ def _block(magic: bytes, curves: CurveSet, content: bytes) -> bytes:
                 "load_case": case.load_case,
                 "unit": case.input_unit,
                 "points": len(case.input),
-                "mean": {name: bool(c.any()) for name, c in case.mean.items()},
-                "half_width": {name: bool(c.any()) for name, c in case.half_width.items()},
+                "mean": {r: ("mean", r) in there[name] for r in case.mean},
+                "half_width": {r: ("half_width", r) in there[name] for r in case.half_width},
             }
-            for case in curves.cases.values()
+            for name, case in curves.cases.items()
         ],
     }
     text = json.dumps(header).encode()
@@ -149,7 +157,7 @@ def _fitted_cases(headers: list[Mapping[str, Any]], content: bytes) -> Iterator[
         n = int(header["points"])
         grid, own = inputs.take(n), counts.take(2 * len(responses))
         fit = CurveFit(own, steps.take(int(own.sum())))
-        rows = iter(rebuilt(grid, fit, _steps(responses, n)).reshape(-1, 2, n))
+        rows = iter(rebuilt(grid, fit, _steps(tuple(responses), n)).reshape(-1, 2, n))
         yield _case(header, grid, lambda rows=rows: next(rows))  # type: ignore[misc]
 
 
