@@ -58,9 +58,11 @@ def discover_study(
             f"expected one of {', '.join(study.axle.load_cases)}."
         )
     model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
-    model, remarks = mean_car(model, measurement)
     count = workers or available_cores()
     done, total = 0, expected_steps(study)
+    if measurement.cars:
+        progress("re-tuning every car", done, total)
+    model, remarks = mean_car(model, measurement)
 
     def counted(words: str, steps: int, begun: int) -> None:
         nonlocal done, total

@@ -35,6 +35,14 @@ def test_other_seed_other_car(plain: HiddenCar) -> None:
     assert other.car.axle.values["LLF.x@L"] != plain.car.axle.values["LLF.x@L"]
 
 
+def test_cars_of_a_series_share_what_is_hidden_and_nothing_else() -> None:
+    first, second = (hidden_car(3, "single", number=n) for n in (0, 1))
+    assert first.content.hidden == second.content.hidden and first.car.clutter == second.car.clutter
+    assert first.car.axle.values["LLF.x@L"] != second.car.axle.values["LLF.x@L"]
+    assert first.levels != second.levels and first.error_seed != second.error_seed
+    assert first.error_seed == first.seed, "the first car is that of the sealed keys"
+
+
 def test_records_have_the_form_of_a_rig(plain_folder: Path) -> None:
     files = sorted(p.name for p in (plain_folder / RECORDS).iterdir())
     assert len(files) == 8 * 3 + 1

@@ -28,6 +28,14 @@ def test_every_panel_has_its_unit(car_a: Measurement) -> None:
     assert fig.outside == []
 
 
+def test_several_cars_are_drawn_each_and_minus_their_mean(car_a: Measurement) -> None:
+    brake = replace(car_a, cars=(car_a, car_a, car_a), trends={})
+    fig = rig_figure(brake, "brake")
+    assert fig.panels[2].title.text == "Cars minus mean"
+    assert fig.panels[2].y_label.text == "difference [deg]"
+    assert len(fig.panels[2].lines) == 6 + 1 and fig.outside == []
+
+
 @pytest.mark.parametrize(
     ("case", "panel", "ident", "travel"),
     [
