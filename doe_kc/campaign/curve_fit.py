@@ -1,6 +1,6 @@
 """Curves as coefficients of polynomials, rebuilt to a stated accuracy: a tenth of what a rig resolves.
 
-The polynomials are orthonormal on the n inputs of a load case (Gram polynomials where they are evenly spaced),
+The polynomials are orthonormal on the n inputs of a load case (evenly spaced: Gram polynomials),
 so that coefficients are products with a matrix, and the highest degree gives every point back. Each curve has
 the lowest degree of `DEGREES` that misses no point by half of its accuracy, and its coefficients are rounded
 so that no point moves by the other half.
