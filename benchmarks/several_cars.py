@@ -29,6 +29,7 @@ from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.effects import EFFECTS
+from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import reduce_cars
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space, effect_library, mean_car, recorded
@@ -119,7 +120,7 @@ def _size_words(answer: dict[str, Any]) -> str:
     if not answer["estimates"]:
         return "–"
     return "; ".join(
-        f"{key} {value:.3g} ± {sd:.2g} ({(value - true) / sd:+.1f})"
+        f"{key} {with_sd(value, sd)} ({(value - true) / sd:+.1f})"
         for key, (true, value, sd) in answer["estimates"].items()
     )
 
@@ -160,7 +161,9 @@ def report(cases: Sequence[SeriesCase], answers: Sequence[dict[str, dict[str, An
             )
     lines += ["", "| | " + " | ".join(heads) + " |", "|---|" + "---|" * len(KINDS)]
     every = {k: [a[k] for a in answers] for k in KINDS}
+    unexplained = [str(sum(a["verdict"] == "unexplained" for a in every[k])) for k in KINDS]
     lines += [
+        _row("something left unexplained", unexplained),
         _row("named", [f"{sum(map(_named, every[k]))} of {len(answers)}" for k in KINDS]),
         _row(
             "another effect named",
@@ -193,7 +196,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--cars", type=int, default=3)
     parser.add_argument("--suites", nargs="+", default=["weak", "confounded"])
-    parser.add_argument("--seeds", type=int, nargs="+", default=list(range(8)))
+    parser.add_argument("--seeds", type=int, nargs="+", default=list(range(6)))
     parser.add_argument("--report", type=Path)
     asked = parser.parse_args()
     asked.folder.mkdir(parents=True, exist_ok=True)
