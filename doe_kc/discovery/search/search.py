@@ -16,6 +16,7 @@ from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import (
+    effect_signals,
     fit_discrepancy,
     is_friction,
     marginal,
@@ -294,10 +295,11 @@ def _settled(
     """
     current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
     exact = refit_to_errors(own_loops(current, own.axle), own.likelihood)
-    settled, shares = fit_discrepancy(exact)
+    signals = effect_signals(exact)
+    settled, shares = fit_discrepancy(exact, signals)
     if settled.model.likelihood is not before:
         settled = converged_fit(settled, workers)
-    return settled, shares, without_own_discrepancy(exact, shares)
+    return settled, shares, without_own_discrepancy(exact, signals, shares)
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
