@@ -46,7 +46,7 @@ class LinearNuisances:
     @cached_property
     def digest(self) -> bytes:
         """SHA-256 of the columns."""
-        return hashlib.sha256(np.ascontiguousarray(self.columns)).digest()
+        return hashlib.sha256(np.ascontiguousarray(self.columns).data).digest()
 
     def moved(self, amounts: FloatArray) -> FloatArray:
         """(M,) change of the residual by amounts (l,), in standard deviations."""

@@ -16,6 +16,9 @@ from doe_kc.solver.curve_set import curve_set, mean_and_half_width, rising
 from doe_kc.solver.result import CaseSolution, Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
 
+CURVE_OUTPUTS = tuple(f"{response}@{side}" for response in RESPONSE_UNITS for side in SIDES)
+"""Outputs that curves are made of, in their order."""
+
 
 def is_loop(branches: Sequence[object]) -> bool:
     """Whether the branches of a load case are those of a loop with friction, not the two from zero."""
@@ -41,7 +44,7 @@ def curve_gradients(
     axle: Axle, solution: Solution, paths: Sequence[str], exact: Sensitivities | None = None
 ) -> CurveGradients:
     """Derivatives of every curve of a solution; exact: its sensitivities, where they are known."""
-    return gradients_of(solution, exact if exact is not None else sensitivities(axle, solution, paths))
+    return gradients_of(solution, exact or sensitivities(axle, solution, paths, outputs=CURVE_OUTPUTS))
 
 
 def gradients_of(solution: Solution, sensitivity: Sensitivities) -> CurveGradients:
@@ -54,19 +57,19 @@ def gradients_of(solution: Solution, sensitivity: Sensitivities) -> CurveGradien
     cases: dict[str, dict[str, FloatArray]] = {}
     half: dict[str, dict[str, FloatArray]] = {}
     for ident, case in solution.cases.items():
-        cases[ident], half_width = _case(solution, case, sensitivity.branches[ident])
+        cases[ident], half_width = _case(case, sensitivity.along(ident, CURVE_OUTPUTS))
         if is_loop(case.branches):
             half[ident] = half_width
     return CurveGradients(sensitivity.paths, inputs, cases, static, half)
 
 
 def _case(
-    solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]
+    case: CaseSolution, branches: list[FloatArray]
 ) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
-    """Response -> (2, n, p) of the mean curve, and of the half-width."""
-    columns = [solution.column(f"{response}@{side}") for response in RESPONSE_UNITS for side in SIDES]
-    both = mean_and_half_width(case, [rows[:, columns] for rows in branches])
-    mean, half = ([rows[:, i : i + 2].transpose(1, 0, 2) for i in range(0, len(columns), 2)] for rows in both)
+    """Response -> (2, n, p) of the mean curve, and of the half-width. branches: of CURVE_OUTPUTS."""
+    both = mean_and_half_width(case, branches)
+    places = range(0, len(CURVE_OUTPUTS), len(SIDES))
+    mean, half = ([rows[:, i : i + len(SIDES)].transpose(1, 0, 2) for i in places] for rows in both)
     zero = int(np.argmin(np.abs(rising(case))))
     changes = [
         curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]

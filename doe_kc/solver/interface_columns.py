@@ -111,7 +111,8 @@ def law_columns(
         for ident, case in at_place.branches.items()
     }
     names = tuple(p.name for p in at_place.probes)
-    return gradients_of(at_place.solution, Sensitivities(names, start[0], branches))
+    outputs = at_place.solution.output_names
+    return gradients_of(at_place.solution, Sensitivities(names, start[0], branches, outputs))
 
 
 def _pointwise(

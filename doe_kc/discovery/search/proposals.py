@@ -169,7 +169,7 @@ def _beyond(screened: Screened) -> FloatArray:
 
 def _within(hessian: FloatArray, slope: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """(m,) minimizer, each amplitude that passes a bound held there."""
-    amplitudes = -np.linalg.solve(hessian, slope)
+    amplitudes: FloatArray = -np.asarray(np.linalg.solve(hessian, slope), dtype=np.float64)
     outside = (amplitudes < low) | (amplitudes > high)
     if not outside.any():
         return amplitudes
