@@ -18,6 +18,7 @@ from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS
 from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.memory import return_free_pages
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
@@ -182,7 +183,10 @@ class DiscoveryWorkers:
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:
-    return [screen(fit, h, shape) for h, shape in starts]
+    try:
+        return [screen(fit, h, shape) for h, shape in starts]
+    finally:
+        return_free_pages()
 
 
 def _held_out_many(
@@ -208,6 +212,8 @@ def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: 
         return _packed_fit(fit(model, start, known=known, ceiling=ceiling))
     except NotConverged:
         return {"z": np.zeros(0)}
+    finally:
+        return_free_pages()
 
 
 def _packed_fit(fit: Fit) -> Arrays:

@@ -47,17 +47,17 @@ def fit_discrepancy(exact: Fit, signals: Sequence[EffectSignal]) -> tuple[Fit, d
     a law that fits is left as it is.
     """
     shares = [0.0] * len(signals)
-    best, most = exact, marginal(exact)
+    most = marginal(exact)
     for i in sorted(range(len(signals)), key=lambda i: -signals[i].square):
         for share in DISCREPANCY_SHARES[1:]:
             candidate = [share if k == i else s for k, s in enumerate(shares)]
-            wider = rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate))
-            evidence = marginal(wider)
+            evidence = marginal(rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate)))
             if evidence <= most:
                 break
-            best, most, shares[i] = wider, evidence, share
+            most, shares[i] = evidence, share
     names = [h.name for h in exact.model.members]
-    settled = chord_fit(best, best.model) if any(shares) else exact
+    wider = with_discrepancy(exact.model, signals, shares)
+    settled = chord_fit(rewhitened_fit(exact, wider), wider) if any(shares) else exact
     return settled, dict(zip(names, shares, strict=True))
 
 

@@ -315,9 +315,11 @@ def _settled(
     exact = refit_to_errors(own_loops(current, own.axle), own.likelihood)
     signals = effect_signals(exact)
     settled, shares = fit_discrepancy(exact, signals)
+    following = without_own_discrepancy(exact, signals, shares)
+    del current, exact  # before the last fit: their derivatives are large
     if settled.model.likelihood is not before:
         settled = converged_fit(settled, workers)
-    return settled, shares, without_own_discrepancy(exact, signals, shares)
+    return settled, shares, following
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
