@@ -192,14 +192,18 @@ def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]
 def _held_out_many(
     tuned: Fit, with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
 ) -> list[HeldOut]:
+    return_free_pages()
     return [held_out(tuned, with_effects, with_discrepancy, case) for case in cases]
 
 
 def _scan(tuned: Fit, temper: float) -> Scan | None:
+    return_free_pages()
     try:
         return scan(tuned, temper=temper)
     except NotConverged:
         return None
+    finally:
+        return_free_pages()
 
 
 def _fit_key(start: FitStart) -> str:
