@@ -104,17 +104,17 @@ class Decision:
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
     accepted: bool
     """Whether the first refit passes the threshold."""
-    whole: bool = True
+    has_derivatives: bool = True
     """Whether its fits have their derivatives."""
 
     @property
     def without_derivatives(self) -> Decision:
         """What was looked at and decided, for the record; no fit can begin from it."""
-        if not self.whole:
+        if not self.has_derivatives:
             return self
         return replace(
             self,
-            whole=False,
+            has_derivatives=False,
             before=self.before.without_derivatives,
             screened=tuple(s.change_only for s in self.screened),
             trials=tuple(replace(t, fit=t.fit.without_derivatives) for t in self.trials),

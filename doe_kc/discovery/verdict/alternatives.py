@@ -185,7 +185,7 @@ def _is_first(search: EffectSearch) -> bool:
     """Whether the first step began without effects and all sets since have one alone, in the same errors."""
     members = search.with_law_discrepancy.model.members
     before = search.first.before.model
-    if len(members) != 1 or before.members or not search.first.whole:
+    if len(members) != 1 or before.members or not search.first.has_derivatives:
         return False
     after = _own_errors(search, members[0])
     return all(a is b for a, b in zip(before.likelihood.curves, after.curves, strict=True))
