@@ -180,6 +180,7 @@ class DiscoveryWorkers:
                 for i, call in islice(following, 1):
                     begun[self._executor.submit(task, *call)] = i
                 yield place, future.result()
+                return_free_pages()
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:
