@@ -80,10 +80,11 @@ def packed(arrays: Arrays) -> bytes:
     those too would take four times as long for nothing; floats of 32 bits would move evidences.
     """
     head = json.dumps({name: np.shape(a) for name, a in arrays.items()}).encode()
-    numbers = [np.asarray(a, dtype=np.float64).T.ravel() for a in arrays.values()]
+    numbers = (np.asarray(a, dtype=np.float64).T.ravel() for a in arrays.values())
     bits = np.concatenate([*numbers, np.zeros(0)]).view(np.uint64)
     there = bits != 0
-    planes = bits[there].view(np.uint8).reshape(-1, BYTES).T
+    bits = bits[there]
+    planes = bits.view(np.uint8).reshape(-1, BYTES).T
     deflated = zlib.compress(np.packbits(there).tobytes() + planes[DIGITS:].tobytes(), 1)
     return b"".join([_sized(head), _sized(deflated), planes[:DIGITS].tobytes()])
 

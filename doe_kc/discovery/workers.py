@@ -179,6 +179,7 @@ class DiscoveryWorkers:
                 place = begun.pop(future)
                 for i, call in islice(following, 1):
                     begun[self._executor.submit(task, *call)] = i
+                return_free_pages()
                 yield place, future.result()
                 return_free_pages()
 
