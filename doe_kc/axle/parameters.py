@@ -7,7 +7,7 @@ one), stiffness factors with nominal 1, the rest in its unit. A plain path moves
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -28,16 +28,20 @@ from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 
+READINGS = 256
+"""Lists of paths that are kept read, each for the names of one kind of axle."""
+
 
 def settable_paths(axle: Axle) -> list[str]:
     """Every path that `with_values` takes on this axle, without the side prefixes."""
-    return sorted({n.split("@")[0] for n in axle.values if ".table." not in n})
+    return _settable(axle.values.keys())
 
 
 def parameter_value(axle: Axle, path: str, *, source: str = "parameter") -> float:
     """Absolute value of a path; of the left side when no side is named."""
-    name, side = _split(axle, path, source)
-    return _to_chassis(name, side, axle.values[_internal(axle, name, side or "L")])
+    known = axle.values.keys()
+    name, side = _split(known, path, source)
+    return _to_chassis(name, side, axle.values[_internal(known, name, side or "L")])
 
 
 def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "parameter") -> Axle:
@@ -59,7 +63,7 @@ class ParameterMap:
 
     def __init__(self, axle: Axle, paths: Sequence[str], *, source: str = "parameter") -> None:
         self._axle, self._source = axle, source
-        self._paths = [_path_effect(axle, path, source) for path in paths]
+        self._paths = _path_effects(axle, paths, source)
 
     def axle(self, values: Sequence[float]) -> Axle:
         """The axle with the values of the paths, in their order; InputError as `with_values`."""
@@ -111,19 +115,70 @@ class _PathEffect:
     moves: tuple[tuple[str, float, int], ...]
 
 
-def _path_effect(axle: Axle, path: str, source: str) -> _PathEffect:
-    name, side = _split(axle, path, source)
-    reference = axle.values[_internal(axle, name, side or "L")]
-    positive = must_be_positive(name) or not_below_zero(name)
-    moves = _moves(axle, name, side, reference)
+@dataclass(frozen=True)
+class _PathReading:
+    """What a path reads and moves on every axle of the same names, whatever their values.
+
+    side: R where its values are mirrored. reference: internal name that it is read from. relative: moves are
+    shares of what they move. moves: internal name, rank, whether it follows the change itself.
+    """
+
+    path: str
+    name: str
+    side: str | None
+    reference: str
+    least: float
+    overrides: bool
+    relative: bool
+    moves: tuple[tuple[str, int, bool], ...]
+
+
+def _path_effects(axle: Axle, paths: Sequence[str], source: str) -> list[_PathEffect]:
+    readings = _readings(tuple(paths), tuple(axle.values), tuple(axle.follow.items()), source)
+    return [_path_effect(reading, axle.values) for reading in readings]
+
+
+def _path_effect(reading: _PathReading, values: Mapping[str, float]) -> _PathEffect:
+    reference = values[reading.reference]
+    relative = reading.relative and reference != 0
     return _PathEffect(
-        path=path,
-        value=_to_chassis(name, side, reference),
-        least=0.0 if positive else -math.inf,
-        overrides=_overrides(axle, path),
-        sign=_to_left(name, side, 1.0),
+        path=reading.path,
+        value=_to_chassis(reading.name, reading.side, reference),
+        least=reading.least,
+        overrides=reading.overrides,
+        sign=_to_left(reading.name, reading.side, 1.0),
         reference=reference,
-        moves=tuple((internal, factor, _rank(path, internal)) for internal, factor in moves),
+        moves=tuple(
+            (internal, values[internal] / reference if relative and not follows else 1.0, rank)
+            for internal, rank, follows in reading.moves
+        ),
+    )
+
+
+@lru_cache(maxsize=READINGS)
+def _readings(
+    paths: tuple[str, ...], names: tuple[str, ...], follow: tuple[tuple[str, str], ...], source: str
+) -> tuple[_PathReading, ...]:
+    """names: of the axle's internal values. follow: of each hardpoint that follows, itself and its leader."""
+    known, leaders = frozenset(names), dict(follow)
+    return tuple(_reading(path, known, leaders, source) for path in paths)
+
+
+def _reading(path: str, known: Set[str], follow: Mapping[str, str], source: str) -> _PathReading:
+    name, side = _split(known, path, source)
+    positive = must_be_positive(name)
+    return _PathReading(
+        path=path,
+        name=name,
+        side=side,
+        reference=_internal(known, name, side or "L"),
+        least=0.0 if positive or not_below_zero(name) else -math.inf,
+        overrides=_overrides(follow, path),
+        relative=positive,
+        moves=tuple(
+            (internal, _rank(path, internal), follows)
+            for internal, follows in _moves(known, follow, name, side)
+        ),
     )
 
 
@@ -143,7 +198,7 @@ def switched_topology(axle: Axle, path: str) -> Topology:
     """The topology once the values that a path moves are above zero: for most paths the axle's own."""
     names = {name.split("@")[0] for name in internal_gradient(axle, path)}
     flags: dict[str, Any] = {flag: True for name, flag in SWITCHES.items() if name in names}
-    return replace(axle.topology, **flags)
+    return replace(axle.topology, **flags) if flags else axle.topology
 
 
 def topology_with(axle: Axle, values: Mapping[str, float]) -> Topology:
@@ -158,9 +213,9 @@ def _switching_paths(paths: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(p for p in paths if p.removeprefix(side_prefix(p)) in SWITCHES)
 
 
-def _overrides(axle: Axle, path: str) -> bool:
+def _overrides(follow: Mapping[str, str], path: str) -> bool:
     """Whether setting the path to the value it has still keeps it from moving with another."""
-    return bool(side_prefix(path)) or path.split(".")[0] in axle.follow
+    return bool(side_prefix(path)) or path.split(".")[0] in follow
 
 
 @lru_cache(maxsize=PATHS)
@@ -173,27 +228,27 @@ def _rank(path: str, internal: str) -> int:
 
 def internal_gradient(axle: Axle, path: str, *, source: str = "parameter") -> dict[str, float]:
     """d(internal value) / d(path), followers included: what a unit change of the path changes."""
-    effect = _path_effect(axle, path, source)
+    (effect,) = _path_effects(axle, [path], source)
     return {internal: effect.sign * factor for internal, factor, _ in effect.moves}
 
 
-def _moves(axle: Axle, name: str, side: str | None, reference: float) -> Iterator[tuple[str, float]]:
-    """Internal values that a path moves, and by how much over the change of the one that it is read from."""
-    known, sides = axle.values, (side,) if side else ("L", "R")
-    scales = reference != 0 and must_be_positive(name)
+def _moves(
+    known: Set[str], follow: Mapping[str, str], name: str, side: str | None
+) -> Iterator[tuple[str, bool]]:
+    """Internal values that a path moves, and whether they are those of a point that follows."""
+    sides = (side,) if side else ("L", "R")
     if f"{name}@{sides[0]}" not in known:
-        yield name, 1.0
+        yield name, True
         return
     for each in sides:
-        internal = f"{name}@{each}"
-        yield internal, known[internal] / reference if scales else 1.0
+        yield f"{name}@{each}", False
     point, _, axis = name.partition(".")
     if axis not in "xyz":
         return
-    for follower, leader in axle.follow.items():
+    for follower, leader in follow.items():
         if leader == point:
             for each in sides:
-                yield f"{follower}.{axis}@{each}", 1.0
+                yield f"{follower}.{axis}@{each}", True
 
 
 def check_value(path: str, value: float, source: str) -> None:
@@ -210,24 +265,28 @@ def check_value(path: str, value: float, source: str) -> None:
         )
 
 
-def _split(axle: Axle, path: str, source: str) -> tuple[str, str | None]:
+def _split(known: Set[str], path: str, source: str) -> tuple[str, str | None]:
     head, _, rest = path.partition(".")
     side = SIDE_PREFIXES.get(head)
     name = rest if side else path
     internal = "@" in name or ".table." in name
-    if not internal and (f"{name}@L" in axle.values or (name in axle.values and side is None)):
+    if not internal and (f"{name}@L" in known or (name in known and side is None)):
         return name, side
-    known = settable_paths(axle)
-    if name in known:
+    settable = _settable(known)
+    if name in settable:
         raise InputError(f"{source}: {path}: {name} belongs to the whole axle; leave out {head!r}.")
     raise InputError(
         f"{source}: unknown parameter {path!r}; expected a path such as LLF.x, llr.Fx or spring.rate."
-        f"{nearest(name, known)}"
+        f"{nearest(name, settable)}"
     )
 
 
-def _internal(axle: Axle, name: str, side: str) -> str:
-    return f"{name}@{side}" if f"{name}@{side}" in axle.values else name
+def _settable(known: Set[str]) -> list[str]:
+    return sorted({n.split("@")[0] for n in known if ".table." not in n})
+
+
+def _internal(known: Set[str], name: str, side: str) -> str:
+    return f"{name}@{side}" if f"{name}@{side}" in known else name
 
 
 def _to_chassis(name: str, side: str | None, value: float) -> float:

@@ -10,7 +10,9 @@ from doe_kc.axle.structure import Structure
 FrictionLaw = Literal["none", "dahl", "iwan", "duhem", "lognormal", "backbone"]
 
 TOPOLOGY_CACHE = 64
-"""Topologies whose equations and kernels, some MB each, are kept: a search for effects tries dozens."""
+"""Topologies whose kernels are kept: a search for effects tries dozens."""
+EQUATIONS_CACHE = 4
+"""Topologies whose equations are kept as expressions, some ten MB each; a compiled kernel does without."""
 
 
 @dataclass(frozen=True)

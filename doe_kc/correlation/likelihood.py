@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -146,6 +147,16 @@ class Likelihood(FieldsOnly):
     def size(self) -> int:
         """M, the number of data."""
         return sum(c.size for c in self.curves) + len(self.figures)
+
+    @cached_property
+    def digest(self) -> bytes:
+        """SHA-256 of all data and their errors."""
+        digest = hashlib.sha256(repr(self.figures).encode())
+        for curve in self.curves:
+            digest.update(f"{curve.load_case} {curve.response} {curve.side} {curve.branches}".encode())
+            for array in (curve.input, curve.value, curve.root):
+                digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.digest()
 
     def residual(self, curves: CurveSet | None, characteristics: FloatArray) -> FloatArray:
         """(M,) whitened residual of a model; KeyError for a load case that it lacks."""

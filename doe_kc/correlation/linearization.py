@@ -13,6 +13,7 @@ from doe_kc.axle.parameters import with_values
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver import suite
 from doe_kc.solver.curve_gradient import (
+    CURVE_OUTPUTS,
     CurveGradients,
     characteristic_gradients,
     gradients_of,
@@ -65,7 +66,7 @@ def linearized_curves(
 
     solution: of that axle. directions: see `sensitivities`.
     """
-    exact = sensitivities(there, solution, _moved_paths(space), directions)
+    exact = sensitivities(there, solution, _moved_paths(space), directions, outputs=CURVE_OUTPUTS)
     chain = block_diag(_chain(space, point), np.eye(len(directions)))
     return _chained(gradients_of(solution, exact), chain, (*space.paths, *directions))
 

@@ -25,6 +25,7 @@ from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
 from doe_kc.discovery.projection import Changes, Projection, changes
 from doe_kc.discovery.screening.disagreement import Map, residual_map
 from doe_kc.discovery.thresholds import (
+    BEYOND_DOUBT,
     CHORD_STEPS,
     FIT_DECREASE,
     FIT_GOOD_RATIO,
@@ -205,7 +206,8 @@ def fit(
 
     known: (M, p + m) derivatives that are known, see `known_columns`. aged: decrease of the sum of squares
     since they were taken; by default they are those of a model nearby, good enough for the first step.
-    ceiling: cost above which the fit is of no use; one whose steps promise no less is given up.
+    ceiling: cost above which the fit is of no use; one whose steps promise no less is given up, where that is
+    close not before it has derivatives of its own.
     """
     z = np.clip(start, model.lower, model.upper)
     current = _expanded(model, z, model.residual(z), 1, known)
@@ -222,7 +224,10 @@ def fit(
         if predicted < FIT_DECREASE:
             return replace(current, converged=True)
         if taken and _hopeless(current, ceiling):
-            return current
+            if aged <= FRESH_DECREASE or _hopeless(current, ceiling + 2.0 * BEYOND_DOUBT):
+                return current
+            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
+            continue
         trial, residual = current.z + step, None
         try:
             residual = model.residual(trial)

@@ -9,6 +9,7 @@ are the same but for the members themselves.
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -41,6 +42,11 @@ class LinearNuisances:
     def gram(self) -> FloatArray:
         """(l, l) inner products of the columns."""
         return np.asarray(self.columns.T @ self.columns)
+
+    @cached_property
+    def digest(self) -> bytes:
+        """SHA-256 of the columns."""
+        return hashlib.sha256(np.ascontiguousarray(self.columns).data).digest()
 
     def moved(self, amounts: FloatArray) -> FloatArray:
         """(M,) change of the residual by amounts (l,), in standard deviations."""

@@ -27,10 +27,11 @@ from doe_kc.discovery.thresholds import (
     NUISANCE_LIMIT,
 )
 from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.effects._base import observed
+from doe_kc.effects._base import observed, reading_gains
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.curve_gradient import scaled_gradients
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.variables import Space
 
@@ -229,6 +230,7 @@ class EffectModel(FieldsOnly):
             z[: self.parameters],
             {str(i): m for i, m in moves.items()},
         )
+        gradients = scaled_gradients(gradients, reading_gains(axle))
         exact = self.likelihood.jacobian(gradients, np.zeros((0, len(gradients.paths))))
         amplitudes = np.empty((residual.size, z.size - self.dimension))
         known = np.array(list(moves), dtype=int) - self.dimension
@@ -244,10 +246,9 @@ class EffectModel(FieldsOnly):
         Without those that change anything else, its equations or what the rig reads, and those so small that
         they stand for none: their derivatives are differences.
         """
-        if any(EFFECTS[h.effect].on_rig for h in self.members):
-            return {}
         here, out = self.axle_at(z), {}
-        for i in range(self.dimension, z.size):
+        in_car = ((h, p) for h, p in self.places() if not EFFECTS[h.effect].on_rig)
+        for i in (i for _, place in in_car for i in range(place.start, place.stop)):
             moved = z.copy()
             moved[i] += DIRECTION_STEP
             there = self.axle_at(moved)

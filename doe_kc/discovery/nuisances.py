@@ -27,7 +27,6 @@ from doe_kc.discovery.thresholds import (
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import curve_gradients
-from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from doe_kc.variables import Space, Variable
 
@@ -55,7 +54,7 @@ def side_differences(axle: Axle, space: Space, likelihood: Likelihood) -> FloatA
     sided = [v for v in space.variables if f"{v.path}@R" in axle.values]
     paths = [f"{side}.{v.path}" for side in ("left", "right") for v in sided]
     solution = solve(axle)
-    gradients = curve_gradients(axle, solution, paths, sensitivities(axle, solution, paths))
+    gradients = curve_gradients(axle, solution, paths)
     columns = likelihood.jacobian(gradients, np.zeros((0, len(paths))))
     left, right = columns[:, : len(sided)], columns[:, len(sided) :]
     sd = np.array([_sd(v, parameter_value(axle, v.path)) for v in sided])

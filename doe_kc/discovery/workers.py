@@ -18,6 +18,7 @@ from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS
 from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.memory import return_free_pages
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
@@ -178,24 +179,33 @@ class DiscoveryWorkers:
                 place = begun.pop(future)
                 for i, call in islice(following, 1):
                     begun[self._executor.submit(task, *call)] = i
+                return_free_pages()
                 yield place, future.result()
+                return_free_pages()
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:
-    return [screen(fit, h, shape) for h, shape in starts]
+    try:
+        return [screen(fit, h, shape) for h, shape in starts]
+    finally:
+        return_free_pages()
 
 
 def _held_out_many(
     tuned: Fit, with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
 ) -> list[HeldOut]:
+    return_free_pages()
     return [held_out(tuned, with_effects, with_discrepancy, case) for case in cases]
 
 
 def _scan(tuned: Fit, temper: float) -> Scan | None:
+    return_free_pages()
     try:
         return scan(tuned, temper=temper)
     except NotConverged:
         return None
+    finally:
+        return_free_pages()
 
 
 def _fit_key(start: FitStart) -> str:
@@ -208,6 +218,8 @@ def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: 
         return _packed_fit(fit(model, start, known=known, ceiling=ceiling))
     except NotConverged:
         return {"z": np.zeros(0)}
+    finally:
+        return_free_pages()
 
 
 def _packed_fit(fit: Fit) -> Arrays:

@@ -116,6 +116,12 @@ class Effect(ABC):
         del before, axle
         return dict(after)
 
+    def reading_gains(self, options: Mapping[str, Any]) -> Mapping[str, float]:
+        """Response -> factor by which `observe` multiplies its curves, and so their derivatives; 1 for a
+        response that is not named."""
+        del options
+        return {}
+
     def apply(self, axle: Axle, options: Mapping[str, Any], source: str) -> Axle:
         """The axle with this effect; InputError for an unknown key or a value out of range."""
         places = places_of(axle)
@@ -171,6 +177,16 @@ def observed(axle: Axle, curves: CurveSet) -> CurveSet:
         if effect.on_rig:
             curves = effect.observe(curves, effect.read(options, axle.name))
     return curves
+
+
+def reading_gains(axle: Axle) -> dict[str, float]:
+    """Response -> factor between its curves and what the rig reads of them; 1 for one that is not named."""
+    gains: dict[str, float] = {}
+    for ident, options in axle.effects.items():
+        effect = EFFECTS[ident]
+        own = effect.reading_gains(effect.read(options, axle.name)) if effect.on_rig else {}
+        gains |= {name: gains.get(name, 1.0) * gain for name, gain in own.items()}
+    return gains
 
 
 def effect_id(name: str, places: Places) -> str:

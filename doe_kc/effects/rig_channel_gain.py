@@ -51,7 +51,11 @@ class RigChannelGain(Effect):
         return axle
 
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
-        return replace(curves, cases={i: _scaled(c, options) for i, c in curves.cases.items()})
+        gains = self.reading_gains(options)
+        return replace(curves, cases={i: _scaled(c, gains) for i, c in curves.cases.items()})
+
+    def reading_gains(self, options: Mapping[str, Any]) -> Mapping[str, float]:
+        return options
 
 
 def _scaled(case: CaseCurves, gains: Mapping[str, float]) -> CaseCurves:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.axle.topology import EQUATIONS_CACHE, Topology
 from doe_kc.curves import SIDES
 from doe_kc.solver.builder import Builder
 from doe_kc.solver.elements.tyre import add_tyres
@@ -18,7 +18,7 @@ from doe_kc.solver.structure.tree import joint_tree
 from doe_kc.solver.structure.words import in_words
 
 
-@lru_cache(maxsize=TOPOLOGY_CACHE)
+@lru_cache(maxsize=EQUATIONS_CACHE)
 def assemble(topology: Topology) -> Equations:
     """The equations of a topology, closed by virtual work (cached: a pure function)."""
     return finish(collected(topology))

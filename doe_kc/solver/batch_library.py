@@ -16,7 +16,7 @@ from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect, c_sources
 from doe_kc.solver.compiled import MARCH_HEADER
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
-from doe_kc.solver.kernel import MARCHED, Kernel, kernel
+from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 from doe_kc.solver.newton import NewtonSettings
 
@@ -111,7 +111,7 @@ class BatchLibrary:
 
 
 def _batch_sources(topology: Topology, instructions: InstructionSet) -> dict[str, str]:
-    functions = kernel(topology).functions
+    functions = interpreted_functions(topology)
     before = instructions.defines + LANES_HEADER.read_text()
     dialect = Dialect("lane", "lane_of({0})", LANE_EXPRESSIONS, before)
     out = {"batch": before + MARCH_HEADER.read_text() + BATCH_SOURCE.read_text()}

@@ -10,12 +10,12 @@ import casadi as ca
 import numpy as np
 from scipy import sparse
 
-from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.axle.topology import EQUATIONS_CACHE, TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.compiled import compiled_kernel
-from doe_kc.solver.kernel import Buffered, Kernel, kernel
+from doe_kc.solver.kernel import Buffered, Kernel, interpreted_functions, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 
 Points = Sequence[tuple[FloatArray, ...]]
@@ -56,7 +56,7 @@ def _function(name: str) -> str:
     return f"{name}_block"
 
 
-@lru_cache(maxsize=TOPOLOGY_CACHE)
+@lru_cache(maxsize=EQUATIONS_CACHE)
 def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
     """The same as symbolic expressions have them."""
     k = kernel(topology)
@@ -69,7 +69,7 @@ def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
         for name in block_names(k.nz > 0)
         if name not in ("R_x", "constants")
     }
-    out["R_x"] = k.functions["jacobian"]
+    out["R_x"] = interpreted_functions(topology)["jacobian"]
     out["constants"] = ca.Function(_function("constants"), [eq.p], [ca.jacobian(eq.constants, eq.p)])
     return out
 

@@ -15,7 +15,7 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
-from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, kernel
+from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, interpreted_functions
 from doe_kc.solver.library import handwritten, library_of
 from doe_kc.solver.newton import NewtonSettings
 
@@ -120,7 +120,7 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
     """Build or load the library of a topology; CompileError when that cannot be done."""
 
     def sources() -> dict[str, str]:
-        functions = kernel(topology).functions
+        functions = interpreted_functions(topology)
         out = {"driver": handwritten(MARCH_HEADER, DRIVER)}
         for name in (*MARCHED, "constants"):
             out |= c_sources(functions[name])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set, mean_and_half_width, rising
 from doe_kc.solver.result import CaseSolution, Solution
 from doe_kc.solver.sensitivity import Sensitivities, sensitivities
+
+CURVE_OUTPUTS = tuple(f"{response}@{side}" for response in RESPONSE_UNITS for side in SIDES)
+"""Outputs that curves are made of, in their order."""
 
 
 def is_loop(branches: Sequence[object]) -> bool:
@@ -41,7 +44,7 @@ def curve_gradients(
     axle: Axle, solution: Solution, paths: Sequence[str], exact: Sensitivities | None = None
 ) -> CurveGradients:
     """Derivatives of every curve of a solution; exact: its sensitivities, where they are known."""
-    return gradients_of(solution, exact if exact is not None else sensitivities(axle, solution, paths))
+    return gradients_of(solution, exact or sensitivities(axle, solution, paths, outputs=CURVE_OUTPUTS))
 
 
 def gradients_of(solution: Solution, sensitivity: Sensitivities) -> CurveGradients:
@@ -50,37 +53,43 @@ def gradients_of(solution: Solution, sensitivity: Sensitivities) -> CurveGradien
         name: np.array([sensitivity.static[solution.column(f"{name}@{side}")] for side in SIDES])
         for name in ANGLES
     }
-    cases = {
-        ident: _case(solution, case, sensitivity.branches[ident]) for ident, case in solution.cases.items()
-    }
     inputs = {ident: rising(case) for ident, case in solution.cases.items()}
-    half = {
-        ident: _half_widths(solution, case, sensitivity.branches[ident])
-        for ident, case in solution.cases.items()
-        if is_loop(case.branches)
-    }
+    cases: dict[str, dict[str, FloatArray]] = {}
+    half: dict[str, dict[str, FloatArray]] = {}
+    for ident, case in solution.cases.items():
+        cases[ident], half_width = _case(case, sensitivity.along(ident, CURVE_OUTPUTS))
+        if is_loop(case.branches):
+            half[ident] = half_width
     return CurveGradients(sensitivity.paths, inputs, cases, static, half)
 
 
-def _case(solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
-    mean, _ = mean_and_half_width(case, list(branches))
+def _case(
+    case: CaseSolution, branches: list[FloatArray]
+) -> tuple[dict[str, FloatArray], dict[str, FloatArray]]:
+    """Response -> (2, n, p) of the mean curve, and of the half-width. branches: of CURVE_OUTPUTS."""
+    both = mean_and_half_width(case, branches)
+    places = range(0, len(CURVE_OUTPUTS), len(SIDES))
+    mean, half = ([rows[:, i : i + len(SIDES)].transpose(1, 0, 2) for i in places] for rows in both)
     zero = int(np.argmin(np.abs(rising(case))))
-    out = {}
-    for response in RESPONSE_UNITS:
-        columns = [solution.column(f"{response}@{side}") for side in SIDES]
-        curve = mean[:, columns].transpose(1, 0, 2)
-        out[response] = curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
-    return out
+    changes = [
+        curve if response == TYRE_LOAD else curve - curve[:, zero : zero + 1]
+        for response, curve in zip(RESPONSE_UNITS, mean, strict=True)
+    ]
+    return (
+        dict(zip(RESPONSE_UNITS, changes, strict=True)),
+        dict(zip(RESPONSE_UNITS, half, strict=True)),
+    )
 
 
-def _half_widths(
-    solution: Solution, case: CaseSolution, branches: tuple[FloatArray, ...]
-) -> dict[str, FloatArray]:
-    _, half = mean_and_half_width(case, list(branches))
-    return {
-        response: half[:, [solution.column(f"{response}@{side}") for side in SIDES]].transpose(1, 0, 2)
-        for response in RESPONSE_UNITS
-    }
+def scaled_gradients(gradients: CurveGradients, factors: Mapping[str, float]) -> CurveGradients:
+    """Derivatives of curves that are read by a factor, by response; static angles are read as they are."""
+    if not factors:
+        return gradients
+
+    def scaled(cases: Mapping[str, Mapping[str, FloatArray]]) -> dict[str, dict[str, FloatArray]]:
+        return {i: {r: factors.get(r, 1.0) * g for r, g in case.items()} for i, case in cases.items()}
+
+    return replace(gradients, cases=scaled(gradients.cases), half_width=scaled(gradients.half_width))
 
 
 def interpolated(wanted: FloatArray, grid: FloatArray, rows: FloatArray) -> FloatArray:

@@ -42,8 +42,8 @@ class Substeps:
 
 def substeps(kernel: Kernel, rows: FloatArray) -> Substeps:
     """From rows (m, 2 + nu + nx + nz) of step, share, u, x, z."""
-    step, share, u, x, z = np.split(rows, np.cumsum([1, 1, kernel.nu, kernel.nx]), axis=1)
-    return Substeps(step[:, 0].astype(int), share[:, 0], u, x, z)
+    x, z = 2 + kernel.nu, 2 + kernel.nu + kernel.nx
+    return Substeps(rows[:, 0].astype(int), rows[:, 1], rows[:, 2:x], rows[:, x:z], rows[:, z:])
 
 
 @dataclass(frozen=True)

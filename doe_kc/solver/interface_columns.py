@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.curve_gradient import CurveGradients, gradients_of, is_loop
+from doe_kc.solver.curve_gradient import CURVE_OUTPUTS, CurveGradients, gradients_of, is_loop
 from doe_kc.solver.interfaces import BranchInfluences, Influences, StaticInfluences
 from doe_kc.solver.probe import Kind, Probe
 from doe_kc.solver.result import BranchSolution, CaseSolution
@@ -106,12 +106,13 @@ def law_columns(
         at_place.static.output_design * design + at_place.static.output * static,
         at_place.static.state_design * design + at_place.static.state * static,
     )
+    kept = [at_place.solution.column(name) for name in CURVE_OUTPUTS]
     branches = {
-        ident: _case(case, values[ident], datum, start, loop=is_loop(case))
+        ident: tuple(rows[:, kept] for rows in _case(case, values[ident], datum, start, loop=is_loop(case)))
         for ident, case in at_place.branches.items()
     }
     names = tuple(p.name for p in at_place.probes)
-    return gradients_of(at_place.solution, Sensitivities(names, start[0], branches))
+    return gradients_of(at_place.solution, Sensitivities(names, start[0], branches, CURVE_OUTPUTS))
 
 
 def _pointwise(

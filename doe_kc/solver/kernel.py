@@ -10,7 +10,7 @@ from functools import cached_property, lru_cache
 import casadi as ca
 import numpy as np
 
-from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.axle.topology import EQUATIONS_CACHE, TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.builder import FORCE_SCALE
@@ -38,7 +38,7 @@ class Kernel:
 
     @cached_property
     def functions(self) -> dict[str, ca.Function]:
-        """Interpreted ones by name."""
+        """Interpreted ones by name, kept as long as the kernel."""
         return interpreted_functions(self.topology)
 
     @cached_property
@@ -118,7 +118,7 @@ class Kernel:
         return Buffered(self.constants)(p).copy()
 
 
-@lru_cache(maxsize=TOPOLOGY_CACHE)
+@lru_cache(maxsize=EQUATIONS_CACHE)
 def interpreted_functions(topology: Topology) -> dict[str, ca.Function]:
     """Functions of a topology's expressions by name: those of `MARCHED`, and `constants`."""
     eq = assemble(topology)

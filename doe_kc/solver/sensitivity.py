@@ -38,13 +38,21 @@ TAIL = ("pad_L", "pad_R", "preload")
 class Sensitivities:
     """Derivatives of outputs to parameters, per unit of the parameter.
 
-    paths: (np,). static: (ny, np). branches: load case -> one (n, ny, np) per branch, rows as in the
-    branch's input. Output columns as in `Solution.output_names`.
+    paths: (np,). static: (ny, np), outputs as in `Solution.output_names`. branches: load case -> one
+    (n, columns, np) per branch, rows as in the branch's input. columns: names of the outputs there.
     """
 
     paths: tuple[str, ...]
     static: FloatArray
     branches: Mapping[str, tuple[FloatArray, ...]]
+    columns: tuple[str, ...]
+
+    def along(self, ident: str, outputs: Sequence[str]) -> list[FloatArray]:
+        """(n, outputs, np) of some outputs on each branch of a load case."""
+        if tuple(outputs) == self.columns:
+            return list(self.branches[ident])
+        places = [self.columns.index(name) for name in outputs]
+        return [rows[:, places] for rows in self.branches[ident]]
 
 
 def sensitivities(
@@ -52,27 +60,30 @@ def sensitivities(
     solution: Solution,
     paths: Sequence[str],
     directions: Mapping[str, Mapping[str, float]] | None = None,
+    outputs: Sequence[str] | None = None,
 ) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
     To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. directions:
     further ones by name, behind the paths: what each changes the axle's internal values by, per unit.
+    outputs: those that are kept of the branches, default all.
     ValueError when the solution has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
     further = directions or {}
     names, moves = (*paths, *further), [*(internal_gradient(axle, p) for p in paths), *further.values()]
-    exact = _Differentiator(axle, solution.static, names, moves).run(solution)
+    columns = solution.output_names if outputs is None else tuple(outputs)
+    exact = _Differentiator(axle, solution.static, names, moves, columns).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
         own = tuple(paths[i] for i in soft)
-        columns = _Differentiator(bent, lifted.static, own, [moves[i] for i in soft]).run(lifted)
-        exact.static[:, soft] = columns.static
-        for ident, branches in columns.branches.items():
+        bending = _Differentiator(bent, lifted.static, own, [moves[i] for i in soft], columns).run(lifted)
+        exact.static[:, soft] = bending.static
+        for ident, branches in bending.branches.items():
             for rows, other in zip(exact.branches[ident], branches, strict=True):
                 rows[:, :, soft] = other
     return exact
@@ -114,6 +125,7 @@ class _Differentiator:
         static: StaticState,
         paths: tuple[str, ...],
         moves: Sequence[Mapping[str, float]],
+        columns: tuple[str, ...],
     ) -> None:
         self._static, self._paths, self._moves = static, paths, moves
         self._kernel = kernel(axle.topology)
@@ -121,7 +133,8 @@ class _Differentiator:
         p = np.array([axle.values[n] for n in self._kernel.layout.parameter_names])
         moved = Block(constants_gradient(axle.topology))(p) @ self._parameter_directions()
         self._derivatives = derivatives_of(axle.topology, c, sparse.csr_array(moved))
-        self._outputs = self._kernel.layout.output_names
+        self._outputs, self._columns = self._kernel.layout.output_names, columns
+        self._kept = [self._outputs.index(name) for name in columns]
 
     def _parameter_directions(self) -> FloatArray:
         """(internal parameters, paths): how internal values move with each path or direction."""
@@ -139,7 +152,7 @@ class _Differentiator:
             ident: self._case(case.load_case, case.branches, dy, dz, datum)
             for ident, case in solution.cases.items()
         }
-        return Sensitivities(self._paths, dy, branches)
+        return Sensitivities(self._paths, dy, branches, self._columns)
 
     def _at_rest(
         self, x: FloatArray, u: FloatArray, gradient: FloatArray, directions: FloatArray
@@ -186,7 +199,7 @@ class _Differentiator:
                 dy, dz = dy0, dz0
             gradient = control_gradient(self._kernel, case, branch.input, self._static.datum)
             after = self._derivatives.along(_states(branch, gradient), datum, dy, dz)
-            out.append(after.dy)
+            out.append(after.dy if self._columns == self._outputs else after.dy[:, self._kept])
             dy, dz = after.dy[-1], after.dz
         return tuple(out)
 

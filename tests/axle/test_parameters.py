@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -266,6 +268,24 @@ def test_every_parameter_can_be_set_to_its_bounds() -> None:
     for p in design_parameters(nominal()):
         for value in (p.lower, p.upper):
             assert parameter_value(with_values(nominal(), {p.path: value}), p.path) == value
+
+
+def test_paths_read_once_serve_axles_of_other_values() -> None:
+    """What a path moves, relative to what it has, follows each axle; so does what moves along."""
+    one = nominal()
+    other = one.changed({name: 1.1 * value + 0.01 for name, value in one.values.items()})
+    for path in SIDED:
+        for axle in (one, other):
+            value = 1.02 * parameter_value(axle, path) + 0.001
+            changed = with_values(axle, {path: value})
+            assert parameter_value(changed, path) == pytest.approx(value)
+            gradient = internal_gradient(axle, path)
+            step = value - parameter_value(axle, path)
+            moved = {n: axle.values[n] + step * slope for n, slope in gradient.items()}
+            assert {n: changed.values[n] for n in moved} == pytest.approx(moved)
+    leading = with_values(replace(one, follow={}), {"ROB.x": 0.0})
+    assert leading.values["SAH.x@L"] == one.values["SAH.x@L"]
+    assert with_values(one, {"ROB.x": 0.0}).values["SAH.x@L"] != one.values["SAH.x@L"]
 
 
 @pytest.mark.parametrize("name", EXAMPLE_TYPES)

@@ -13,6 +13,7 @@ from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, known_columns
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import FIT_DECREASE
+from doe_kc.effects import EFFECTS
 from tests.discovery.cases import library, model
 
 
@@ -148,6 +149,35 @@ def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
         car.dimension,
         car.dimension + 1,
     }
+
+
+@pytest.mark.parametrize("fault", ["rig_channel_gain", "rig_input_gain"])
+def test_derivatives_beside_a_fault_of_the_rig_are_those_of_differences(fault: str) -> None:
+    """Exact to the axle and its effects, whatever the rig reads of it."""
+    (hub,) = library("hub_compliance")
+    wrong = next(h for h in EFFECTS[fault].hypotheses() if h.location in ("toe", "lateral"))
+    car = model("named", ("lateral",)).extended(hub).extended(wrong)
+    z = np.concatenate([car.centre[: car.dimension], [0.5, 0.4, 2.0]])
+    residual = car.residual(z)
+    assert car._directions(z).keys() == {car.dimension, car.dimension + 1}
+    own = car.own_columns(z, residual)
+    differences = car.amplitude_columns(z, residual)
+    assert np.linalg.norm(own[:, -3:] - differences) < 0.003 * np.linalg.norm(differences)
+    moved = z.copy()
+    moved[: car.parameters] += 1e-5
+    change = (car.residual(moved) - residual) / 1e-5
+    assert np.linalg.norm(own[:, : car.parameters].sum(axis=1) - change) < 0.003 * np.linalg.norm(change)
+
+
+def test_a_fit_near_its_ceiling_is_not_given_up_on_derivatives_of_another(with_hub: Fit) -> None:
+    """Those of a model nearby say nothing of what only its own show."""
+    model, z = with_hub.model, with_hub.z.copy()
+    z[: model.parameters] += 0.05 * model.prior_sd[: model.parameters]
+    flat = known_columns(with_hub, model)
+    flat[:, : model.parameters] *= 0.01
+    reached = fit(model, z, known=flat)
+    again = fit(model, z, known=flat, ceiling=reached.cost + 1.0)
+    assert again.converged and again.cost == pytest.approx(reached.cost, abs=0.1)
 
 
 def test_without_derivatives_size_covariance_and_evidence_are_those_of_the_fit(with_hub: Fit) -> None:

@@ -210,6 +210,20 @@ def interpreted(monkeypatch: pytest.MonkeyPatch, axle: Axle, solution: Solution)
         return sensitivities(axle, solution, settable_paths(axle))
 
 
+def test_outputs_that_are_asked_for_are_the_same_columns(free: tuple[Axle, Sensitivities]) -> None:
+    axle, every = free
+    wanted = ("toe@R", "wc_y@L")
+    solution = tight(axle)
+    some = sensitivities(axle, solution, every.paths, outputs=wanted)
+    assert some.columns == wanted and every.columns == solution.output_names
+    np.testing.assert_array_equal(some.static, every.static)
+    for ident, branches in some.branches.items():
+        for own, row in zip(branches, every.along(ident, wanted), strict=True):
+            np.testing.assert_array_equal(own, row)
+        for one, turned in zip(branches, some.along(ident, wanted[::-1]), strict=True):
+            np.testing.assert_array_equal(one, turned[:, ::-1])
+
+
 @pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 @pytest.mark.parametrize("name", [*EXAMPLE_TYPES, *LOOPS])
 def test_compiled_derivatives_are_the_interpreted_ones(name: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,13 +7,13 @@ Journal of the Royal Statistical Society B 63, 2001).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve, cholesky
+from scipy.linalg import cho_factor, cho_solve
 
-from doe_kc.correlation.likelihood import Branches, CurveData, Likelihood
+from doe_kc.correlation.likelihood import Branches, CurveData, CurveGroup, Likelihood
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.discovery.fit import Fit, chord_fit, rewhitened_fit
 from doe_kc.discovery.model import EffectModel
@@ -38,36 +38,36 @@ class EffectSignal:
     """Sum of squares of all changes, in the records' errors."""
 
 
-def fit_discrepancy(exact: Fit) -> tuple[Fit, dict[str, float]]:
+def fit_discrepancy(exact: Fit, signals: Sequence[EffectSignal]) -> tuple[Fit, dict[str, float]]:
     """The fit with the discrepancy of its effects' laws that the records ask for, and each member's share.
 
-    exact: to the records' own errors. The share of each effect is raised along DISCREPANCY_SHARES as long as
-    the evidence grows, one effect after the other, largest first: the errors of the records grow by what its
-    law may do to the curves, and with them their determinant, so that a law that fits is left as it is.
+    exact: to the records' own errors; signals: `effect_signals` of it. The share of each effect is raised
+    along DISCREPANCY_SHARES as long as the evidence grows, one effect after the other, largest first: the
+    errors of the records grow by what its law may do to the curves, and with them their determinant, so that
+    a law that fits is left as it is.
     """
-    signals = effect_signals(exact)
     shares = [0.0] * len(signals)
-    best, most = exact, marginal(exact)
+    most = marginal(exact)
     for i in sorted(range(len(signals)), key=lambda i: -signals[i].square):
         for share in DISCREPANCY_SHARES[1:]:
             candidate = [share if k == i else s for k, s in enumerate(shares)]
-            wider = rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate))
-            evidence = marginal(wider)
+            evidence = marginal(rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate)))
             if evidence <= most:
                 break
-            best, most, shares[i] = wider, evidence, share
+            most, shares[i] = evidence, share
     names = [h.name for h in exact.model.members]
-    settled = chord_fit(best, best.model) if any(shares) else exact
+    wider = with_discrepancy(exact.model, signals, shares)
+    settled = chord_fit(rewhitened_fit(exact, wider), wider) if any(shares) else exact
     return settled, dict(zip(names, shares, strict=True))
 
 
-def without_own_discrepancy(exact: Fit, shares: Mapping[str, float]) -> dict[str, Likelihood]:
+def without_own_discrepancy(
+    exact: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, float]
+) -> dict[str, Likelihood]:
     """Name of each member with a discrepancy -> the records' errors with the discrepancies of all others."""
-    if not any(shares.values()):
-        return {}
-    signals, names = effect_signals(exact), [h.name for h in exact.model.members]
+    names = [h.name for h in exact.model.members]
     return {
-        name: with_discrepancy(exact.model, signals, [shares[n] * (n != name) for n in names]).likelihood
+        name: _wider(exact.model.likelihood, signals, [shares[n] * (n != name) for n in names])
         for name in names
         if shares[name]
     }
@@ -92,9 +92,18 @@ def with_discrepancy(
 
     signals: what each member makes, see `effect_signals`. shares: one a member.
     """
-    likelihood = model.likelihood
-    curves = [_widened(curve, i, signals, shares) for i, curve in enumerate(likelihood.curves)]
-    return model.with_likelihood(replace(likelihood, curves=tuple(curves)))
+    return model.with_likelihood(_wider(model.likelihood, signals, shares)) if any(shares) else model
+
+
+def _wider(likelihood: Likelihood, signals: Sequence[EffectSignal], shares: Sequence[float]) -> Likelihood:
+    """The same records with errors that hold those of the laws; the same object where no share is."""
+    if not any(shares):
+        return likelihood
+    curves: list[CurveData] = []
+    for group in likelihood.groups:
+        at = slice(len(curves), len(curves) + len(group.curves))
+        curves += _widened(group, at, signals, shares)
+    return replace(likelihood, curves=tuple(curves))
 
 
 def effect_signals(exact: Fit) -> list[EffectSignal]:
@@ -128,22 +137,26 @@ def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
 
 
 def _widened(
-    curve: CurveData, at: int, signals: Sequence[EffectSignal], shares: Sequence[float]
-) -> CurveData:
-    if not any(shares):
-        return curve
-    relative = curve.input / np.abs(curve.input).max()
+    group: CurveGroup, at: slice, signals: Sequence[EffectSignal], shares: Sequence[float]
+) -> Iterator[CurveData]:
+    """Its curves, whose places among all curves are `at`, with the wider errors."""
+    first = group.first
+    relative = first.input / np.abs(first.input).max()
     smooth = smooth_correlation(relative, DISCREPANCY_LENGTH)
-    centred = np.eye(curve.size) - 1.0 / curve.size
-    covariance = curve.root @ curve.root.T
+    centred = np.eye(first.size) - 1.0 / first.size
+    balanced = centred @ smooth @ centred
+    shape = 1.0 - relative**2 if first.branches == "half_width" else relative
+    roots = np.array([curve.root for curve in group.curves])
+    covariance = roots @ roots.transpose(0, 2, 1)
+    loaded = [i for i, curve in enumerate(group.curves) if curve.response == TYRE_LOAD]
     for one, share in zip(signals, shares, strict=True):
-        change = one.changes[at]
-        ratio = smooth if one.friction else centred @ smooth @ centred
-        covariance = covariance + share**2 * ratio * np.outer(change, change)
+        if not share:
+            continue
+        change = share * np.array(one.changes[at])
+        covariance += (smooth if one.friction else balanced) * change[:, :, None] * change[:, None, :]
         if one.friction:
-            level = share * one.largest[curve.response, curve.branches]
-            left_open = level * (1.0 - relative**2 if curve.branches == "half_width" else relative)
-            covariance = covariance + smooth * np.outer(left_open, left_open)
-            if curve.response == TYRE_LOAD:
-                covariance = covariance + level**2
-    return replace(curve, root=np.asarray(cholesky(covariance, lower=True)))
+            level = share * np.array([one.largest[c.response, c.branches] for c in group.curves])
+            covariance += smooth * np.outer(shape, shape) * level[:, None, None] ** 2
+            covariance[loaded] += level[loaded, None, None] ** 2
+    for curve, root in zip(group.curves, np.linalg.cholesky(covariance), strict=True):
+        yield replace(curve, root=root)

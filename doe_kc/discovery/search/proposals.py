@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screening.screen import Screened
@@ -84,15 +84,21 @@ class LinearSets:
     def evidence(self, members: Members) -> tuple[float, FloatArray]:
         """ln posterior of a set, relative to a constant of all, and (m,) its amplitudes in order."""
         order = sorted(members)
-        columns = np.concatenate([np.r_[self.places[i]] for i in order] or [np.zeros(0)]).astype(int)
+        columns = np.array([c for i in order for c in range(*self._ends[i])], dtype=int)
         there = np.array([*(self.low.size + i for i in order), self.gram.shape[0] - 1])
-        constant = float(self.gram[np.ix_(there, there)].sum())
-        slope = self.gram[np.ix_(columns, there)].sum(axis=1)
-        hessian = self.gram[np.ix_(columns, columns)] + np.eye(columns.size)
+        constant = float(self.gram[there[:, None], there].sum())
+        slope = self.gram[columns[:, None], there].sum(axis=1)
+        hessian = self.gram[columns[:, None], columns]
+        hessian.flat[:: columns.size + 1] += 1.0
         amplitudes = _within(hessian, slope, self.low[columns], self.high[columns])
         cost = constant + 2.0 * float(slope @ amplitudes) + float(amplitudes @ hessian @ amplitudes)
         occam = 0.5 * float(np.linalg.slogdet(hessian)[1]) if columns.size else 0.0
         return -0.5 * cost - occam + self.prior.log([self.hypotheses[i] for i in order]), amplitudes
+
+    @cached_property
+    def _ends(self) -> list[tuple[int, int]]:
+        """(h,) first column of each hypothesis, and that behind its last."""
+        return [(place.start, place.stop) for place in self.places]
 
     def proposals(self) -> list[SetProposal]:
         """Sets visited on the way to the most probable one, the most probable first."""
@@ -163,13 +169,17 @@ def _beyond(screened: Screened) -> FloatArray:
 
 def _within(hessian: FloatArray, slope: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
     """(m,) minimizer, each amplitude that passes a bound held there."""
-    amplitudes = np.zeros(slope.size)
-    free = np.ones(slope.size, dtype=bool)
+    amplitudes: FloatArray = -np.asarray(np.linalg.solve(hessian, slope), dtype=np.float64)
+    outside = (amplitudes < low) | (amplitudes > high)
+    if not outside.any():
+        return amplitudes
+    amplitudes[outside] = np.clip(amplitudes[outside], low[outside], high[outside])
+    free = ~outside
     for _ in range(slope.size):
         if not free.any():
             break
         held = hessian[np.ix_(free, ~free)] @ amplitudes[~free]
-        amplitudes[free] = -cho_solve(cho_factor(hessian[np.ix_(free, free)]), slope[free] + held)
+        amplitudes[free] = -np.linalg.solve(hessian[np.ix_(free, free)], slope[free] + held)
         outside = free & ((amplitudes < low) | (amplitudes > high))
         if not outside.any():
             break

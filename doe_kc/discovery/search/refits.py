@@ -103,12 +103,35 @@ def more_than_trace(sizes: Sized) -> bool:
 
 
 def joint_refits(
-    current: Fit, screened: Sequence[Screened], prior: SetPrior, workers: DiscoveryWorkers
+    current: Fit,
+    screened: Sequence[Screened],
+    prior: SetPrior,
+    workers: DiscoveryWorkers,
+    least: float = -np.inf,
 ) -> list[HypothesisFit]:
-    """The joint refits from the screened sizes, best first; those without a solution are left out."""
-    fits = workers.fits(refit_starts(current, screened), "refitting leaders")
+    """The joint refits from the screened sizes, best first; those without a solution are left out.
+
+    least: gain below which a refit is of no use, so that it need not come to its end.
+    """
+    starts = [
+        replace(start, ceiling=useful_cost(current, s.hypothesis, least, prior))
+        for s, start in zip(screened, refit_starts(current, screened), strict=True)
+    ]
+    fits = workers.fits(starts, "refitting leaders")
     trials = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
     return sorted(trials, key=lambda t: -t.gain)
+
+
+def useful_cost(current: Fit, hypothesis: Hypothesis, least: float, prior: SetPrior) -> float:
+    """Largest cost with which a set with one more effect can gain `least` ln posterior odds.
+
+    Its sizes narrow the posterior or leave it as it is; a half of each prior is all that a bound takes away.
+    """
+    if np.isinf(least):
+        return np.inf
+    halves = sum(not (s.signed or s.shape) for s in hypothesis.sizes) * float(np.log(2.0))
+    odds = prior.log_odds(current.model.members, hypothesis)
+    return current.cost - 2.0 * (least - odds - halves)
 
 
 def refit_starts(current: Fit, screened: Sequence[Screened], ceiling: float = np.inf) -> list[FitStart]:

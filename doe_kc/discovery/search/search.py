@@ -16,6 +16,7 @@ from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests, shape_of
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import (
+    effect_signals,
     fit_discrepancy,
     is_friction,
     marginal,
@@ -103,16 +104,26 @@ class Decision:
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
     accepted: bool
     """Whether the first refit passes the threshold."""
+    has_derivatives: bool = True
+    """Whether its fits have their derivatives."""
 
     @property
     def without_derivatives(self) -> Decision:
         """What was looked at and decided, for the record; no fit can begin from it."""
+        if not self.has_derivatives:
+            return self
         return replace(
             self,
+            has_derivatives=False,
             before=self.before.without_derivatives,
             screened=tuple(s.change_only for s in self.screened),
             trials=tuple(replace(t, fit=t.fit.without_derivatives) for t in self.trials),
         )
+
+    @property
+    def without_trials(self) -> Decision:
+        """What was screened."""
+        return replace(self, trials=())
 
     def step(self, own: Likelihood) -> Step:
         """What is told of it. own: the records' own errors."""
@@ -138,8 +149,8 @@ class EffectSearch:
     steps: tuple[Step, ...]
     """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
     first: Decision
-    """The first step whole, or after an exchange of effects the first one since: where it began without any
-    effect, all that the verdict on a single effect takes; without derivatives where the last set differs."""
+    """The first step, or after an exchange of effects the first one since: where it began without any effect,
+    all that the verdict on a single effect takes; without derivatives where any later set was another."""
     screened: tuple[Screened, ...]
     """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
     with_law_discrepancy: Fit
@@ -172,12 +183,7 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
 
     NotConverged when the nominal axle has no equilibrium.
     """
-    prior = SetPrior.of(library)
-    tuned = tune(model)
-    workers.watch("re-tuning", 1)
-    screened = workers.screenings(tuned, library)
-    state = _SearchState(tuned, (), with_clutter(tuned, screened), tuple(screened), {}, {}, prior)
-    return _continued(state, library, workers)
+    return _continued(_start(model, library, workers), library, workers)
 
 
 def search_from(
@@ -208,6 +214,15 @@ def search_from(
     return _continued(state, library, workers)
 
 
+def _start(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> _SearchState:
+    """Without any effect."""
+    tuned = tune(model)
+    workers.watch("re-tuning", 1)
+    screened = workers.screenings(tuned, library)
+    current = with_clutter(tuned, screened)
+    return _SearchState(tuned, (), current, tuple(screened), {}, {}, SetPrior.of(library))
+
+
 @dataclass(frozen=True)
 class _SearchState:
     """A search under way."""
@@ -226,11 +241,12 @@ class _SearchState:
 
 def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
     """The search from there to its end."""
-    model, prior, current = state.tuned.model, state.prior, state.current
-    first: Decision | None = None
+    tuned, prior, current = state.tuned, state.prior, state.current
+    model, first = tuned.model, None
     steps, loops_known = list(state.steps), False
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
+    del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
         decision = _decision(current, library, prior, workers, screened)
         first = first or decision
@@ -240,8 +256,8 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             break
         before = current.model.likelihood
         if decision.accepted:
-            taken, added = decision.trials[0].fit, steps[-1].added
-            current, loops_known = _with_laws(taken, added, model.axle, workers, loops_known=loops_known)
+            current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
+            current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
         else:
             following = with_free_laws(current, workers)
             if following is current:
@@ -249,13 +265,16 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             current = following
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         screened = _latest(screened, decision, current)
+        del decision
+        if len(current.model.members) != 1:
+            first = first.without_derivatives
     if len(current.model.members) != 1:
         first = first.without_derivatives
     closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)
     return EffectSearch(
-        state.tuned,
+        tuned,
         tuple(steps),
         first,
         last,
@@ -294,10 +313,13 @@ def _settled(
     """
     current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
     exact = refit_to_errors(own_loops(current, own.axle), own.likelihood)
-    settled, shares = fit_discrepancy(exact)
+    signals = effect_signals(exact)
+    settled, shares = fit_discrepancy(exact, signals)
+    following = without_own_discrepancy(exact, signals, shares)
+    del current, exact  # before the last fit: their derivatives are large
     if settled.model.likelihood is not before:
         settled = converged_fit(settled, workers)
-    return settled, shares, without_own_discrepancy(exact, shares)
+    return settled, shares, following
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
@@ -394,7 +416,7 @@ def _decision(
     if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
-        trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers)
+        trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:

@@ -82,12 +82,16 @@ class Alternatives:
 
 
 def comparison(
-    without: Fit, screened: Sequence[Screened], trials: Sequence[HypothesisFit], temper: float
+    without: Fit,
+    screened: Sequence[Screened],
+    change: EffectChange,
+    trials: Sequence[HypothesisFit],
+    temper: float,
 ) -> Alternatives:
-    """The alternatives of the first of the trials; without, screened, trials: see there, with derivatives."""
+    """The alternatives of the first of the trials. without: with derivatives. screened, change, trials: see
+    there."""
     strong = 2.0 * _loss(trials) >= NAME_ALWAYS_LEVEL**2
     chance = 0.0 if strong else without.residual_map.chance
-    change = effect_change(without, screened)
     return Alternatives(without, tuple(screened), tuple(trials), temper, change, chance)
 
 
@@ -145,7 +149,9 @@ class _Place:
     without: Fit
     """The set without it."""
     screened: tuple[Screened, ...]
-    """Itself, then what may take its place, without derivatives."""
+    """Itself, then what may take its place, without changes."""
+    change: EffectChange
+    """What it makes of the records."""
     near: tuple[Screened, ...]
     """Its rivals that are worth a refit."""
 
@@ -176,10 +182,10 @@ def _ceiling(base: Fit) -> float:
 
 
 def _is_first(search: EffectSearch) -> bool:
-    """Whether the first step began without effects and the last set has one alone, in the same errors."""
+    """Whether the first step began without effects and all sets since have one alone, in the same errors."""
     members = search.with_law_discrepancy.model.members
     before = search.first.before.model
-    if len(members) != 1 or before.members:
+    if len(members) != 1 or before.members or not search.first.has_derivatives:
         return False
     after = _own_errors(search, members[0])
     return all(a is b for a, b in zip(before.likelihood.curves, after.curves, strict=True))
@@ -207,7 +213,9 @@ def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWork
     rivals = sorted((again.get(t.hypothesis.name, t) for t in kept), key=lambda t: -t.gain)
     itself = next(s for s in first.screened if s.hypothesis.name == own.hypothesis.name)
     others = [s for s in first.screened if _may_replace(base, s.hypothesis)]
-    return comparison(first.before, (itself, *others), (own, *rivals), temper)
+    screened = (itself, *others)
+    change = effect_change(first.before, screened)
+    return comparison(first.before, screened, change, (own, *rivals), temper)
 
 
 def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
@@ -220,7 +228,8 @@ def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Pl
     first = replace(first, gain=max(first.gain, own.gain))
     there.sort(key=lambda s: -s.gain)
     near = leaders([first, *there], without, threshold(len(known) + 1) / 2.0, decoy=decoy)
-    return _Place(base, without, tuple(s.change_only for s in (first, *there)), tuple(near[1:]))
+    change = effect_change(without, [first, *there])
+    return _Place(base, without, tuple(s.numbers_only for s in (first, *there)), change, tuple(near[1:]))
 
 
 def _on_true_solutions(places: Sequence[_Place], workers: DiscoveryWorkers) -> list[_Place]:
@@ -239,7 +248,8 @@ def _place_comparison(
     trials = [hypothesis_fit(f, place.without, search.prior) for f in refits if f is not None]
     rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
     own = _own(place.base, place.without, search.prior)
-    return comparison(place.without, place.screened, (own, *rivals), temper).without_derivatives
+    compared = comparison(place.without, place.screened, place.change, (own, *rivals), temper)
+    return compared.without_derivatives
 
 
 def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:

@@ -77,7 +77,7 @@ def fitted(car: str, ident: str, likelihood: Likelihood | None = None) -> Fit:
 @pytest.mark.parametrize(("car", "ident"), [("named", "hub_compliance"), ("friction", "steering_friction")])
 def test_a_law_that_fits_stays_closed(car: str, ident: str) -> None:
     exact = fitted(car, ident)
-    found, shares = fit_discrepancy(exact)
+    found, shares = fit_discrepancy(exact, effect_signals(exact))
     assert shares == {ident: 0.0}
     assert found is exact
 
@@ -94,7 +94,7 @@ def test_a_law_of_another_shape_is_opened() -> None:
         curves.append(replace(curve, value=curve.value - 0.2 * relative * change))
     bent = replace(straight.model.likelihood, curves=tuple(curves))
     exact = fitted("named", "hub_compliance", bent)
-    found, shares = fit_discrepancy(exact)
+    found, shares = fit_discrepancy(exact, effect_signals(exact))
     assert shares["hub_compliance"] >= 0.02
     assert marginal(found) > marginal(exact)
     assert np.diag(found.covariance)[-2] > np.diag(exact.covariance)[-2]

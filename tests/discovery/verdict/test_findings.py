@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Finding
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.verdict.alternatives import Alternatives, comparison
+from doe_kc.discovery.verdict.alternatives import Alternatives, comparison, effect_change
 from doe_kc.discovery.verdict.findings import (
     NO_EFFECT,
     best_alternative,
@@ -53,7 +53,8 @@ def trial(effect: str, sizes: list[float], gain: float, apart: float = 0.0) -> H
 def place(*trials: HypothesisFit, temper: float = 1.0, without: Fit | None = None) -> Alternatives:
     """An effect of the last set and its rivals."""
     own = next(s for s in search().first.screened if s.hypothesis.effect == trials[0].hypothesis.effect)
-    return comparison(without or search().tuned, (own,), trials, temper)
+    base = without or search().tuned
+    return comparison(base, (own,), effect_change(base, (own,)), trials, temper)
 
 
 def judged(*rivals: HypothesisFit, gain: float = 100.0, without: Fit | None = None) -> Finding:
@@ -118,7 +119,8 @@ def test_beside_a_hundred_times_larger_one_whose_law_is_another_an_effect_is_not
     compared = []
     for member, gain in ((large, 2000.0), (small, 15.0)):
         refit = HypothesisFit(member, found.with_law_discrepancy, gain)
-        compared.append(comparison(found.tuned, (screened[member.name],), (refit,), 1.0))
+        own = (screened[member.name],)
+        compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
     one, other = findings(replace(found, discrepancy_shares=shares), compared)
     assert one.relevant
     assert other.relevant is named
