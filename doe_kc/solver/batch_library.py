@@ -13,12 +13,12 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect, c_sources
-from doe_kc.solver.compiled import MARCH_HEADER
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.kernel import MARCHED, Kernel, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 from doe_kc.solver.newton import NewtonSettings
+from doe_kc.solver.program_library import MARCH_SOURCES
 
 BATCH_SOURCE = Path(__file__).with_name("batch.c")
 LANES_HEADER = Path(__file__).with_name("lanes.h")
@@ -114,7 +114,7 @@ def _batch_sources(topology: Topology, instructions: InstructionSet) -> dict[str
     functions = kernel(topology).functions
     before = instructions.defines + LANES_HEADER.read_text()
     dialect = Dialect("lane", "lane_of({0})", LANE_EXPRESSIONS, before)
-    out = {"batch": before + MARCH_HEADER.read_text() + BATCH_SOURCE.read_text()}
+    out = {"batch": before + MARCH_SOURCES[0].read_text() + BATCH_SOURCE.read_text()}
     for name in MARCHED:
         out |= c_sources(functions[name], dialect)
     count = functions["constants"].nnz_out(0)

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from doe_kc.solver import library, suite
-from doe_kc.solver.compiled import compiled_kernel
+from doe_kc.solver.compiled import adaptive_kernel, compiled_kernel
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, cache_folder, find_compiler, library_of
+from doe_kc.solver.program_library import program_library
 from doe_kc.solver.suite import library_for, solve
 from tests.reference import nominal
 
@@ -26,11 +27,12 @@ TINY = {"one": "int one(void) { return 1; }\n"}
 def fresh(monkeypatch: pytest.MonkeyPatch):
     """No kernel in memory, and a notice that may come once."""
     monkeypatch.delenv("DOE_KC_COMPILE", raising=False)
-    compiled_kernel.cache_clear()
-    suite._notice_once.cache_clear()
+    caches = (compiled_kernel, adaptive_kernel, program_library, suite._notice_once)
+    for cache in caches:
+        cache.cache_clear()
     yield
-    compiled_kernel.cache_clear()
-    suite._notice_once.cache_clear()
+    for cache in caches:
+        cache.cache_clear()
 
 
 @needs_compiler
