@@ -17,7 +17,7 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
-from doe_kc.solver.batch_library import BatchLibrary, BatchMarch, BatchStart
+from doe_kc.solver.batch_library import BatchMarch, BatchMarcher, BatchStart
 from doe_kc.solver.compiled import adaptive_kernel
 from doe_kc.solver.elimination import EliminationOrder, elimination_order
 from doe_kc.solver.kernel import kernel, kernel_programs
@@ -60,7 +60,7 @@ class BatchSolution:
 def solve_batch(
     axle: Axle,
     changes: Mapping[str, FloatArray],
-    library: BatchLibrary,
+    library: BatchMarcher,
     settings: NewtonSettings | None = None,
 ) -> BatchSolution:
     """All load cases of the axle with some internal values replaced: name -> (d,), at least one.
@@ -72,7 +72,7 @@ def solve_batch(
 
 class _BatchSuite:
     def __init__(
-        self, axle: Axle, changes: Mapping[str, FloatArray], library: BatchLibrary, settings: NewtonSettings
+        self, axle: Axle, changes: Mapping[str, FloatArray], library: BatchMarcher, settings: NewtonSettings
     ) -> None:
         self._axle, self._changes, self._library, self._settings = axle, changes, library, settings
         self._kernel = kernel(axle.topology)

@@ -25,8 +25,8 @@ from doe_kc.solver.program_library import MARCH_SOURCES, ProgramSet, program_lib
 
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
-OPERATIONS_BEFORE_COMPILING = 10_000_000_000
-"""Of programs: by then they have taken about 5 s more than compiled code, which is what compiling takes."""
+OPERATIONS_BEFORE_COMPILING = 8_000_000_000
+"""Of programs: by then they have taken 4 to 9 s more than compiled code, which is what compiling takes."""
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
     *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,

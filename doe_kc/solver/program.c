@@ -1,5 +1,6 @@
 /* Functions of a topology as straight-line programs, so that nothing has to be compiled for it: the functions that
-   driver.c and sensitivity.c call. OPERATIONS, which names each operation once, is generated. */
+   driver.c, batch.c and sensitivity.c call. OPERATIONS, which names each operation once, is generated; NUMBER is the
+   type of all values: double, or a lane. */
 #include <math.h>
 #include <string.h>
 
@@ -15,7 +16,7 @@ typedef struct {
     const int *result;                  /* (results, 3) result, which number of it, its place */
     const integer *pattern;             /* of the results, compressed, one after the other */
     const int *pattern_start;
-    double *place;
+    NUMBER *place;
 } program;
 
 enum { RESIDUAL, JACOBIAN, OUTPUTS, STATE_UPDATE };
@@ -26,17 +27,17 @@ static _Thread_local const program *programs;
 #define OPERATION(code, value)                                          \
     case code:                                                          \
         for (int i = 0; i < count; i++, q += 3) {                       \
-            const double a = place[q[1]], b = place[q[2]];              \
+            const NUMBER a = place[q[1]], b = place[q[2]];              \
             (void)b;                                                    \
             place[q[0]] = value;                                        \
         }                                                               \
         break;
 
-int run_program(const program *p, const double **argument, double **result) {
-    double *place = p->place, *first = place;
+int run_program(const program *p, const NUMBER **argument, NUMBER **result) {
+    NUMBER *place = p->place, *first = place;
     const int *q = p->operand;
     for (int k = 0; k < p->inputs; k++) {
-        if (p->size[k]) memcpy(first, argument[k], sizeof(double) * p->size[k]);
+        if (p->size[k]) memcpy(first, argument[k], sizeof(NUMBER) * p->size[k]);
         first += p->size[k];
     }
     for (int r = 0; r < p->runs; r++) {
@@ -50,23 +51,23 @@ int run_program(const program *p, const double **argument, double **result) {
     return 0;
 }
 
-int residual(const double **arg, double **res, integer *iw, double *w, int instance) {
+int residual(const NUMBER **arg, NUMBER **res, integer *iw, NUMBER *w, int instance) {
     return run_program(programs + RESIDUAL, arg, res);
 }
 
-int jacobian(const double **arg, double **res, integer *iw, double *w, int instance) {
+int jacobian(const NUMBER **arg, NUMBER **res, integer *iw, NUMBER *w, int instance) {
     return run_program(programs + JACOBIAN, arg, res);
 }
 
-int outputs(const double **arg, double **res, integer *iw, double *w, int instance) {
+int outputs(const NUMBER **arg, NUMBER **res, integer *iw, NUMBER *w, int instance) {
     return run_program(programs + OUTPUTS, arg, res);
 }
 
-int state_update(const double **arg, double **res, integer *iw, double *w, int instance) {
+int state_update(const NUMBER **arg, NUMBER **res, integer *iw, NUMBER *w, int instance) {
     return run_program(programs + STATE_UPDATE, arg, res);
 }
 
-int derivatives(const double **arg, double **res, integer *iw, double *w, int instance) {
+int derivatives(const NUMBER **arg, NUMBER **res, integer *iw, NUMBER *w, int instance) {
     return run_program(programs, arg, res);
 }
 

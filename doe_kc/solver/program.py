@@ -13,14 +13,16 @@ from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from itertools import pairwise
+from pathlib import Path
 
 import casadi as ca
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.c_source import EXPRESSIONS
+from doe_kc.solver.c_source import EXPRESSIONS, SCALAR, Dialect
 from doe_kc.solver.library import CompileError
 
+INTERPRETER = Path(__file__).with_name("program.c")
 COMMUTATIVE = frozenset({ca.OP_ADD, ca.OP_MUL})
 _Operation = tuple[int, int, int]
 """CasADi's number, and two operands: from 0 on that operation's value, below it an argument or constant."""
@@ -174,10 +176,11 @@ def _places(
     return place, places
 
 
-def operations_source() -> str:
-    """The macro OPERATIONS of program.c."""
-    lines = [f"OPERATION({code}, {text.format('a', 'b')})" for code, text in EXPRESSIONS.items()]
-    return "#define OPERATIONS " + " \\\n".join(lines) + "\n"
+def interpreter_source(dialect: Dialect = SCALAR) -> str:
+    """C of program.c for the numbers of a dialect."""
+    lines = [f"OPERATION({code}, {text.format('a', 'b')})" for code, text in dialect.expressions.items()]
+    macros = f"#define NUMBER {dialect.number}\n#define OPERATIONS " + " \\\n".join(lines)
+    return f"{dialect.before}\n{macros}\n{INTERPRETER.read_text()}"
 
 
 def programs_bytes(programs: Mapping[str, Program]) -> bytes:

@@ -16,13 +16,14 @@ import numpy as np
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.library import build, handwritten, store_bytes, stored_bytes
-from doe_kc.solver.program import Program, operations_source, program_of, programs_bytes, read_programs
+from doe_kc.solver.program import Program, interpreter_source, program_of, programs_bytes, read_programs
 
-FOLDER = Path(__file__).parent
-MARCH_SOURCES = (FOLDER / "march.h", FOLDER / "driver.c")
+MARCH_SOURCES = (Path(__file__).with_name("march.h"), Path(__file__).with_name("driver.c"))
 """Of the compiled march; the header has the constants of march.py and newton.py."""
-SENSITIVITY = FOLDER / "sensitivity.c"
+SENSITIVITY = Path(__file__).with_name("sensitivity.c")
 LIBRARY_FLAGS = {"driver": "-O3", "sensitivity": "-O3", "program": "-O2 -ffp-contract=off"}
+ALIGNMENT = 8
+"""Numbers: of the largest vector registers."""
 _ADDRESS = ctypes.c_void_p
 
 
@@ -44,7 +45,7 @@ def program_library() -> ctypes.CDLL:
     sources = {
         "driver": handwritten(*MARCH_SOURCES),
         "sensitivity": handwritten(SENSITIVITY),
-        "program": operations_source() + (FOLDER / "program.c").read_text(),
+        "program": interpreter_source(),
     }
     library = ctypes.CDLL(str(build(sources, LIBRARY_FLAGS)))
     library.use_programs.argtypes = (_ADDRESS,)
@@ -70,26 +71,33 @@ def programs_for(
 
 
 class ProgramSet:
-    """Programs in a row, as program.c reads them; every thread has places of its own."""
+    """Programs in a row, as program.c reads them; every thread has places of its own.
 
-    def __init__(self, programs: Sequence[Program]) -> None:
-        self._programs = tuple(programs)
+    lanes: designs side by side, each number being as many in a row.
+    """
+
+    def __init__(self, programs: Sequence[Program], lanes: int = 1) -> None:
+        self._programs, self._lanes = tuple(programs), lanes
         self._own = threading.local()
 
     @property
     def address(self) -> int:
         """In memory, for this thread."""
         if not hasattr(self._own, "records"):
-            self._own.places = [_places(p) for p in self._programs]
+            self._own.places = [_places(p, self._lanes) for p in self._programs]
             pairs = zip(self._programs, self._own.places, strict=True)
             self._own.records = (_Record * len(self._programs))(*(_record(p, place) for p, place in pairs))
         return ctypes.addressof(self._own.records)
 
 
-def _places(program: Program) -> FloatArray:
-    """All places, those of the constants filled."""
-    first, out = int(program.sizes.sum()), np.zeros(int(program.places[0]))
-    out[first : first + len(program.constants)] = program.constants
+def _places(program: Program, lanes: int) -> FloatArray:
+    """(places, lanes), those of the constants filled."""
+    count = int(program.places[0]) * lanes
+    room = np.zeros(count + ALIGNMENT)
+    start = -(room.ctypes.data // room.itemsize) % ALIGNMENT
+    out = room[start : start + count].reshape(-1, lanes)
+    first = int(program.sizes.sum())
+    out[first : first + len(program.constants)] = program.constants[:, None]
     return out
 
 
