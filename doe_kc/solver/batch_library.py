@@ -1,4 +1,4 @@
-"""Compiled marches of several designs side by side: batch.c with a topology's C for lanes, or with its programs."""
+"""Compiled marches of designs side by side: batch.c with a topology's C for lanes, or with its programs."""
 
 from __future__ import annotations
 
