@@ -96,6 +96,17 @@ class AdaptiveKernel:
         """Whether it is the compiled kernel that marches."""
         return self._compiled is not None
 
+    @property
+    def share_before_compiling(self) -> float:
+        """Operations of the programs, over those after which compiling pays; 0 when that is done."""
+        return 0.0 if self.compiled else self._operations / OPERATIONS_BEFORE_COMPILING
+
+    def compile(self) -> None:
+        """Compile now; where that fails, the programs go on."""
+        self._operations = 0
+        with suppress(CompileError):
+            self._compiled = compiled_kernel(self._topology)
+
     def march(
         self,
         kernel: Kernel,
@@ -107,10 +118,8 @@ class AdaptiveKernel:
         settings: NewtonSettings,
     ) -> March:
         """See `march.march`."""
-        if self._compiled is None and self._operations >= OPERATIONS_BEFORE_COMPILING:
-            self._operations = 0
-            with suppress(CompileError):
-                self._compiled = compiled_kernel(self._topology)
+        if self.share_before_compiling >= 1.0:
+            self.compile()
         if self._compiled is not None:
             return self._compiled.march(kernel, c, start, s, u, active, settings)
         self._library.use_programs(self._programs.address)

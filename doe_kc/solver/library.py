@@ -119,11 +119,13 @@ def store_bytes(topology: Topology, kind: str, content: bytes) -> None:
 def _alone(lock: Path) -> Iterator[None]:
     """Until no other process holds the lock, which the system takes from one that dies."""
     lock.parent.mkdir(parents=True, exist_ok=True)
-    with lock.open("w") as file:
-        if sys.platform != "win32":
-            fcntl.flock(file, fcntl.LOCK_EX)
-        yield
-    lock.unlink(missing_ok=True)
+    try:
+        with lock.open("w") as file:
+            if sys.platform != "win32":
+                fcntl.flock(file, fcntl.LOCK_EX)
+            yield
+    finally:
+        lock.unlink(missing_ok=True)
 
 
 def _library_entry(topology: Topology, kind: str, flags: Mapping[str, str]) -> Path:
