@@ -183,14 +183,16 @@ def build(sources: dict[str, str], flags: Mapping[str, str] = MappingProxyType({
     try:
         if library_path := cached(folder, name):
             return library_path
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            library = _compile(compiler, Path(scratch), sources, flags)
-            target = folder / f"{name}-{fingerprint(library)}.so"
-            library.replace(target)
+        with _alone(folder / f"{name}.lock"):
+            if library_path := cached(folder, name):
+                return library_path
+            with tempfile.TemporaryDirectory(dir=folder) as scratch:
+                library = _compile(compiler, Path(scratch), sources, flags)
+                target = folder / f"{name}-{fingerprint(library)}.so"
+                library.replace(target)
+            return target
     except OSError as error:
         raise _unusable(folder, error) from error
-    return target
 
 
 def cached(folder: Path, name: str) -> Path | None:
