@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle_file import read_axle
+from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.effects import EFFECTS, Effect, apply_effect
 from doe_kc.effects._places import DEFAULT_PLACES
+from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.load_cases.vertical import Vertical
@@ -102,3 +107,25 @@ def reference_curves(name: str) -> pd.DataFrame:
 
 
 FILES = sorted(p.stem for p in DATA.glob("*.csv"))
+
+
+def steps_only(curves: CurveSet, axle: Axle) -> CurveSet:
+    """The curves at the inputs of `LoadCase.inputs`, without those that loops have beside them."""
+    return replace(curves, cases={i: _at_steps(c, axle.load_cases[i]) for i, c in curves.cases.items()})
+
+
+def step_rows(inputs: FloatArray, case: LoadCase) -> NDArray[np.bool_]:
+    """(n,) which inputs of a branch are among `LoadCase.inputs`."""
+    return np.isclose(inputs[:, None], case.inputs(), rtol=0.0, atol=1e-9 * case.amplitude).any(axis=1)
+
+
+def _at_steps(curves: CaseCurves, case: LoadCase) -> CaseCurves:
+    rows = step_rows(curves.input, case)
+    assert rows.sum() == 2 * case.steps + 1
+
+    def picked(lines: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        return {response: line[:, rows] for response, line in lines.items()}
+
+    return replace(
+        curves, input=curves.input[rows], mean=picked(curves.mean), half_width=picked(curves.half_width)
+    )

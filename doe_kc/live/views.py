@@ -25,15 +25,12 @@ from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
 from doe_kc.reports.axle_views import MEMBER_COLOURS, OTHER_COLOURS
 from doe_kc.reports.names import input_label
-from doe_kc.reports.style import PALETTE
 from doe_kc.solver.curve_set import rising
 from doe_kc.solver.elements._base import mirror
 from doe_kc.solver.result import BranchSolution, CaseSolution
 from doe_kc.solver.shape import shape_at
 from doe_kc.targets.comparison import constraint_interval
 
-DARK_YELLOW = "#A68A00"
-"""The palette's own yellow is not seen as a thin line on white."""
 SLIDER_GROUPS = {"HARDPOINTS": "Hardpoints", "BUSHINGS": "Bushings", "OTHER": "Other"}
 
 
@@ -163,7 +160,7 @@ def _lines(axle: Axle) -> dict[str, Any]:
     """points: names of a side, left ones first in a frame, then right ones. parts: lines by places."""
     names = drawn_points(axle)
     place = {name: i for i, name in enumerate(names)}
-    others = cycle(DARK_YELLOW if c == PALETTE["yellow"] else c for c in OTHER_COLOURS)
+    others = cycle(OTHER_COLOURS)
     parts = [
         {
             "name": part,

@@ -41,10 +41,12 @@ MEMBER_COLOURS: Mapping[str, str] = {
 """Of parts that most axles have; others follow in the order of `OTHER_COLOURS`."""
 BROWN = "#8C5A2B"
 """Arrows are orange."""
+DARK_YELLOW = "#A68A00"
+"""The palette's own yellow is not seen as a thin line on white."""
 OTHER_COLOURS = (
     *(style.PALETTE[name] for name in ("blue", "vermillion", "sky")),
     BROWN,
-    style.PALETTE["yellow"],
+    DARK_YELLOW,
 )
 TRIM = "#C9CED3"
 BOTH_ENDS = np.array([-1.0, 1.0])

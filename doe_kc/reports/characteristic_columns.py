@@ -22,14 +22,14 @@ class OfCharacteristic(Protocol):
 
 
 CHARACTERISTIC_COLUMNS: tuple[Column[Any], ...] = (
-    Column[OfCharacteristic]("name", "Id", lambda r: r.entry.id,
+    Column[OfCharacteristic]("name", "Id", lambda r: r.entry.id, width=31,
            page=PageCell("Characteristic", text=lambda r: r.entry.label, style="first",
                          attributes=lambda r: {"title": r.entry.id})),
-    Column[OfCharacteristic]("load_case", "Load case", lambda r: r.entry.load_case, json="load_case",
-           page=PageCell(text=lambda r: case_label(r.entry.load_case))),
+    Column[OfCharacteristic]("load_case", "Load case", lambda r: r.entry.load_case, width=16,
+           json="load_case", page=PageCell(text=lambda r: case_label(r.entry.load_case))),
     Column[OfCharacteristic]("response", "Response", lambda r: r.entry.response,
            page=PageCell(text=lambda r: response_name(r.entry.response))),
-    Column[OfCharacteristic]("unit", "Unit", lambda r: r.entry.unit, json="unit", page=PageCell()),
+    Column[OfCharacteristic]("unit", "Unit", lambda r: r.entry.unit, width=9, json="unit", page=PageCell()),
 )  # fmt: skip
 """Of any row that is an `OfCharacteristic`."""
 

@@ -219,7 +219,10 @@ def four_digits(value: float) -> str:
 
 
 def three_digits(value: float) -> str:
-    """Number format that shows three significant digits of a number of this size, seven decimals at most."""
+    """Number format that shows three significant digits of a number of this size: seven decimals at most, a
+    power of ten where those would show none."""
+    if 0.0 < abs(value) < 5e-8:
+        return "0.0E+00"
     places = min(7, max(0, 2 - math.floor(math.log10(abs(value))))) if value and math.isfinite(value) else 0
     return f"0.{'0' * places}" if places else "0"
 

@@ -120,7 +120,7 @@ def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
     up = np.linspace(0.0, 1.0, case.steps + 1) * case.amplitude
     if not loop:
         return {"pos": up, "neg": -up}
-    around = np.linspace(-1.0, 1.0, 2 * case.steps + 1) * case.amplitude
+    around = case.loop_inputs()
     falling, rising = around[::-1].copy(), around
     before = {
         f"{name}_{k}": values

@@ -18,7 +18,7 @@ from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from tests.reference import MCPHERSON_EFFECTS as EFFECTS
-from tests.reference import nominal
+from tests.reference import nominal, steps_only
 
 HYPOTHESES = [h for e in EFFECTS.values() for h in e.hypotheses()]
 SIZED = [h for h in HYPOTHESES if h.sizes]
@@ -70,7 +70,8 @@ def change(h: Hypothesis, amplitude: float, shape: float = 0.0) -> np.ndarray:
 def _change(name: str, amplitude: float, shape: float) -> np.ndarray:
     (h,) = (h for h in HYPOTHESES if h.name == name)
     axle = with_hypothesis(h, amplitude, shape)
-    return numbers(observed(axle, curve_set(solve(axle, compiled=False)))) - numbers(plain())
+    curves = steps_only(curve_set(solve(axle, compiled=False)), axle)
+    return numbers(observed(axle, curves)) - numbers(plain())
 
 
 @pytest.mark.parametrize("name", EFFECTS)

@@ -83,6 +83,10 @@ def test_a_load_case_says_what_it_sweeps(case) -> None:
     assert 0.0 in inputs
     assert len(inputs) == 2 * case.steps + 1
     assert np.all(np.diff(inputs) > 0)
+    loop = case.loop_inputs()
+    assert set(inputs) <= set(loop) and np.all(np.diff(loop) > 0)
+    np.testing.assert_allclose(loop, -loop[::-1])
+    assert len(loop) == len(inputs) + 4 and np.sum(loop > inputs[-2]) == 3
     # at input 0 nothing has moved from the static state
     static = Datum((1.0, 2.0), (310.0, 311.0), 4000.0, 790.0, 52.0)
     still = case.controls(np.zeros(1), static)

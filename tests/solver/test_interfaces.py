@@ -22,7 +22,7 @@ from doe_kc.solver.interfaces import Influences, interface_influences
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.suite import solve
-from tests.reference import nominal
+from tests.reference import nominal, step_rows
 
 SMALL = 1e-3
 TIGHT = NewtonSettings(tol=1e-8)
@@ -103,12 +103,16 @@ def misses(
     """Relative RMS errors of the predicted change: of the mean curves, of the half-widths."""
     before, columns = curves(name), law_columns(influences(name), law, presliding)
     amplitudes, out = weighted(columns, weights), []
+    inputs = *({i: c.input for i, c in x.cases.items()} for x in (changed, before)), columns.inputs
     for part, predicted in (("mean", columns.cases), ("half_width", columns.half_width)):
         gap = size = 0.0
         for ident in predicted:
+            rows = [step_rows(i[ident], base(name).load_cases[ident]) for i in inputs]
             for response, unit in RESPONSE_UNITS.items():
-                new, old = (getattr(c.cases[ident], part)[response] for c in (changed, before))
-                true, said = (new - old) / SCALE[unit], predicted[ident][response] @ amplitudes / SCALE[unit]
+                lines = [getattr(c.cases[ident], part)[response] for c in (changed, before)]
+                lines.append(predicted[ident][response] @ amplitudes)
+                new, old, said = (line[:, at] / SCALE[unit] for line, at in zip(lines, rows, strict=True))
+                true = new - old
                 gap, size = gap + float(np.sum((true - said) ** 2)), size + float(np.sum(true**2))
         out.append(np.sqrt(gap / size) if size else 0.0)
     assert before.static is not None and changed.static is not None

@@ -10,9 +10,10 @@ import pytest
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.model import HARDPOINTS
 from doe_kc.effects import apply_effect
+from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.library import find_compiler
 from doe_kc.solver.suite import solve
-from tests.reference import nominal
+from tests.reference import nominal, step_rows
 
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 
@@ -71,10 +72,26 @@ def test_compiled_and_interpreted_take_the_same_steps(effect: str) -> None:
 def test_a_lifted_wheel_held_by_friction_does_not_depend_on_the_steps(law: str, force: float) -> None:
     """In roll one wheel lifts off; at touch-down its strut reverses inside a step."""
     axle = apply_effect(nominal(), "strut_friction", {"force_N": force, "law": law}, source="test")
+    axle = with_steps(axle, "roll", 24, 12.0)
     coarse, fine = (
         solve(with_steps(axle, "roll", 24 * n, 12.0), compiled=False).cases["roll"].branches for n in (1, 8)
     )
-    load = solve(with_steps(axle, "roll", 24, 12.0), compiled=False).column("tyre_load@L")
+    load = solve(axle, compiled=False).column("tyre_load@L")
     assert min(b.y[:, load].min() for b in coarse) == 0.0
     for a, b in zip(coarse, fine, strict=True):
-        assert np.abs(a.y[:, load] - b.y[::8, load]).max() < 0.02 * force / 4
+        rows, same = (step_rows(x.input, axle.load_cases["roll"]) for x in (a, b))
+        assert np.abs(a.y[rows, load] - b.y[same, load]).max() < 0.02 * force / 4
+
+
+def test_a_loop_is_as_smooth_at_its_ends_as_with_a_quarter_of_the_step() -> None:
+    """Beside full lock the rack turns round within a few degrees of the wheel, less than a step."""
+    axle = apply_effect(nominal(), "steering_friction", {"force_N": 400.0}, source="test")
+    curves = [
+        curve_set(solve(with_steps(axle, "steer", n), compiled=False)).cases["steer"] for n in (30, 120)
+    ]
+    coarse, fine = (c.mean["toe"][0] for c in curves)
+    at = 0.97 * axle.load_cases["steer"].amplitude * np.array([-1.0, 1.0])
+    inputs, exact = curves[0].input, np.interp(at, curves[1].input, fine)
+    assert np.abs(np.interp(at, inputs, coarse) - exact).max() < 2e-3
+    rows = step_rows(inputs, with_steps(axle, "steer", 30).load_cases["steer"])
+    assert np.abs(np.interp(at, inputs[rows], coarse[rows]) - exact).max() > 5e-3

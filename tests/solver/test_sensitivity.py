@@ -193,7 +193,8 @@ def test_along_the_path_and_with_every_compliance(name: str, path: str) -> None:
 
 @lru_cache
 def _with_effects(name: str) -> tuple[Axle, Sensitivities]:
-    axle = short(nominal())
+    # no equilibrium of a loop where the stop just touches, a corner
+    axle = with_values(short(nominal()), {"rebound_stop.clearance": 63.0})
     for ident, options in LOOPS[name]:
         axle = apply_effect(axle, ident, options, source="test")
     return axle, sensitivities(axle, tight(axle), LOOP_PATHS[name])

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, known_columns
 from doe_kc.discovery.thresholds import CHORD_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
-from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -54,11 +52,11 @@ def held_out(tuned: Fit, with_effects: Fit, with_discrepancy: Fit, case: str) ->
 
     with_effects: fitted to the records' own errors; with_discrepancy: to errors that hold that of the laws.
     """
-    with_effect = law_granted = held_out_score(fit_without(with_effects, case))
+    with_effect = law_granted = held_out_score(with_effects, fit_without(with_effects, case))
     if with_discrepancy.model.likelihood is not with_effects.model.likelihood:
         model = replace(with_discrepancy.model, left_out=case)
-        law_granted = held_out_score(chord_fit(with_discrepancy, model))
-    return HeldOut(case, held_out_score(fit_without(tuned, case)), with_effect, law_granted)
+        law_granted = held_out_score(with_discrepancy, chord_fit(with_discrepancy, model))
+    return HeldOut(case, held_out_score(tuned, fit_without(tuned, case)), with_effect, law_granted)
 
 
 def fit_without(start: Fit, case: str) -> Fit:
@@ -75,17 +73,20 @@ def fit_without(start: Fit, case: str) -> Fit:
     return fit(model, near.z, steps=REFIT_STEPS, known=known_columns(near, model), aged=gained)
 
 
-def held_out_score(fit: Fit) -> HeldOutScore:
-    """The score of the rows that the fit did not look at, r with derivatives R.
+def held_out_score(whole: Fit, others: Fit) -> HeldOutScore:
+    """The score of the records of a load case by the fits to all records and to the others.
 
-    Their covariance is C = I + R H^-1 R'. With K = H + R'R, r'C^-1 r = r'r - r'R K^-1 R'r and
-    det C = det K / det H (Woodbury 1950), in the number of parameters instead of records.
+    Their predictive density is the evidence of all records over that of the others, each by Laplace's
+    approximation at its own point (L. Tierney, J. B. Kadane, Journal of the American Statistical Association
+    81, 1986): r'C^-1 r is what the cost falls when the load case is left out, det C the quotient of the
+    Hessians' determinants. For a linear model that is the Gaussian prediction; it holds as well where the fit
+    to the others goes far along what they do not see, where derivatives taken there do not.
     """
-    predicted = ~fit.model.used
-    residual, rows = fit.residual[predicted], fit.jacobian.rows(predicted)
-    before = cholesky(fit.hessian, lower=True)
-    after = cholesky(fit.hessian + rows.T @ rows, lower=True)
-    pulled: FloatArray = solve_triangular(after, rows.T @ residual, lower=True)
-    square = float(residual @ residual - pulled @ pulled)
-    score = -0.5 * square - float(np.sum(np.log(np.diag(after) / np.diag(before))))
-    return HeldOutScore(float(np.sqrt(square / residual.size)), score, int(residual.size))
+    size = int(np.count_nonzero(~others.model.used))
+    square = max(0.0, whole.cost - others.cost)
+    score = -0.5 * square - 0.5 * (_log_determinant(whole) - _log_determinant(others))
+    return HeldOutScore(float(np.sqrt(square / size)), score, size)
+
+
+def _log_determinant(fit: Fit) -> float:
+    return float(np.linalg.slogdet(fit.hessian)[1])

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from io import BytesIO
 from pathlib import Path
+from textwrap import wrap
 
 from openpyxl.formatting.rule import ColorScaleRule, DataBarRule, FormulaRule, Rule
 from openpyxl.styles import PatternFill
@@ -33,6 +34,8 @@ INSIDE = PatternFill("solid", bgColor="D6E9F8")
 OUTSIDE = PatternFill("solid", bgColor="FBDDB3")
 LINE_HEIGHT = 14.5
 """Points of a line of text."""
+BOLD_SHARE = 0.95
+"""Bold characters to a character of a column's width."""
 
 
 def new_book(name: str) -> Workbook:
@@ -100,8 +103,13 @@ def put_table(ws: Worksheet, table: Table[Row], *, start: int = TABLE_FIRST_ROW 
         ws.auto_filter.ref = f"A{start}:{get_column_letter(len(columns))}{last}"
     if not table.rows and table.empty:
         put(ws, start + 1, 1, table.empty, color=MUTED)
-    ws.row_dimensions[start].height = 30
+    ws.row_dimensions[start].height = max(30.0, LINE_HEIGHT * max(map(_head_lines, columns), default=1))
     return last
+
+
+def _head_lines(column: Column[Row]) -> int:
+    """Lines that a bold head takes in its column."""
+    return len(wrap(column.head or "", max(4, int(BOLD_SHARE * column.width) - 1)))
 
 
 def _put_row(ws: Worksheet, r: int, row: Row, table: Table[Row], columns: Sequence[Column[Row]]) -> None:

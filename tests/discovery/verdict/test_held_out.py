@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from doe_kc.discovery.fit import chord_fit, fit
+from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import HELD_OUT_LIMIT
@@ -60,7 +60,8 @@ def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch
     monkeypatch.setattr("doe_kc.discovery.verdict.held_out.CHORD_DECREASE", 0.0)
     exact = fit_without(search.tuned, "steer")
     assert taken and exact.converged
-    assert held_out_score(far).rms == pytest.approx(held_out_score(exact).rms, rel=0.02)
+    scores = [held_out_score(search.tuned, other).rms for other in (far, exact)]
+    assert scores[0] == pytest.approx(scores[1], rel=0.02)
 
 
 def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
@@ -69,13 +70,23 @@ def test_derivatives_that_lead_nowhere_end_no_fit() -> None:
     assert not chord_fit(false, replace(with_effects.model, left_out="steer")).converged
 
 
-def test_a_prediction_has_the_density_of_its_covariance() -> None:
-    found = fit_without(discovery("named").search.with_effects, "lateral")
-    predicted = np.flatnonzero(~found.model.used)
-    residual, rows = found.residual[predicted], found.jacobian.rows(predicted)
-    covariance = np.eye(predicted.size) + rows @ found.covariance @ rows.T
-    own = held_out_score(found)
+def test_a_linear_model_is_scored_by_the_density_of_its_prediction() -> None:
+    whole = discovery("named").search.with_effects
+    all_records = _linear_minimum(whole, whole.model)
+    others = _linear_minimum(whole, replace(whole.model, left_out="lateral"))
+    predicted = np.flatnonzero(~others.model.used)
+    residual, rows = others.residual[predicted], others.jacobian.rows(predicted)
+    covariance = np.eye(predicted.size) + rows @ others.covariance @ rows.T
+    score = held_out_score(all_records, others)
     density = multivariate_normal(np.zeros(predicted.size), covariance).logpdf(residual)
-    assert own.score == pytest.approx(density + 0.5 * predicted.size * np.log(2.0 * np.pi), abs=1e-5)
+    assert score.score == pytest.approx(density + 0.5 * predicted.size * np.log(2.0 * np.pi), abs=1e-5)
     square = float(residual @ np.linalg.solve(covariance, residual))
-    assert own.rms == pytest.approx(np.sqrt(square / predicted.size), rel=1e-8)
+    assert score.rms == pytest.approx(np.sqrt(square / predicted.size), rel=1e-8)
+
+
+def _linear_minimum(near: Fit, model: EffectModel) -> Fit:
+    """Of the model linearized at a fit, without bounds."""
+    start = replace(near, model=model)
+    step = -np.linalg.solve(start.hessian, start.gradient)
+    z, residual = near.z + step, near.residual + near.jacobian.moved(step)
+    return replace(start, z=z, residual=residual, cost=cost_of(model, z, residual))

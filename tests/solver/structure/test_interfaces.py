@@ -22,6 +22,7 @@ from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.probe import Probe
 from doe_kc.solver.suite import solve
 from tests.axle_type_reference import TYPES, nominal
+from tests.reference import steps_only
 
 SMALL = 1e-3
 TIGHT = NewtonSettings(tol=1e-8)
@@ -39,7 +40,7 @@ def short(axle_type: str) -> Axle:
 
 
 def solved(axle: Axle) -> CurveSet:
-    return curve_set(solve(axle, compiled=False, settings=TIGHT))
+    return steps_only(curve_set(solve(axle, compiled=False, settings=TIGHT)), axle)
 
 
 @lru_cache
