@@ -116,7 +116,7 @@ def test_an_effect_switches_sliders_and_is_undone() -> None:
 @pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 def test_what_is_asked_for_often_is_compiled_by_a_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     begun: list[AdaptiveKernel] = []
-    monkeypatch.setattr(AdaptiveKernel, "compile", begun.append)
+    monkeypatch.setattr(AdaptiveKernel, "compile", lambda kernel: begun.append(kernel))
     monkeypatch.setattr(AdaptiveKernel, "share_before_compiling", 0.1)
     live = session()
     topology = live.model.axle.topology
