@@ -23,7 +23,7 @@ from doe_kc.true_solver.outcome import Outcome, from_curves, is_known
 
 
 def can_batch(topology: Topology) -> bool:
-    """Whether designs of a topology can be solved side by side here; compiles what that needs."""
+    """Whether designs of a topology can be solved side by side here; makes what that needs."""
     try:
         adaptive_batch(topology)
     except CompileError:
