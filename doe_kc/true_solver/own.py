@@ -34,8 +34,8 @@ so that the last digits do not depend on the number of workers or on what the ca
 class AxleSolver:
     """windows: as in `reduce_all`. curves: whether outcomes hold them, or characteristics alone.
 
-    compiled: topologies to run in compiled code where that is possible; batched: those of which many designs are
-    solved side by side. asked: how many designs of each topology have been announced by `prepare`.
+    compiled: topologies to run in compiled code where that can be done; batched: those of which many designs
+    are solved side by side. asked: how many designs of each topology have been announced by `prepare`.
     """
 
     axle: Axle
