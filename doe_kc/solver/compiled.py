@@ -21,7 +21,7 @@ from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, kernel, kernel_programs
 from doe_kc.solver.library import CompileError, handwritten, library_of, stored_library
 from doe_kc.solver.newton import NewtonSettings
-from doe_kc.solver.program_library import MARCH_SOURCES, ProgramSet, program_library
+from doe_kc.solver.program_library import MARCH_SOURCES, ProgramSet, march_library
 
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
@@ -82,7 +82,7 @@ class AdaptiveKernel:
     def __init__(self, topology: Topology) -> None:
         self._topology = topology
         programs = kernel_programs(topology)
-        self._library = program_library()
+        self._library = march_library()
         self._library.march.argtypes = MARCH_ARGUMENTS
         self._programs = ProgramSet([programs[name] for name in MARCHED])
         self._lengths = np.array([programs["residual"].length, programs["jacobian"].length])

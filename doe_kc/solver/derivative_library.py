@@ -23,8 +23,8 @@ from doe_kc.solver.program_library import (
     SENSITIVITY,
     ProgramFunction,
     ProgramSet,
-    program_library,
     programs_for,
+    sensitivity_library,
 )
 
 DERIVATIVE_LIBRARY = "derivatives"
@@ -73,7 +73,7 @@ class AdaptiveDerivatives:
     def __init__(self, topology: Topology) -> None:
         self._topology = topology
         programs = derivative_programs(topology)
-        self._library = program_library()
+        self._library = sensitivity_library()
         self._library.sensitivity.argtypes = _ARGUMENTS
         self._programs = ProgramSet([programs["derivatives"]])
         self._length = programs["derivatives"].length
@@ -88,12 +88,16 @@ class AdaptiveDerivatives:
         """Whether the derivatives are compiled ones."""
         return self._compiled is not None
 
+    def compile(self) -> None:
+        """Compile now; where that fails, the programs go on."""
+        self._operations = 0
+        with suppress(CompileError):
+            self._compiled = derivative_library(self._topology)
+
     def sensitivity(self, points: int, *arguments: object) -> int:
         """See `SensitivityLibrary`."""
         if self._compiled is None and self._operations >= OPERATIONS_BEFORE_COMPILING:
-            self._operations = 0
-            with suppress(CompileError):
-                self._compiled = derivative_library(self._topology)
+            self.compile()
         if self._compiled is not None:
             return self._compiled.sensitivity(points, *arguments)
         self._library.use_programs(self._programs.address)

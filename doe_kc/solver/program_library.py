@@ -1,4 +1,4 @@
-"""Programs carried out by one compiled library, the same for all topologies."""
+"""Programs carried out by compiled libraries that are the same for all topologies."""
 
 from __future__ import annotations
 
@@ -40,13 +40,19 @@ class _Record(ctypes.Structure):
 
 
 @lru_cache(maxsize=1)
-def program_library() -> ctypes.CDLL:
-    """The march, the sensitivities and what carries programs out; CompileError when it cannot be built."""
-    sources = {
-        "driver": handwritten(*MARCH_SOURCES),
-        "sensitivity": handwritten(SENSITIVITY),
-        "program": interpreter_source(),
-    }
+def march_library() -> ctypes.CDLL:
+    """The march of driver.c and what carries programs out; CompileError when it cannot be built."""
+    return _program_library("driver", *MARCH_SOURCES)
+
+
+@lru_cache(maxsize=1)
+def sensitivity_library() -> ctypes.CDLL:
+    """The same with sensitivity.c."""
+    return _program_library("sensitivity", SENSITIVITY)
+
+
+def _program_library(part: str, *files: Path) -> ctypes.CDLL:
+    sources = {part: handwritten(*files), "program": interpreter_source()}
     library = ctypes.CDLL(str(build(sources, LIBRARY_FLAGS)))
     library.use_programs.argtypes = (_ADDRESS,)
     library.use_programs.restype = None
@@ -118,11 +124,11 @@ class _Buffers:
 
 
 class ProgramFunction:
-    """One program of a single result, called with its arguments; CompileError as `program_library`."""
+    """One program of a single result, called with its arguments; CompileError as `march_library`."""
 
     def __init__(self, program: Program) -> None:
         self._program = program
-        self._library = program_library()
+        self._library = march_library()
         self._set = ProgramSet([program])
         self._own = threading.local()
 

@@ -14,7 +14,7 @@ import pytest
 from doe_kc.solver import library, suite
 from doe_kc.solver.compiled import adaptive_kernel, compiled_kernel
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, cache_folder, find_compiler, library_of
-from doe_kc.solver.program_library import program_library
+from doe_kc.solver.program_library import march_library
 from doe_kc.solver.suite import library_for, solve
 from tests.reference import nominal
 
@@ -28,7 +28,7 @@ TINY = {"one": "int one(void) { return 1; }\n"}
 def fresh(monkeypatch: pytest.MonkeyPatch):
     """No kernel in memory, and a notice that may come once."""
     monkeypatch.delenv("DOE_KC_COMPILE", raising=False)
-    caches = (compiled_kernel, adaptive_kernel, program_library, suite._notice_once)
+    caches = (compiled_kernel, adaptive_kernel, march_library, suite._notice_once)
     for cache in caches:
         cache.cache_clear()
     yield

@@ -12,14 +12,14 @@ import pytest
 
 from doe_kc.axle import Axle
 from doe_kc.effects import apply_effect
-from doe_kc.solver import compiled, derivative_library, program_library
+from doe_kc.solver import compiled, derivative_library
 from doe_kc.solver.c_source import EXPRESSIONS
 from doe_kc.solver.compiled import AdaptiveKernel, adaptive_kernel
 from doe_kc.solver.derivative_library import AdaptiveDerivatives, adaptive_derivatives
 from doe_kc.solver.kernel import Buffered, interpreted_functions, kernel, kernel_programs
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, find_compiler
 from doe_kc.solver.program import Program, program_of, programs_bytes, read_programs
-from doe_kc.solver.program_library import ProgramFunction, programs_for
+from doe_kc.solver.program_library import ProgramFunction, march_library, programs_for, sensitivity_library
 from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
@@ -149,7 +149,8 @@ def test_threads_do_not_disturb_each_other() -> None:
 @pytest.fixture
 def impatient(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A cache without compiled libraries; the second call compiles."""
-    program_library.program_library()  # from the cache that has it
+    for library in (march_library, sensitivity_library):
+        library()  # from the cache that has it
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     for module in (compiled, derivative_library):
         monkeypatch.setattr(module, "OPERATIONS_BEFORE_COMPILING", 1)
