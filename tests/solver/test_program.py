@@ -26,8 +26,7 @@ from tests.reference import nominal
 
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 TOPOLOGY = nominal().topology
-RICHEST = ("strut_friction", "rubber_hysteresis")
-"""Effects whose laws have the most kinds of operations."""
+FRICTION = ("strut_friction",)
 
 
 def axle_with(effects: tuple[str, ...]) -> Axle:
@@ -164,7 +163,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("impatient")
-@pytest.mark.parametrize("effects", [(), RICHEST], ids=["plain", "hysteresis"])
+@pytest.mark.parametrize("effects", [(), FRICTION], ids=["plain", "friction"])
 def test_what_is_asked_for_often_is_compiled_with_the_same_digits(
     effects: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
