@@ -28,13 +28,13 @@ started = time.perf_counter()
 from pathlib import Path
 from doe_kc.axle_file import read_axle
 from doe_kc.solver.suite import solve
-solve(read_axle(Path(sys.argv[1])), compiled=True)
+solve(read_axle(Path(sys.argv[1])))
 print(time.perf_counter() - started)
 """
 
 
 def first_call_seconds(axle_type: str) -> tuple[float, float]:
-    """(wall, CPU) seconds of import, assembly, compiling and solving in an empty cache."""
+    """(wall, CPU) seconds of import, assembly, programs and solving in an empty cache."""
     before = os.times()
     with tempfile.TemporaryDirectory() as empty:
         done = subprocess.run(
@@ -88,7 +88,7 @@ def main() -> None:
                 for name, nx, n, ms, wall, used in rows
             ),
             "",
-            "The first call holds import, assembly and compiling (wanted: below "
+            "The first call holds import, assembly, programs and the library that runs them (wanted: below "
             f"{FIRST_CALL_S:g} s where nothing else runs).",
         ],
     )

@@ -4,8 +4,10 @@ to a worker, so that what its tests have in common is computed once; the longest
 from __future__ import annotations
 
 import functools
+import gc
 import os
 import re
+from collections.abc import Generator
 from pathlib import Path
 
 import hypothesis
@@ -41,6 +43,17 @@ LONGEST = (
     "correlation/test_methods.py",
 )
 """They start first, so that no worker is left with one of them at the end."""
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Leave modules and items, which stay until the end, out of every search for garbage."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 class FileScheduling(LoadScopeScheduling):

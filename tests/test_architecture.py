@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import defaultdict
+from functools import cache
 from pathlib import Path
 
 import doe_kc
@@ -41,7 +42,12 @@ FLOORS = [
     "cli",
 ]
 """A module imports from its own floor and those before it."""
-TREES = {path: ast.parse(path.read_text("utf-8")) for path in sorted(ROOT.rglob("*.py"))}
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """Of every module."""
+    return {path: ast.parse(path.read_text("utf-8")) for path in sorted(ROOT.rglob("*.py"))}
 
 
 def _floor(path: Path) -> str:
@@ -62,7 +68,7 @@ def _imports(tree: ast.Module) -> set[str]:
 def test_every_module_imports_downwards_only() -> None:
     upwards = [
         f"{path.relative_to(ROOT)} imports {name}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         if _floor(path) in FLOORS
         for name in _imports(tree)
         if (floor := name.split(".")[1]) in FLOORS and FLOORS.index(floor) > FLOORS.index(_floor(path))
@@ -79,7 +85,7 @@ def test_no_correlation_method_imports_from_another() -> None:
 
     across = [
         f"{path.relative_to(ROOT)} imports {name}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         if path.is_relative_to(folder) and path != folder / "__init__.py"
         for name in _imports(tree)
         if name.startswith("doe_kc.correlation.methods.")
@@ -91,14 +97,16 @@ def test_no_correlation_method_imports_from_another() -> None:
 
 
 def test_every_folder_has_its_floor() -> None:
-    assert {_floor(p) for p in TREES} - {"__init__", "__main__"} == set(FLOORS) & {_floor(p) for p in TREES}
+    assert {_floor(p) for p in trees()} - {"__init__", "__main__"} == set(FLOORS) & {
+        _floor(p) for p in trees()
+    }
 
 
 def test_no_module_imports_itself_by_way_of_others() -> None:
-    names = {".".join(("doe_kc", *p.relative_to(ROOT).with_suffix("").parts)): p for p in TREES}
+    names = {".".join(("doe_kc", *p.relative_to(ROOT).with_suffix("").parts)): p for p in trees()}
     names = {n.removesuffix(".__init__"): p for n, p in names.items()}
     graph = {
-        name: {part for i in _imports(TREES[path]) for part in (i, i.rpartition(".")[0]) if part in names}
+        name: {part for i in _imports(trees()[path]) for part in (i, i.rpartition(".")[0]) if part in names}
         - {name}
         for name, path in names.items()
     }
@@ -111,7 +119,7 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
 
 def test_a_class_name_means_one_class() -> None:
     places = defaultdict(list)
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.ClassDef):
                 places[node.name].append(str(path.relative_to(ROOT)))
@@ -120,7 +128,7 @@ def test_a_class_name_means_one_class() -> None:
 
 def test_a_constant_name_means_one_value() -> None:
     places = defaultdict(list)
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in tree.body:
             names = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
             for name in names:
@@ -133,7 +141,7 @@ def test_no_parameter_is_named_after_a_participle() -> None:
     participles = {"found", "made", "given", "judged", "told", "tried", "whole", "stands"}
     named = [
         f"{path.relative_to(ROOT)}: {node.name}({argument.arg})"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.FunctionDef)
         for argument in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)
@@ -146,7 +154,7 @@ def test_no_variable_is_named_found() -> None:
     """A name says what is held: the field's noun."""
     places = [
         f"{path.relative_to(ROOT)}:{node.lineno}"
-        for path, tree in TREES.items()
+        for path, tree in trees().items()
         for node in ast.walk(tree)
         if isinstance(node, ast.Name) and node.id == "found"
     ]

@@ -42,7 +42,7 @@ class Twin:
 
     @cached_property
     def _solver(self) -> AxleSolver:
-        """Compiled where that is possible: a search asks for hundreds of answers."""
+        """In compiled code where that is possible: a search asks for hundreds of answers."""
         return AxleSolver(self.axle, self.windows).prepare([{}])
 
     @cached_property

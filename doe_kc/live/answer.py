@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.live.model import LiveModel
 from doe_kc.live.outside_model import half_track_of
+from doe_kc.solver.compiled import AdaptiveKernel
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import library_for, solve
@@ -55,27 +56,43 @@ class LiveAnswer:
         return math.sqrt(float(np.mean(self.residual**2))) if self.residual.size else math.nan
 
 
+COMPILE_SHARE = 0.25
+"""Of what a kernel does before it compiles by itself: early, so that no answer waits for a compiler."""
+
+
 class Compilation:
-    """Which topologies run compiled: a new one runs interpreted until a thread has compiled it."""
+    """Which topologies run in compiled code: a new one runs in Python until a thread has made its programs.
+
+    One that is asked for often is compiled by a thread, while its programs go on.
+    """
 
     def __init__(self) -> None:
         self._ready: set[Topology] = set()
         self._begun: set[Topology] = set()
+        self._compiled: set[Topology] = set()
         self._threads: list[threading.Thread] = []
 
     def use_now(self, topology: Topology) -> bool | None:
-        """The argument `compiled` of `solve` for a topology; begins to compile one that is new."""
+        """The argument `compiled` of `solve` for a topology; begins to prepare one that is new."""
         if topology in self._ready:
+            library = library_for(topology, None)
+            often = isinstance(library, AdaptiveKernel) and library.share_before_compiling >= COMPILE_SHARE
+            if isinstance(library, AdaptiveKernel) and often and topology not in self._compiled:
+                self._compiled.add(topology)
+                self._begin(library.compile)
             return None
         if topology not in self._begun:
             self._begun.add(topology)
-            thread = threading.Thread(target=self.compile, args=(topology,), daemon=True)
-            self._threads.append(thread)
-            thread.start()
+            self._begin(lambda: self.prepare(topology))
         return False
 
-    def compile(self, topology: Topology) -> None:
-        """Compile now, in this thread."""
+    def _begin(self, work: Callable[[], None]) -> None:
+        thread = threading.Thread(target=work, daemon=True)
+        self._threads.append(thread)
+        thread.start()
+
+    def prepare(self, topology: Topology) -> None:
+        """Make the programs now, in this thread."""
         self._begun.add(topology)
         library_for(topology, None)
         self._ready.add(topology)

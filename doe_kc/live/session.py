@@ -57,7 +57,7 @@ class Session:
     def __init__(self, model: LiveModel) -> None:
         """Solves the study's axle; RunError when it has no equilibrium."""
         self.compilation = Compilation()
-        self.compilation.compile(model.axle.topology)
+        self.compilation.prepare(model.axle.topology)
         answer = stored_answer(model, {}, self.compilation)
         if not isinstance(answer, LiveAnswer):
             answer = solve_live(model, {}, self.compilation)

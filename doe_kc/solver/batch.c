@@ -574,6 +574,7 @@ int march_batch(int n, int active, int nu, int nz, int ny, int nc, int nnz, cons
     return 0;
 }
 
+#ifndef NO_CONSTANTS
 /* c (designs, nc) of the internal parameters p (designs, np). */
 void constants_batch(int designs, int np, int nc, const double *p, double *c) {
     for (int i = 0; i < designs; i++) {
@@ -582,3 +583,4 @@ void constants_batch(int designs, int np, int nc, const double *p, double *c) {
         constants(arg, result, 0, 0, 0);
     }
 }
+#endif

@@ -1,27 +1,34 @@
-"""Compiled kernels of several designs side by side: generated C for lanes plus batch.c."""
+"""Compiled marches of designs side by side: batch.c with a topology's C for lanes, or with its programs."""
 
 from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect, c_sources
-from doe_kc.solver.compiled import MARCH_HEADER
+from doe_kc.solver.compiled import OPERATIONS_BEFORE_COMPILING
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
-from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
+from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions, kernel_programs
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, build, library_of, stored_library
 from doe_kc.solver.newton import NewtonSettings
+from doe_kc.solver.program import interpreter_source
+from doe_kc.solver.program_library import MARCH_SOURCES, ProgramFunction, ProgramSet
 
 BATCH_SOURCE = Path(__file__).with_name("batch.c")
 LANES_HEADER = Path(__file__).with_name("lanes.h")
+NO_CONSTANTS = "#define NO_CONSTANTS\n"
+"""Leaves `constants_batch` out."""
 _INT, _DOUBLE, _ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 _BATCH_ARGUMENTS = (
     *(_INT,) * 7, *(_ADDRESS,) * 2, _DOUBLE, _DOUBLE, *(_INT,) * 5, *(_ADDRESS,) * 10,
@@ -57,16 +64,45 @@ class BatchMarch:
     counts: np.ndarray
 
 
+class BatchMarcher(Protocol):
+    """Marches designs of one topology side by side. lanes: how many at once."""
+
+    @property
+    def lanes(self) -> int: ...
+
+    def constants(self, kernel: Kernel, parameters: FloatArray) -> FloatArray:
+        """(d, nc) constants of the internal parameters (d, np), by `layout.parameter_names`."""
+        ...
+
+    def march(
+        self,
+        kernel: Kernel,
+        order: EliminationOrder,
+        c: FloatArray,
+        start: BatchStart,
+        s: FloatArray,
+        u: FloatArray,
+        columns: np.ndarray,
+        failed: np.ndarray,
+        settings: NewtonSettings,
+    ) -> BatchMarch:
+        """Equilibria of d designs at path coordinates s (d, n) under the controls u (d, n, nu).
+
+        columns: of the outputs that are asked for. failed: (d,) designs to leave out.
+        """
+        ...
+
+
 @dataclass(frozen=True)
 class BatchLibrary:
-    """A loaded library. path: where it lies."""
+    """A loaded library of one topology. path: where it lies."""
 
     path: Path
     library: ctypes.CDLL
     lanes: int
 
     def constants(self, kernel: Kernel, parameters: FloatArray) -> FloatArray:
-        """(d, nc) constants of the internal parameters (d, np), by `layout.parameter_names`."""
+        """See `BatchMarcher`."""
         given = np.ascontiguousarray(parameters, dtype=float)
         count = self.library.constants_count()
         out = np.zeros((len(given), count))
@@ -85,36 +121,114 @@ class BatchLibrary:
         failed: np.ndarray,
         settings: NewtonSettings,
     ) -> BatchMarch:
-        """Equilibria of d designs at path coordinates s (d, n) under the controls u (d, n, nu).
+        """See `BatchMarcher`."""
+        function = self.library.march_batch
+        return _march_by(function, kernel, order, c, start, s, u, columns, failed, settings)
 
-        columns: of the outputs that are asked for. failed: (d,) designs to leave out.
-        """
-        (d, n), (nx, nu, nz) = s.shape, (kernel.nx, kernel.nu, kernel.nz)
-        x, y, z = np.zeros((d, n, nx)), np.zeros((d, n, len(columns))), np.array(start.z, order="C")
-        verdict, counts = failed.astype(np.int32), np.zeros(4, dtype=np.int64)
-        numbers = [np.ascontiguousarray(a, dtype=float) for a in (c, start.s, start.x, start.u, s, u)]
-        c_in, s_known, x_known, u_start, s_in, u_in = (a.ctypes.data for a in numbers)
-        column = np.ascontiguousarray(columns, dtype=np.int32)
-        rows, _, tail, scale, slips = kernel.addresses
-        code = self.library.march_batch(
-            *(nx, len(order.row_of), nu, nz, kernel.ny, c.shape[1], len(kernel.rows), tail, scale),
-            *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
-            *(start.guess, kernel.coordinates, len(kernel.slips), slips),
-            *(array.ctypes.data for array in order.arrays),
-            *(rows, len(column), column.ctypes.data),
-            *(d, c_in, start.s.shape[1], s_known, x_known, u_start, z.ctypes.data),
-            *(n, s_in, u_in, x.ctypes.data, y.ctypes.data, verdict.ctypes.data, counts.ctypes.data),
-        )
-        if code:
-            raise MemoryError("the solver could not allocate its working memory")
-        return BatchMarch(x, y, z, verdict > 0, counts)
+
+class AdaptiveBatch:
+    """The programs of a topology, until so much has been asked of them that compiling pays.
+
+    Both give the same numbers, digit for digit.
+    """
+
+    def __init__(self, topology: Topology, instructions: InstructionSet) -> None:
+        self._topology, self._instructions = topology, instructions
+        programs = kernel_programs(topology)
+        self._library = _program_library(instructions)
+        self._programs = ProgramSet([programs[name] for name in MARCHED], instructions.lanes)
+        self._constants = ProgramFunction(programs["constants"])
+        self._lengths = np.array([programs["residual"].length, programs["jacobian"].length])
+        self._operations = 0
+        self._compiled: BatchLibrary | None = None
+        if stored_library(topology, _kind(instructions), instructions.build_flags) is not None:
+            self._compiled = batch_library(topology, instructions)
+
+    @property
+    def lanes(self) -> int:
+        return self._instructions.lanes
+
+    @property
+    def compiled(self) -> bool:
+        """Whether it is the compiled kernel that marches."""
+        return self._compiled is not None
+
+    def constants(self, kernel: Kernel, parameters: FloatArray) -> FloatArray:
+        """See `BatchMarcher`."""
+        return np.array([self._constants(row).copy() for row in parameters])
+
+    def march(
+        self,
+        kernel: Kernel,
+        order: EliminationOrder,
+        c: FloatArray,
+        start: BatchStart,
+        s: FloatArray,
+        u: FloatArray,
+        columns: np.ndarray,
+        failed: np.ndarray,
+        settings: NewtonSettings,
+    ) -> BatchMarch:
+        """See `BatchMarcher`."""
+        if self._compiled is None and self._operations >= OPERATIONS_BEFORE_COMPILING:
+            self._operations = 0
+            with suppress(CompileError):
+                self._compiled = batch_library(self._topology, self._instructions)
+        if self._compiled is not None:
+            return self._compiled.march(kernel, order, c, start, s, u, columns, failed, settings)
+        self._library.use_programs(self._programs.address)
+        function = self._library.march_batch
+        path = _march_by(function, kernel, order, c, start, s, u, columns, failed, settings)
+        self._operations += int(path.counts[:2] @ self._lengths)
+        return path
+
+
+def _march_by(
+    function: Callable[..., int],
+    kernel: Kernel,
+    order: EliminationOrder,
+    c: FloatArray,
+    start: BatchStart,
+    s: FloatArray,
+    u: FloatArray,
+    columns: np.ndarray,
+    failed: np.ndarray,
+    settings: NewtonSettings,
+) -> BatchMarch:
+    """function: `march_batch` of batch.c."""
+    (d, n), (nx, nu, nz) = s.shape, (kernel.nx, kernel.nu, kernel.nz)
+    x, y, z = np.zeros((d, n, nx)), np.zeros((d, n, len(columns))), np.array(start.z, order="C")
+    verdict, counts = failed.astype(np.int32), np.zeros(4, dtype=np.int64)
+    numbers = [np.ascontiguousarray(a, dtype=float) for a in (c, start.s, start.x, start.u, s, u)]
+    c_in, s_known, x_known, u_start, s_in, u_in = (a.ctypes.data for a in numbers)
+    column = np.ascontiguousarray(columns, dtype=np.int32)
+    rows, _, tail, scale, slips = kernel.addresses
+    code = function(
+        *(nx, len(order.row_of), nu, nz, kernel.ny, c.shape[1], len(kernel.rows), tail, scale),
+        *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
+        *(start.guess, kernel.coordinates, len(kernel.slips), slips),
+        *(array.ctypes.data for array in order.arrays),
+        *(rows, len(column), column.ctypes.data),
+        *(d, c_in, start.s.shape[1], s_known, x_known, u_start, z.ctypes.data),
+        *(n, s_in, u_in, x.ctypes.data, y.ctypes.data, verdict.ctypes.data, counts.ctypes.data),
+    )
+    if code:
+        raise MemoryError("the solver could not allocate its working memory")
+    return BatchMarch(x, y, z, verdict > 0, counts)
+
+
+def _dialect(instructions: InstructionSet) -> Dialect:
+    before = instructions.defines + LANES_HEADER.read_text()
+    return Dialect("lane", "lane_of({0})", LANE_EXPRESSIONS, before)
+
+
+def _driver(dialect: Dialect) -> str:
+    return dialect.before + MARCH_SOURCES[0].read_text() + BATCH_SOURCE.read_text()
 
 
 def _batch_sources(topology: Topology, instructions: InstructionSet) -> dict[str, str]:
-    functions = interpreted_functions(topology)
-    before = instructions.defines + LANES_HEADER.read_text()
-    dialect = Dialect("lane", "lane_of({0})", LANE_EXPRESSIONS, before)
-    out = {"batch": before + MARCH_HEADER.read_text() + BATCH_SOURCE.read_text()}
+    functions, dialect = interpreted_functions(topology), _dialect(instructions)
+    out = {"batch": _driver(dialect)}
     for name in MARCHED:
         out |= c_sources(functions[name], dialect)
     count = functions["constants"].nnz_out(0)
@@ -139,3 +253,24 @@ def batch_library(topology: Topology, instructions: InstructionSet | None = None
     library.march_batch.argtypes = _BATCH_ARGUMENTS
     library.constants_batch.argtypes = (*(_INT,) * 3, *(_ADDRESS,) * 2)
     return BatchLibrary(path, library, chosen.lanes)
+
+
+@lru_cache(maxsize=TOPOLOGY_CACHE)
+def adaptive_batch(topology: Topology, instructions: InstructionSet | None = None) -> AdaptiveBatch:
+    """What marches designs of a topology side by side, by default for this processor; CompileError when that
+    cannot or shall not be built."""
+    if os.environ.get(COMPILE_VARIABLE) == "0":
+        raise CompileError(f"{COMPILE_VARIABLE} is 0")
+    return AdaptiveBatch(topology, instructions or own_instruction_set())
+
+
+@lru_cache(maxsize=4)
+def _program_library(instructions: InstructionSet) -> ctypes.CDLL:
+    """The march and what carries programs out in lanes, the same for all topologies."""
+    dialect = _dialect(instructions)
+    sources = {"batch": NO_CONSTANTS + _driver(dialect), "program": interpreter_source(dialect)}
+    library = ctypes.CDLL(str(build(sources, instructions.build_flags)))
+    library.march_batch.argtypes = _BATCH_ARGUMENTS
+    library.use_programs.argtypes = (_ADDRESS,)
+    library.use_programs.restype = None
+    return library

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from doe_kc.axle.model import Axle
@@ -18,11 +17,12 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
-from doe_kc.solver.batch_library import BatchLibrary, BatchMarch, BatchStart
-from doe_kc.solver.compiled import compiled_kernel
+from doe_kc.solver.batch_library import BatchMarch, BatchMarcher, BatchStart
+from doe_kc.solver.compiled import adaptive_kernel
 from doe_kc.solver.elimination import EliminationOrder, elimination_order
-from doe_kc.solver.kernel import Buffered, kernel
+from doe_kc.solver.kernel import kernel, kernel_programs
 from doe_kc.solver.newton import NewtonSettings
+from doe_kc.solver.program_library import ProgramFunction
 from doe_kc.solver.result import Failure
 from doe_kc.solver.static import FAR, control_matrix, static_state
 from doe_kc.solver.suite import SEEDS, branch_inputs, ordered_cases
@@ -60,7 +60,7 @@ class BatchSolution:
 def solve_batch(
     axle: Axle,
     changes: Mapping[str, FloatArray],
-    library: BatchLibrary,
+    library: BatchMarcher,
     settings: NewtonSettings | None = None,
 ) -> BatchSolution:
     """All load cases of the axle with some internal values replaced: name -> (d,), at least one.
@@ -72,7 +72,7 @@ def solve_batch(
 
 class _BatchSuite:
     def __init__(
-        self, axle: Axle, changes: Mapping[str, FloatArray], library: BatchLibrary, settings: NewtonSettings
+        self, axle: Axle, changes: Mapping[str, FloatArray], library: BatchMarcher, settings: NewtonSettings
     ) -> None:
         self._axle, self._changes, self._library, self._settings = axle, changes, library, settings
         self._kernel = kernel(axle.topology)
@@ -186,8 +186,8 @@ class _ReferenceOrders:
     def begin(self, axle: Axle, settings: NewtonSettings) -> None:
         """Solve the axle, whose Jacobians the orders follow from."""
         self._kernel = k = kernel(axle.topology)
-        compiled = compiled_kernel(axle.topology)
-        self._jacobian = ca.external("jacobian", str(compiled.path))
+        compiled = adaptive_kernel(axle.topology)
+        self._jacobian = ProgramFunction(kernel_programs(axle.topology)["jacobian"])
         self._c = k.constant_values(dict(axle.values))
         static = static_state(k, compiled, self._c, axle, settings)
         if isinstance(static, Failure):
@@ -206,7 +206,7 @@ class _ReferenceOrders:
             if self._kernel.topology.frictional and not full:
                 u = u + control_matrix(self._kernel, {"friction": 1.0}, 1)[0]
             active = self._kernel.nx if full else self._kernel.nx - self._kernel.layout.tail
-            nonzeros = Buffered(self._jacobian)(x, self._c, u, z)
+            nonzeros = self._jacobian(x, self._c, u, z)
             self._orders[full, held] = elimination_order(self._kernel, nonzeros, active)
         return self._orders[full, held]
 

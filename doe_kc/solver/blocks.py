@@ -13,10 +13,9 @@ from scipy import sparse
 from doe_kc.axle.topology import EQUATIONS_CACHE, TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
-from doe_kc.solver.c_source import c_sources
-from doe_kc.solver.compiled import compiled_kernel
-from doe_kc.solver.kernel import Buffered, Kernel, interpreted_functions, kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
+from doe_kc.solver.kernel import Kernel, evaluator, interpreted_functions, kernel, kernel_programs
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError
+from doe_kc.solver.program_library import ProgramFunction, programs_for
 
 Points = Sequence[tuple[FloatArray, ...]]
 """(x, c, u, z) of equilibria."""
@@ -24,26 +23,24 @@ SINGULAR_EQUILIBRIUM = "singular equilibrium: no sensitivity exists"
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
-def blocks(topology: Topology) -> Mapping[str, ca.Function]:
+def blocks(topology: Topology) -> Mapping[str, ca.Function | ProgramFunction]:
     """Derivative functions by block name, of those to x, u and z: R_x is d(residual)/dx, and so on.
 
-    Compiled where that can be done: interpreted they take four times as long.
+    Programs where there is a C compiler: CasADi interprets them six times as slowly.
     """
-    names = [n for n in block_names(kernel(topology).nz > 0) if n.endswith(("_x", "_u", "_z")) and n != "R_x"]
-
-    def sources() -> dict[str, str]:
-        functions = interpreted_blocks(topology)
-        return {part: text for name in names for part, text in c_sources(functions[name]).items()}
-
     if os.environ.get(COMPILE_VARIABLE) == "0":
         return interpreted_blocks(topology)
+    names = [n for n in block_names(kernel(topology).nz > 0) if n.endswith(("_x", "_u", "_z"))]
+
+    def functions() -> dict[str, ca.Function]:
+        return {name: interpreted_blocks(topology)[name] for name in names if name != "R_x"}
+
     try:
-        own = str(library_of(topology, "blocks", sources, {}))
-        jacobian = str(compiled_kernel(topology).path)
+        programs = programs_for(topology, "blocks", functions)
+        programs["R_x"] = kernel_programs(topology)["jacobian"]
+        return {name: ProgramFunction(programs[name]) for name in names}
     except CompileError:
         return interpreted_blocks(topology)
-    out = {name: ca.external(_function(name), own) for name in names}
-    return out | {"R_x": ca.external("jacobian", jacobian)}
 
 
 def block_names(states: bool) -> list[str]:
@@ -77,9 +74,9 @@ def interpreted_blocks(topology: Topology) -> Mapping[str, ca.Function]:
 class Block:
     """A sparse derivative block evaluated through buffers."""
 
-    def __init__(self, function: ca.Function) -> None:
+    def __init__(self, function: ca.Function | ProgramFunction) -> None:
         pattern = function.sparsity_out(0)
-        self._evaluate = Buffered(function)
+        self._evaluate = evaluator(function)
         row, col = (np.array(places, dtype=int) for places in pattern.get_triplet())
         self._by_row = np.lexsort((col, row))
         self._row, self._col = row[self._by_row], col[self._by_row]

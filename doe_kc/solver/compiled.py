@@ -1,13 +1,16 @@
-"""Compiled kernels: generated C plus driver.c, loaded from a shared library."""
+"""Compiled marches: driver.c with the generated C of a topology, or with its programs until that pays."""
 
 from __future__ import annotations
 
 import ctypes
 import math
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
@@ -15,15 +18,22 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
-from doe_kc.solver.kernel import COMPILER_FLAGS, KERNEL_LIBRARY, MARCHED, Kernel, interpreted_functions
-from doe_kc.solver.library import handwritten, library_of
+from doe_kc.solver.kernel import (
+    COMPILER_FLAGS,
+    KERNEL_LIBRARY,
+    MARCHED,
+    Kernel,
+    interpreted_functions,
+    kernel_programs,
+)
+from doe_kc.solver.library import CompileError, handwritten, library_of, stored_library
 from doe_kc.solver.newton import NewtonSettings
+from doe_kc.solver.program_library import MARCH_SOURCES, ProgramSet, march_library
 
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
-DRIVER = Path(__file__).with_name("driver.c")
-MARCH_HEADER = Path(__file__).with_name("march.h")
-"""The constants of march.py and newton.py, for the compiled marches."""
+OPERATIONS_BEFORE_COMPILING = 8_000_000_000
+"""Of programs: by then they have taken 4 to 9 s more than compiled code, which is what compiling takes."""
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
     *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
@@ -32,9 +42,26 @@ MARCH_ARGUMENTS = (
 """Of `march` in driver.c, in its order."""
 
 
+class MarchLibrary(Protocol):
+    """Marches the axles of one topology."""
+
+    def march(
+        self,
+        kernel: Kernel,
+        c: FloatArray,
+        start: Start,
+        s: FloatArray,
+        u: FloatArray,
+        active: int,
+        settings: NewtonSettings,
+    ) -> March:
+        """See `march.march`."""
+        ...
+
+
 @dataclass(frozen=True)
 class CompiledKernel:
-    """A loaded library. path: where it lies."""
+    """A loaded library of one topology. path: where it lies."""
 
     path: Path
     library: ctypes.CDLL
@@ -50,13 +77,44 @@ class CompiledKernel:
         settings: NewtonSettings,
     ) -> March:
         """See `march.march`."""
-        capacity = SUBSTEPS * len(s) if kernel.nz else 0
-        path, passed = self._march(kernel, c, start, s, u, active, settings, capacity)
-        if passed > capacity:
-            path, _ = self._march(kernel, c, start, s, u, active, settings, passed)
-        return path
+        return _march_by(self.library.march, kernel, c, start, s, u, active, settings)
 
-    def _march(
+
+class AdaptiveKernel:
+    """The programs of a topology, until so much has been asked of them that compiling pays.
+
+    Both give the same numbers, digit for digit.
+    """
+
+    def __init__(self, topology: Topology) -> None:
+        self._topology = topology
+        programs = kernel_programs(topology)
+        self._library = march_library()
+        self._library.march.argtypes = MARCH_ARGUMENTS
+        self._programs = ProgramSet([programs[name] for name in MARCHED])
+        self._lengths = np.array([programs["residual"].length, programs["jacobian"].length])
+        self._operations = 0
+        self._compiled: CompiledKernel | None = None
+        if stored_library(topology, KERNEL_LIBRARY, COMPILER_FLAGS) is not None:
+            self._compiled = compiled_kernel(topology)
+
+    @property
+    def compiled(self) -> bool:
+        """Whether it is the compiled kernel that marches."""
+        return self._compiled is not None
+
+    @property
+    def share_before_compiling(self) -> float:
+        """Operations of the programs, over those after which compiling pays; 0 when that is done."""
+        return 0.0 if self.compiled else self._operations / OPERATIONS_BEFORE_COMPILING
+
+    def compile(self) -> None:
+        """Compile now; where that fails, the programs go on."""
+        self._operations = 0
+        with suppress(CompileError):
+            self._compiled = compiled_kernel(self._topology)
+
+    def march(
         self,
         kernel: Kernel,
         c: FloatArray,
@@ -65,38 +123,77 @@ class CompiledKernel:
         u: FloatArray,
         active: int,
         settings: NewtonSettings,
-        capacity: int,
-    ) -> tuple[March, int]:
-        """The path, with `capacity` of its substeps, and how many there were."""
-        n, length = len(s), 2 + kernel.nu + kernel.nz + kernel.nx
-        (x, z, y, level, end), out = _zeros((n, kernel.nx), (n, kernel.nz), (n, kernel.ny), (n,), (length,))
-        rows, whole = np.zeros((capacity, length)), np.zeros(n + 1, dtype=np.int32)
-        counts = np.zeros(4, dtype=np.int64)
-        known, (s_known, x_known, u_start, z_start, s_in, u_in, c_in) = _joined(
-            start.s, start.x, start.u, start.z, s, u, c
-        )
-        jacobian_rows, jacobian_cols, tail, scale, slips = kernel.addresses
-        iterations_out = whole.ctypes.data
-        code = self.library.march(
-            *(kernel.nx, active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
-            *(jacobian_rows, jacobian_cols, tail, scale, c_in),
-            *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
-            *(start.guess, kernel.coordinates, len(kernel.slips), slips),
-            *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
-            *(*out[:3], iterations_out, *out[3:], counts.ctypes.data),
-            *(capacity, rows.ctypes.data, iterations_out + n * whole.itemsize),
-        )
-        del known  # not before the library has read it
-        iterations, passed = whole[:n], int(whole[n])
-        if code < 0:
-            raise MemoryError("the solver could not allocate its working memory")
-        between = substeps(kernel, rows[:passed]) if passed else None
-        if not code:
-            return March(x, z, y, iterations, level, None, counts, None, between), passed
-        (s_end, snap), rest = end[:2], end[2:]
-        u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
-        halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
-        return March(x, z, y, iterations, level, code - 1, counts, halt, between), passed
+    ) -> March:
+        """See `march.march`."""
+        if self.share_before_compiling >= 1.0:
+            self.compile()
+        if self._compiled is not None:
+            return self._compiled.march(kernel, c, start, s, u, active, settings)
+        self._library.use_programs(self._programs.address)
+        path = _march_by(self._library.march, kernel, c, start, s, u, active, settings)
+        self._operations += int(path.counts[:2] @ self._lengths)
+        return path
+
+
+def _march_by(
+    function: Callable[..., int],
+    kernel: Kernel,
+    c: FloatArray,
+    start: Start,
+    s: FloatArray,
+    u: FloatArray,
+    active: int,
+    settings: NewtonSettings,
+) -> March:
+    """function: `march` of driver.c."""
+    capacity = SUBSTEPS * len(s) if kernel.nz else 0
+    path, passed = _march_with(function, kernel, c, start, s, u, active, settings, capacity)
+    if passed > capacity:
+        path, _ = _march_with(function, kernel, c, start, s, u, active, settings, passed)
+    return path
+
+
+def _march_with(
+    function: Callable[..., int],
+    kernel: Kernel,
+    c: FloatArray,
+    start: Start,
+    s: FloatArray,
+    u: FloatArray,
+    active: int,
+    settings: NewtonSettings,
+    capacity: int,
+) -> tuple[March, int]:
+    """The path, with `capacity` of its substeps, and how many there were."""
+    n, length = len(s), 2 + kernel.nu + kernel.nz + kernel.nx
+    (x, z, y, level, end), out = _zeros((n, kernel.nx), (n, kernel.nz), (n, kernel.ny), (n,), (length,))
+    rows, whole = np.zeros((capacity, length)), np.zeros(n + 1, dtype=np.int32)
+    counts = np.zeros(4, dtype=np.int64)
+    known, (s_known, x_known, u_start, z_start, s_in, u_in, c_in) = _joined(
+        start.s, start.x, start.u, start.z, s, u, c
+    )
+    jacobian_rows, jacobian_cols, tail, scale, slips = kernel.addresses
+    iterations_out = whole.ctypes.data
+    code = function(
+        *(kernel.nx, active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
+        *(jacobian_rows, jacobian_cols, tail, scale, c_in),
+        *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
+        *(start.guess, kernel.coordinates, len(kernel.slips), slips),
+        *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
+        *(*out[:3], iterations_out, *out[3:], counts.ctypes.data),
+        *(capacity, rows.ctypes.data, iterations_out + n * whole.itemsize),
+    )
+    del known  # not before the library has read it
+    iterations, passed = whole[:n], int(whole[n])
+    if code < 0:
+        raise MemoryError("the solver could not allocate its working memory")
+    between = substeps(kernel, rows[:passed]) if passed else None
+    if not code:
+        return March(x, z, y, iterations, level, None, counts, None, between), passed
+    (s_end, snap), rest = end[:2], end[2:]
+    u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
+    halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
+    return March(x, z, y, iterations, level, code - 1, counts, halt, between), passed
 
 
 def _zeros(*shapes: tuple[int, ...]) -> tuple[list[FloatArray], list[int]]:
@@ -121,7 +218,7 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
 
     def sources() -> dict[str, str]:
         functions = interpreted_functions(topology)
-        out = {"driver": handwritten(MARCH_HEADER, DRIVER)}
+        out = {"driver": handwritten(*MARCH_SOURCES)}
         for name in (*MARCHED, "constants"):
             out |= c_sources(functions[name])
         return out
@@ -130,3 +227,9 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
     library = ctypes.CDLL(str(path))
     library.march.argtypes = MARCH_ARGUMENTS
     return CompiledKernel(path, library)
+
+
+@lru_cache(maxsize=TOPOLOGY_CACHE)
+def adaptive_kernel(topology: Topology) -> AdaptiveKernel:
+    """What marches a topology; CompileError when the library of programs cannot be built."""
+    return AdaptiveKernel(topology)

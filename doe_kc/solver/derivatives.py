@@ -1,4 +1,4 @@
-"""Derivatives of consecutive equilibria of one axle to parameters: interpreted, or one call of compiled code.
+"""Derivatives of consecutive equilibria of one axle to parameters: in Python, or one call of compiled code.
 
 R(x, c, u, z) = 0 at an equilibrium, so dx = -J^-1 (R_c dc + R_u du + R_z dz); the outputs and the friction
 states after it follow. The parameters move the constants c, and the controls u by directions of the datum.
@@ -6,39 +6,21 @@ states after it follow. The parameters move the constants c, and the controls u 
 
 from __future__ import annotations
 
-import ctypes
-import os
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
-from pathlib import Path
+from functools import cached_property
 from typing import Protocol
 
 import casadi as ca
 import numpy as np
 from scipy import sparse
 
-from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
+from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.blocks import (
-    SINGULAR_EQUILIBRIUM,
-    Block,
-    Points,
-    block_names,
-    equilibrium_change,
-    interpreted_blocks,
-)
-from doe_kc.solver.c_source import c_sources
+from doe_kc.solver.blocks import SINGULAR_EQUILIBRIUM, Block, Points, equilibrium_change, interpreted_blocks
+from doe_kc.solver.derivative_library import SensitivityLibrary, adaptive_derivatives
 from doe_kc.solver.kernel import Kernel, kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of
-
-SENSITIVITY = Path(__file__).with_name("sensitivity.c")
-DERIVATIVE_FLAGS = {"sensitivity": "-O3"}
-"""By part; the rest -O1."""
-_INT, _ADDRESS = ctypes.c_int, ctypes.c_void_p
-_ARGUMENTS = (
-    *(_INT,) * 4, *(_ADDRESS,) * 2, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 6,
-)  # fmt: skip
-"""Of `sensitivity` in sensitivity.c, in its order."""
+from doe_kc.solver.library import CompileError
+from doe_kc.solver.program_library import ProgramFunction
 
 
 @dataclass(frozen=True)
@@ -85,17 +67,17 @@ class Derivatives(Protocol):
 
 
 def derivatives_of(topology: Topology, c: FloatArray, dc: sparse.csr_array) -> Derivatives:
-    """Compiled where that can be done. c: (nc,) constants; dc: (nc, np) their derivatives."""
+    """By compiled code where that can be done. c: (nc,) constants; dc: (nc, np) their derivatives."""
     try:
-        return CompiledDerivatives(kernel(topology), c, dc, derivative_library(topology))
+        return CompiledDerivatives(kernel(topology), c, dc, adaptive_derivatives(topology))
     except CompileError:
         return InterpretedDerivatives(kernel(topology), c, dc)
 
 
-def constants_gradient(topology: Topology) -> ca.Function:
+def constants_gradient(topology: Topology) -> ca.Function | ProgramFunction:
     """(nc, internal parameters) derivative of the constants."""
     try:
-        return ca.external("constants_block", str(derivative_library(topology).path))
+        return adaptive_derivatives(topology).constants
     except CompileError:
         return interpreted_blocks(topology)["constants"]
 
@@ -153,41 +135,13 @@ class InterpretedDerivatives:
 
 
 @dataclass(frozen=True)
-class DerivativeLibrary:
-    """A loaded library of one topology's derivatives. path: where it lies."""
-
-    path: Path
-    library: ctypes.CDLL
-
-
-@lru_cache(maxsize=TOPOLOGY_CACHE)
-def derivative_library(topology: Topology) -> DerivativeLibrary:
-    """Build or load the library of a topology; CompileError when that cannot or shall not be done."""
-    if os.environ.get(COMPILE_VARIABLE) == "0":
-        raise CompileError(f"{COMPILE_VARIABLE} is 0")
-
-    def sources() -> dict[str, str]:
-        blocks = interpreted_blocks(topology)
-        symbols = blocks["R_x"].sx_in()
-        names = [n for n in block_names(kernel(topology).nz > 0) if n != "constants"]
-        joint = ca.Function("derivatives", symbols, [blocks[n](*symbols) for n in names], {"cse": True})
-        generated = c_sources(joint) | c_sources(blocks["constants"])
-        return generated | {"sensitivity": handwritten(SENSITIVITY)}
-
-    path = library_of(topology, "derivatives", sources, DERIVATIVE_FLAGS)
-    library = ctypes.CDLL(str(path))
-    library.sensitivity.argtypes = _ARGUMENTS
-    return DerivativeLibrary(path, library)
-
-
-@dataclass(frozen=True)
 class CompiledDerivatives:
     """All points of a sequence in one call: one factorization a point for all parameters."""
 
     kernel: Kernel
     c: FloatArray
     dc: sparse.csr_array
-    library: DerivativeLibrary
+    library: SensitivityLibrary
 
     @cached_property
     def _sparse(self) -> tuple[np.ndarray, np.ndarray, FloatArray]:
@@ -216,7 +170,8 @@ class CompiledDerivatives:
             for a in (states.x, states.u, states.z, states.gradient, directions)
         )
         start, column, value = (a.ctypes.data for a in self._sparse)
-        code = self.library.library.sensitivity(
+        code = self.library.sensitivity(
+            n,
             *(k.nx, k.nu, k.nz, k.ny, k.scale.ctypes.data, self.c.ctypes.data),
             *(n, x.ctypes.data, u.ctypes.data, z.ctypes.data, columns, start, column, value),
             *(len(way), way.ctypes.data, gradient.ctypes.data, place.ctypes.data),

@@ -39,7 +39,7 @@ class InstructionSet:
         """Of `library.library_of`."""
         flags = " ".join(self.flags)
         return {
-            "": f"-O1 {flags}",
+            "": f"-O1 -ffp-contract=off {flags}",
             "batch": f"-O3 {flags}",
             "link": "-lmvec -lm" if self.library else "-lm",
         }

@@ -16,6 +16,8 @@ from doe_kc.solver.assembly import assemble
 from doe_kc.solver.builder import FORCE_SCALE
 from doe_kc.solver.layout import EquationLayout, layout_of, layout_text, read_layout
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, store_text, stored_library, stored_text
+from doe_kc.solver.program import Program
+from doe_kc.solver.program_library import ProgramFunction, programs_for
 
 COMPILER_FLAGS = {"driver": "-O3"}
 """By part; the rest -O1."""
@@ -42,13 +44,14 @@ class Kernel:
         return interpreted_functions(self.topology)
 
     @cached_property
-    def constants(self) -> ca.Function:
+    def constants(self) -> ca.Function | ProgramFunction:
         """(nc,) of the parameters p; compiled where the kernel's library is there already."""
         if os.environ.get(COMPILE_VARIABLE) != "0":
             with suppress(CompileError):
                 path = stored_library(self.topology, KERNEL_LIBRARY, COMPILER_FLAGS)
                 if path is not None:
                     return ca.external("constants", str(path))
+                return ProgramFunction(kernel_programs(self.topology)["constants"])
         return self.functions["constants"]
 
     @cached_property
@@ -115,7 +118,7 @@ class Kernel:
     def constant_values(self, values: dict[str, float]) -> FloatArray:
         """(nc,) constants from the axle's internal values."""
         p = np.array([values[name] for name in self.layout.parameter_names])
-        return Buffered(self.constants)(p).copy()
+        return evaluator(self.constants)(p).copy()
 
 
 @lru_cache(maxsize=EQUATIONS_CACHE)
@@ -135,6 +138,12 @@ def interpreted_functions(topology: Topology) -> dict[str, ca.Function]:
         "state_update": function("state_update", ca.densify(eq.next_state)),
         "constants": ca.Function("constants", [eq.p], [ca.densify(eq.constants)], {"cse": True}),
     }
+
+
+@lru_cache(maxsize=TOPOLOGY_CACHE)
+def kernel_programs(topology: Topology) -> dict[str, Program]:
+    """The same as programs."""
+    return programs_for(topology, KERNEL_LIBRARY, lambda: interpreted_functions(topology))
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
@@ -170,3 +179,8 @@ class Buffered:
                 array[:size] = value
         self._evaluate()
         return self.result[: self._size]
+
+
+def evaluator(function: ca.Function | ProgramFunction) -> Buffered | ProgramFunction:
+    """What evaluates a function's only result, in a buffer that the next call overwrites."""
+    return function if isinstance(function, ProgramFunction) else Buffered(function)

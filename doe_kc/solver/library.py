@@ -9,8 +9,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from functools import lru_cache
 from pathlib import Path
 from types import MappingProxyType
@@ -19,10 +19,14 @@ import casadi as ca
 
 from doe_kc.axle.topology import Topology
 
+if sys.platform != "win32":
+    import fcntl
+
 CACHE_VARIABLE = "DOE_KC_CACHE"
 COMPILE_VARIABLE = "DOE_KC_COMPILE"
 """Set to 0 to stay interpreted."""
-DEFAULT_FLAGS = "-O1"
+DEFAULT_FLAGS = "-O1 -ffp-contract=off"
+"""Every operation rounds by itself, as in program.c: both give the same numbers on any processor."""
 COMPILE_TIMEOUT = 600.0
 """s; of a machine that does much else."""
 PACKAGE = Path(__file__).parents[1]
@@ -59,17 +63,22 @@ def library_of(
     """Shared library of one kind of a topology's functions; sources: C by part name, asked for if need be.
 
     Generating them takes longer than loading: an entry of the cache says which library follows from the
-    topology and the package's own sources. CompileError as `build`.
+    topology and the package's own sources. Of several processes that ask for one at a time, one builds it.
+    CompileError as `build`.
     """
     path = stored_library(topology, kind, flags)
-    if path is None:
-        path = build(sources(), flags)
-        entry = _library_entry(topology, kind, flags)
-        try:
-            _write_entry(entry, path.name)
-        except OSError as error:
-            raise _unusable(entry.parent, error) from error
-    return path
+    if path is not None:
+        return path
+    entry = _library_entry(topology, kind, flags)
+    try:
+        with _alone(entry.with_suffix(".lock")):
+            path = stored_library(topology, kind, flags)
+            if path is None:
+                path = build(sources(), flags)
+                _write_entry(entry, path.name.encode())
+            return path
+    except OSError as error:
+        raise _unusable(entry.parent, error) from error
 
 
 def stored_library(topology: Topology, kind: str, flags: Mapping[str, str]) -> Path | None:
@@ -85,34 +94,61 @@ def stored_library(topology: Topology, kind: str, flags: Mapping[str, str]) -> P
 def stored_text(topology: Topology, kind: str) -> str | None:
     """What `store_text` put into the cache for a topology and the package's own sources."""
     with suppress(OSError, ValueError):
-        return _text_entry(topology, kind).read_text(encoding="utf-8")
+        return _entry(topology, kind, ".json").read_text(encoding="utf-8")
     return None
 
 
 def store_text(topology: Topology, kind: str, text: str) -> None:
     """Keep a text that follows from a topology; a cache that cannot be written is passed over."""
+    _store(_entry(topology, kind, ".json"), text.encode())
+
+
+def stored_bytes(topology: Topology, kind: str) -> bytes | None:
+    """What `store_bytes` put into the cache for a topology and the package's own sources."""
     with suppress(OSError):
-        cache_folder().mkdir(parents=True, exist_ok=True)
-        _write_entry(_text_entry(topology, kind), text)
+        return _entry(topology, kind, ".npz").read_bytes()
+    return None
+
+
+def store_bytes(topology: Topology, kind: str, content: bytes) -> None:
+    """Keep arrays that follow from a topology; a cache that cannot be written is passed over."""
+    _store(_entry(topology, kind, ".npz"), content)
+
+
+@contextmanager
+def _alone(lock: Path) -> Iterator[None]:
+    """Until no other process holds the lock, which the system takes from one that dies."""
+    lock.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        with lock.open("w") as file:
+            if sys.platform != "win32":
+                fcntl.flock(file, fcntl.LOCK_EX)
+            yield
+    finally:
+        lock.unlink(missing_ok=True)
 
 
 def _library_entry(topology: Topology, kind: str, flags: Mapping[str, str]) -> Path:
     return cache_folder() / f"{_digest(_compiler(), flags, *_origin(topology, kind))}.txt"
 
 
-def _text_entry(topology: Topology, kind: str) -> Path:
-    return cache_folder() / f"{_digest('', {}, *_origin(topology, kind))}.json"
+def _entry(topology: Topology, kind: str, suffix: str) -> Path:
+    return cache_folder() / f"{_digest('', {}, *_origin(topology, kind))}{suffix}"
 
 
 def _origin(topology: Topology, kind: str) -> tuple[str, ...]:
     return kind, repr(topology), ca.CasadiMeta.version(), _origins()
 
 
-def _write_entry(entry: Path, text: str) -> None:
-    with tempfile.NamedTemporaryFile(
-        "w", dir=entry.parent, suffix=".tmp", delete=False, encoding="utf-8"
-    ) as file:
-        file.write(text)
+def _store(entry: Path, content: bytes) -> None:
+    with suppress(OSError):
+        entry.parent.mkdir(parents=True, exist_ok=True)
+        _write_entry(entry, content)
+
+
+def _write_entry(entry: Path, content: bytes) -> None:
+    with tempfile.NamedTemporaryFile(dir=entry.parent, suffix=".tmp", delete=False) as file:
+        file.write(content)
     Path(file.name).replace(entry)
 
 
@@ -147,14 +183,16 @@ def build(sources: dict[str, str], flags: Mapping[str, str] = MappingProxyType({
     try:
         if library_path := cached(folder, name):
             return library_path
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            library = _compile(compiler, Path(scratch), sources, flags)
-            target = folder / f"{name}-{fingerprint(library)}.so"
-            library.replace(target)
+        with _alone(folder / f"{name}.lock"):
+            if library_path := cached(folder, name):
+                return library_path
+            with tempfile.TemporaryDirectory(dir=folder) as scratch:
+                library = _compile(compiler, Path(scratch), sources, flags)
+                target = folder / f"{name}-{fingerprint(library)}.so"
+                library.replace(target)
+            return target
     except OSError as error:
         raise _unusable(folder, error) from error
-    return target
 
 
 def cached(folder: Path, name: str) -> Path | None:

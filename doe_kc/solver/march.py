@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.compiled import CompiledKernel
+from doe_kc.solver.compiled import MarchLibrary
 from doe_kc.solver.equilibria import Halt, March, Start, substeps
 from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.solver.newton import Iterate, Newton, NewtonSettings
@@ -39,7 +39,7 @@ RETURN = 0.01
 
 def march(
     kernel: Kernel,
-    compiled: CompiledKernel | None,
+    compiled: MarchLibrary | None,
     c: FloatArray,
     start: Start,
     s: FloatArray,

@@ -9,7 +9,7 @@ import numpy as np
 from doe_kc.axle.model import Axle
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum
-from doe_kc.solver.compiled import CompiledKernel
+from doe_kc.solver.compiled import MarchLibrary
 from doe_kc.solver.diagnosis import static_failure, sweep_failure
 from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel
@@ -35,7 +35,7 @@ LOADS = ("tyre.static_load", "damper.gas_force")
 
 
 def static_state(
-    kernel: Kernel, compiled: CompiledKernel | None, c: FloatArray, axle: Axle, settings: NewtonSettings
+    kernel: Kernel, compiled: MarchLibrary | None, c: FloatArray, axle: Axle, settings: NewtonSettings
 ) -> StaticState | Failure:
     """The state at rest, or why there is none.
 
@@ -71,7 +71,7 @@ def static_state(
 
 def _at_design_height(
     kernel: Kernel,
-    compiled: CompiledKernel | None,
+    compiled: MarchLibrary | None,
     c: FloatArray,
     axle: Axle,
     u: FloatArray,
@@ -89,7 +89,7 @@ def _at_design_height(
 
 
 def _ramped(
-    kernel: Kernel, compiled: CompiledKernel | None, axle: Axle, u: FloatArray, settings: NewtonSettings
+    kernel: Kernel, compiled: MarchLibrary | None, axle: Axle, u: FloatArray, settings: NewtonSettings
 ) -> FloatArray | Failure:
     """(nx,) the state reached from the unloaded axle, whose bushings are stress-free at design."""
     x, share, part = np.zeros(kernel.nx), 0.0, 0.25

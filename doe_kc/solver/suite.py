@@ -14,7 +14,7 @@ from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER, LoadCase
-from doe_kc.solver.compiled import CompiledKernel, compiled_kernel
+from doe_kc.solver.compiled import MarchLibrary, adaptive_kernel, compiled_kernel
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel, kernel
@@ -46,8 +46,8 @@ def solve(
 ) -> Solution:
     """All equilibria of the axle's load cases (all, or those named in `cases`).
 
-    compiled: None takes compiled kernels when a C compiler is there. throw=False returns a failure as
-    `Solution.failure`; throw=True raises NotConverged.
+    compiled: None takes compiled code when a C compiler is there, False Python. throw=False returns a failure
+    as `Solution.failure`; throw=True raises NotConverged.
     """
     chosen = _chosen(axle, cases)
     k = kernel(axle.topology)
@@ -94,12 +94,15 @@ def _ended(
     return Solution(axle.name, k.layout.output_names, static, cases, failure, axle.half_track)
 
 
-def library_for(topology: Topology, compiled: bool | None) -> CompiledKernel | None:
-    """The compiled kernel, or None to interpret; one notice when there is no compiler."""
+def library_for(topology: Topology, compiled: bool | None) -> MarchLibrary | None:
+    """What marches in compiled code, or None for Python; one notice when there is no compiler.
+
+    compiled: True compiles the topology's own kernel now, None when that pays.
+    """
     if compiled is False or (compiled is None and os.environ.get(COMPILE_VARIABLE) == "0"):
         return None
     try:
-        return compiled_kernel(topology)
+        return compiled_kernel(topology) if compiled else adaptive_kernel(topology)
     except CompileError as error:
         if compiled:
             raise
@@ -129,7 +132,7 @@ def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
 
 def _solve_case(
     k: Kernel,
-    library: CompiledKernel | None,
+    library: MarchLibrary | None,
     c: FloatArray,
     static: StaticState,
     case: LoadCase,

@@ -21,11 +21,12 @@ from doe_kc.true_solver.outcome import Outcome, failure, from_curves
 from doe_kc.true_solver.own_batch import batch_outcomes, can_batch
 from doe_kc.true_solver.protocol import Values, digest
 
-COMPILE_FROM = 50
-"""Designs of one topology from which compiling it, some seconds, pays."""
+PROGRAMS_FROM = 5
+"""Designs of one topology from which making its programs, a third of a second, pays: in Python one takes a
+tenth of a second."""
 BATCH_FROM = 100
 """Designs of one topology that are asked for at once from which they are solved side by side: a fifth of the
-time each, once another kernel has been compiled for some seconds. It decides by the designs asked for alone,
+time each. It decides by the designs asked for alone,
 so that the last digits do not depend on the number of workers or on what the cache holds."""
 
 
@@ -33,8 +34,8 @@ so that the last digits do not depend on the number of workers or on what the ca
 class AxleSolver:
     """windows: as in `reduce_all`. curves: whether outcomes hold them, or characteristics alone.
 
-    compiled: topologies to run compiled where that is possible; batched: those of which many designs are
-    solved side by side. asked: how many designs of each topology have been announced by `prepare`.
+    compiled: topologies to run in compiled code where that can be done; batched: those of which many designs
+    are solved side by side. asked: how many designs of each topology have been announced by `prepare`.
     """
 
     axle: Axle
@@ -63,13 +64,12 @@ class AxleSolver:
         return digest(self.describe())
 
     def prepare(self, designs: Sequence[Values]) -> AxleSolver:
-        """Compiles the axle's own topology, and those that enough designs switch to (a strut made flexible).
-
-        In this process, so that forked workers inherit the equations and none compiles for itself.
+        """Makes programs of the axle's own topology, and of those that enough designs switch to (a strut made
+        flexible): in this process, so that forked workers inherit them.
         """
         now = Counter(topology_with(self.axle, values) for values in designs)
         asked = Counter(self.asked) + now
-        compiled = {self.axle.topology} | {t for t, n in asked.items() if n >= COMPILE_FROM}
+        compiled = {self.axle.topology} | {t for t, n in asked.items() if n >= PROGRAMS_FROM}
         for topology in compiled - self.compiled:
             library_for(topology, None)
         batched = frozenset(t for t, n in now.items() if n >= BATCH_FROM and can_batch(t))

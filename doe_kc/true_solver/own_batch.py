@@ -15,7 +15,7 @@ from doe_kc.characteristics import CHARACTERISTICS, reduce_batch
 from doe_kc.curves import CurveBatch
 from doe_kc.effects import EFFECTS, observed
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.batch_library import batch_library
+from doe_kc.solver.batch_library import adaptive_batch
 from doe_kc.solver.batch_suite import solve_batch
 from doe_kc.solver.curve_set import curve_batch
 from doe_kc.solver.library import CompileError
@@ -23,9 +23,9 @@ from doe_kc.true_solver.outcome import Outcome, from_curves, is_known
 
 
 def can_batch(topology: Topology) -> bool:
-    """Whether designs of a topology can be solved side by side here; compiles what that needs."""
+    """Whether designs of a topology can be solved side by side here; makes what that needs."""
     try:
-        batch_library(topology)
+        adaptive_batch(topology)
     except CompileError:
         return False
     return True
@@ -46,7 +46,7 @@ def batch_outcomes(
     started = time.perf_counter()
     changes = parameters.changes(values) or {"ride_height": np.full(len(values), axle.values["ride_height"])}
     try:
-        solution = solve_batch(replace(axle, topology=topology), changes, batch_library(topology))
+        solution = solve_batch(replace(axle, topology=topology), changes, adaptive_batch(topology))
     except np.linalg.LinAlgError:  # the axle itself is singular, others of its topology need not be
         return [None] * len(values)
     known = curve_batch(solution)

@@ -8,12 +8,6 @@ from doe_kc.reports import comparison_figures, correlation_figures, influence_fi
 from doe_kc.workflow import write_discovery
 
 
-@pytest.fixture(autouse=True)
-def interpreted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing is compiled, here or in a process started from here."""
-    monkeypatch.setenv("DOE_KC_COMPILE", "0")
-
-
 @pytest.fixture
 def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     """Figures take seconds; their own tests draw them."""

@@ -72,7 +72,6 @@ def example(tmp_path_factory: pytest.TempPathFactory) -> Correlated:
     """The study of `study_in` with its default options, correlated with one worker; not to be changed."""
     study = study_in(tmp_path_factory.mktemp("example"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("DOE_KC_COMPILE", "0")
         patch.setattr(correlation_figures, "write_correlation_figures", lambda *_, **__: [])
         return Correlated(study, document_of(study))
 

@@ -116,9 +116,7 @@ def as_toml(value: Any) -> str:
 def nominal_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Files of the unchanged axle."""
     folder = tmp_path_factory.mktemp("nominal")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("DOE_KC_COMPILE", "0")
-        succeeds("simulate", AXLE, "--out", folder / "new" / "out", "--json", folder / "deep" / "f.json")
+    succeeds("simulate", AXLE, "--out", folder / "new" / "out", "--json", folder / "deep" / "f.json")
     return folder
 
 

@@ -112,7 +112,6 @@ def reduced(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     folder = tmp_path_factory.mktemp("reduced")
     study = write_study(folder, records={"vertical": ("vertical.csv",)} | LATERAL)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("DOE_KC_COMPILE", "0")
         patch.setattr(rig_figures, "write_rig_figures", lambda *_, **__: [])
         patch.setattr(comparison_figures, "write_comparison_figures", lambda *_, **__: [])
         outcome = succeeds("reduce", study, "--out", folder / "results", "--json", folder / "r.json")

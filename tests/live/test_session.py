@@ -12,10 +12,13 @@ import pytest
 from doe_kc.axle import with_values
 from doe_kc.characteristics import CHARACTERISTICS, reduce_all
 from doe_kc.ground.errors import InputError
+from doe_kc.live.answer import COMPILE_SHARE
 from doe_kc.live.messages import LONGEST_MESSAGE, read_message
 from doe_kc.live.session import Session, Update
+from doe_kc.solver.compiled import AdaptiveKernel
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.suite import solve
+from doe_kc.solver.library import find_compiler
+from doe_kc.solver.suite import library_for, solve
 from tests.live.cases import EXAMPLES, session
 
 
@@ -108,6 +111,21 @@ def test_an_effect_switches_sliders_and_is_undone() -> None:
     say(live, kind="undo")
     assert not live.model.axle.effects
     live.compilation.wait()
+
+
+@pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
+def test_what_is_asked_for_often_is_compiled_by_a_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun: list[AdaptiveKernel] = []
+    monkeypatch.setattr(AdaptiveKernel, "compile", lambda kernel: begun.append(kernel))
+    monkeypatch.setattr(AdaptiveKernel, "share_before_compiling", 0.1)
+    live = session()
+    topology = live.model.axle.topology
+    assert live.compilation.use_now(topology) is None and not begun
+    monkeypatch.setattr(AdaptiveKernel, "share_before_compiling", COMPILE_SHARE)
+    for _ in range(3):
+        assert live.compilation.use_now(topology) is None
+    live.compilation.wait()
+    assert begun == [library_for(topology, None)]
 
 
 def test_snapshots_are_kept_restored_and_dropped() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,8 @@ from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.examples import EXAMPLE_TYPES, example_folder
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases.vertical import Vertical
-from doe_kc.solver.batch_library import BatchLibrary, batch_library
+from doe_kc.solver import batch_library as batches
+from doe_kc.solver.batch_library import AdaptiveBatch, BatchLibrary, adaptive_batch, batch_library
 from doe_kc.solver.batch_suite import RESPONSE_COLUMNS, BatchSolution, solve_batch
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.library import find_compiler
@@ -26,7 +27,7 @@ from tests.reference import nominal
 
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 QUICKLY_COMPILED = InstructionSet(4, (*own_instruction_set().flags, "-O0"), own_instruction_set().library)
-"""Of libraries that serve one test."""
+"""Of a library that serves one test."""
 DESIGNS = 5
 CLOSE = 1e-9
 PATHS = ("WLC.z", "WLC.y", "spring.rate", "tyre.static_load")
@@ -94,8 +95,7 @@ def test_every_type_side_by_side_is_every_design_alone(name: str) -> None:
         axle, load_cases={**axle.load_cases, "vertical": wheel} if "five" in name else axle.load_cases
     )
     changes = scattered(axle)
-    chosen = None if name == NOMINAL else QUICKLY_COMPILED
-    assert_the_same(axle, changes, solve_batch(axle, changes, batch_library(axle.topology, chosen)))
+    assert_the_same(axle, changes, solve_batch(axle, changes, adaptive_batch(axle.topology)))
 
 
 @pytest.mark.parametrize("which", EFFECTS_OF, ids=lambda w: f"{w[0]}, {'friction' if w[1] else 'elastic'}")
@@ -103,11 +103,32 @@ def test_every_effect_side_by_side_is_every_design_alone(which: tuple[str, bool]
     axle = EFFECTS_OF[which]
     assert axle.topology.frictional == which[1]
     changes = scattered(axle, 3 if which[1] else DESIGNS)
-    assert_the_same(axle, changes, solve_batch(axle, changes, batch_library(axle.topology, QUICKLY_COMPILED)))
+    assert_the_same(axle, changes, solve_batch(axle, changes, adaptive_batch(axle.topology)))
 
 
 def test_the_effects_of_these_tests_are_all_that_there_are() -> None:
     assert {ident for axle in EFFECTS_OF.values() for ident in axle.effects} == set(EFFECTS)
+
+
+def of_friction() -> Axle:
+    """Of the reference axle, all with friction."""
+    return EFFECTS_OF[NOMINAL, True]
+
+
+@pytest.mark.parametrize("axle", [nominal, of_friction])
+def test_programs_give_the_digits_of_compiled_code(
+    axle: Callable[[], Axle], library: BatchLibrary, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    topology, changes = axle().topology, scattered(axle(), 3)
+    quick = topology.frictional
+    compiled = batch_library(topology, QUICKLY_COMPILED) if quick else library
+    monkeypatch.setattr(batches, "stored_library", lambda *_: None)
+    programs = AdaptiveBatch(topology, QUICKLY_COMPILED if quick else own_instruction_set())
+    assert not programs.compiled
+    one, other = (solve_batch(axle(), changes, own) for own in (compiled, programs))
+    for ident, (_, branches) in one.cases.items():
+        for mine, theirs in zip(branches, other.cases[ident][1], strict=True):
+            np.testing.assert_array_equal(mine.y, theirs.y)
 
 
 def test_no_digit_depends_on_the_neighbours(library: BatchLibrary) -> None:
@@ -140,7 +161,7 @@ def test_failures_leave_their_neighbours_alone(library: BatchLibrary) -> None:
 def test_four_lanes_give_what_the_own_number_gives(library: BatchLibrary) -> None:
     axle = nominal()
     changes = scattered(axle)
-    portable = batch_library(axle.topology, InstructionSet(4, ("-O0",), False))
+    portable = adaptive_batch(axle.topology, InstructionSet(4, ("-O0",), False))
     one, other = solve_batch(axle, changes, library), solve_batch(axle, changes, portable)
     for ident, (_, branches) in one.cases.items():
         for mine, theirs in zip(branches, other.cases[ident][1], strict=True):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import logging
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,8 +12,9 @@ import numpy as np
 import pytest
 
 from doe_kc.solver import library, suite
-from doe_kc.solver.compiled import compiled_kernel
+from doe_kc.solver.compiled import adaptive_kernel, compiled_kernel
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, cache_folder, find_compiler, library_of
+from doe_kc.solver.program_library import march_library
 from doe_kc.solver.suite import library_for, solve
 from tests.reference import nominal
 
@@ -26,11 +28,12 @@ TINY = {"one": "int one(void) { return 1; }\n"}
 def fresh(monkeypatch: pytest.MonkeyPatch):
     """No kernel in memory, and a notice that may come once."""
     monkeypatch.delenv("DOE_KC_COMPILE", raising=False)
-    compiled_kernel.cache_clear()
-    suite._notice_once.cache_clear()
+    caches = (compiled_kernel, adaptive_kernel, march_library, suite._notice_once)
+    for cache in caches:
+        cache.cache_clear()
     yield
-    compiled_kernel.cache_clear()
-    suite._notice_once.cache_clear()
+    for cache in caches:
+        cache.cache_clear()
 
 
 @needs_compiler
@@ -130,6 +133,34 @@ def test_a_library_is_found_again_without_its_sources(
     assert len(asked) == 3
     monkeypatch.setattr(library, "_origins", lambda: "the package after a change")
     assert library_of(TOPOLOGY, "test", sources, {}) == first and len(asked) == 4
+
+
+@needs_compiler
+def test_of_two_that_need_a_library_one_builds_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
+    begun, go_on = threading.Event(), threading.Event()
+    asked, paths = [], []
+
+    def sources() -> dict[str, str]:
+        asked.append(1)
+        begun.set()
+        go_on.wait(10.0)
+        return TINY
+
+    def work() -> None:
+        paths.append(library_of(TOPOLOGY, "test", sources, {}))
+
+    first, second = threading.Thread(target=work), threading.Thread(target=work)
+    first.start()
+    assert begun.wait(10.0)
+    second.start()
+    second.join(0.2)
+    assert second.is_alive() and len(asked) == 1
+    go_on.set()
+    first.join()
+    second.join()
+    assert len(asked) == 1 and len(set(paths)) == 1 and len(paths) == 2
+    assert not list(tmp_path.glob("*.lock"))
 
 
 @needs_compiler

@@ -82,7 +82,7 @@ def test_a_topology_of_few_designs_and_a_machine_without_compiler_go_one_by_one(
     assert not solver.evaluate_all(few, curves=False)[-1].failed
     assert not solver.prepare(moved(7)).batched
     monkeypatch.setenv("DOE_KC_COMPILE", "0")
-    own_batch.batch_library.cache_clear()
+    own_batch.adaptive_batch.cache_clear()
     assert not AxleSolver(axle()).prepare(moved(8)).batched
 
 

@@ -29,7 +29,9 @@ from tests.correlation.cases import measured
 from tests.reference import EXAMPLE
 from tests.reports.correlations import CAR, ODD_WEIGHTS, odd, real
 
-REDUCED = Reduced(measured(CAR), None)
+
+def reduced() -> Reduced:
+    return Reduced(measured(CAR), None)
 
 
 def read_study_of(out: Path, *weights: CharacteristicOptions) -> Study:
@@ -66,10 +68,10 @@ def ratings(found: Correlation) -> list[float]:
 
 
 def test_the_same_weights_give_the_same_correlation(tmp_path: Path) -> None:
-    best = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation.run.best
+    best = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), reduced(), tmp_path).correlation.run.best
     found = chosen(odd(), best)
     write_run(found, tmp_path)
-    again = recall(read_study_of(tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation
+    again = recall(read_study_of(tmp_path, *ODD_WEIGHTS), reduced(), tmp_path).correlation
     assert again.run.best == best
     assert ratings(again) == pytest.approx(ratings(found), rel=1e-12)
     assert again.values == found.values
@@ -83,15 +85,15 @@ def test_the_same_weights_give_the_same_correlation(tmp_path: Path) -> None:
 
 
 def test_standard_deviations_of_another_design_are_left_out(tmp_path: Path) -> None:
-    best = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation.run.best
+    best = recall(kept(odd(), tmp_path, *ODD_WEIGHTS), reduced(), tmp_path).correlation.run.best
     write_run(chosen(odd(), best - 1), tmp_path)
-    again = recall(read_study_of(tmp_path, *ODD_WEIGHTS), REDUCED, tmp_path).correlation
+    again = recall(read_study_of(tmp_path, *ODD_WEIGHTS), reduced(), tmp_path).correlation
     assert again.run.best == best and again.posterior is None
 
 
 def test_other_weights_need_no_evaluation(tmp_path: Path) -> None:
     study = kept(odd(), tmp_path, CharacteristicOptions(match="*", linear=3.0, constraint=False))
-    again = recall(study, REDUCED, tmp_path).correlation
+    again = recall(study, reduced(), tmp_path).correlation
     plain = pd.DataFrame(term_columns(odd()))
     objectives = plain[(plain["kind"] == "objective") & (plain["goal"] == "target")]
     now = pd.DataFrame(term_columns(again))
@@ -101,7 +103,7 @@ def test_other_weights_need_no_evaluation(tmp_path: Path) -> None:
 
 
 def test_the_fit_keeps_the_design_that_it_chose(tmp_path: Path) -> None:
-    again = recall(kept(chosen(real(), 0), tmp_path), REDUCED, tmp_path).correlation
+    again = recall(kept(chosen(real(), 0), tmp_path), reduced(), tmp_path).correlation
     assert again.run.best == 0 and max(ratings(again)) > again.rating
 
 
@@ -109,7 +111,7 @@ def test_what_a_discovery_objects_to_is_said_again(tmp_path: Path) -> None:
     study = kept(real(), tmp_path)
     document = run_document(real(), objections=[Objection("hub is the leading one of a class.")], misfit=1.7)
     write_json(tmp_path / "run.json", document)
-    assessment = recall(study, REDUCED, tmp_path).assessment
+    assessment = recall(study, reduced(), tmp_path).assessment
     assert assessment.status == "doubtful"
     assert "hub is the leading one of a class." in assessment.reasons
     assert any("1.7 times the noise" in r for r in assessment.reasons)
@@ -119,24 +121,24 @@ def test_what_a_discovery_objects_to_is_said_again(tmp_path: Path) -> None:
 def test_the_answer_of_a_run_is_read_back(same: bool, tmp_path: Path) -> None:
     """Its gap is that of the axle handed over then: of another design it is not known."""
     study = kept(odd(), tmp_path, *ODD_WEIGHTS)
-    best = recall(study, REDUCED, tmp_path).correlation.run.best
+    best = recall(study, reduced(), tmp_path).correlation.run.best
     gap = GapRecord(nominal=9.0, tuned=3.0, final=1.1, noise_floor=0.99)
     answer = AnswerRecord(verdict="named", effects=[{"id": "hub"}], added=["Hub: 3 Nm"], gap=gap, seconds=7.5)
     found = chosen(odd(), best if same else best - 1)
     write_json(tmp_path / "run.json", run_document(found, answer=answer))
-    again = recall(study, REDUCED, tmp_path).answer
+    again = recall(study, reduced(), tmp_path).answer
     assert again == (answer if same else answer.model_copy(update={"gap": None}))
 
 
 def test_a_correlation_alone_has_no_answer(tmp_path: Path) -> None:
-    assert recall(kept(real(), tmp_path), REDUCED, tmp_path).answer is None
+    assert recall(kept(real(), tmp_path), reduced(), tmp_path).answer is None
 
 
 def test_what_a_chain_began_with_is_read_back(tmp_path: Path) -> None:
     study = kept(real(), tmp_path)
     document = run_document(real(), discovered=True, without={("lateral", "camber"), ("steer", "toe")})
     write_json(tmp_path / "run.json", document)
-    again = recall(study, REDUCED, tmp_path).correlation
+    again = recall(study, reduced(), tmp_path).correlation
     out = {t.entry.id for t in again.problem.targets.characteristics if t.excluded}
     assert out == {"lateral.camber_change", "steer.steering_ratio"}
     assert {("lateral", "camber"), ("steer", "toe")} <= again.problem.targets.dropped
@@ -146,4 +148,4 @@ def test_a_store_without_the_designs(tmp_path: Path) -> None:
     study = kept(odd(), tmp_path / "one", *ODD_WEIGHTS)
     empty = replace(study, out=tmp_path / "other")
     with pytest.raises(InputError, match=r"evaluation 0 is not in .*run doe-kc correlate again"):
-        recall(empty, REDUCED, tmp_path / "one")
+        recall(empty, reduced(), tmp_path / "one")

@@ -73,7 +73,7 @@ def fit_without(start: Fit, case: str) -> Fit:
     return fit(model, near.z, steps=REFIT_STEPS, known=known_columns(near, model), aged=gained)
 
 
-def held_out_score(whole: Fit, others: Fit) -> HeldOutScore:
+def held_out_score(all_records: Fit, others: Fit) -> HeldOutScore:
     """The score of the records of a load case by the fits to all records and to the others.
 
     Their predictive density is the evidence of all records over that of the others, each by Laplace's
@@ -83,8 +83,8 @@ def held_out_score(whole: Fit, others: Fit) -> HeldOutScore:
     to the others goes far along what they do not see, where derivatives taken there do not.
     """
     size = int(np.count_nonzero(~others.model.used))
-    square = max(0.0, whole.cost - others.cost)
-    score = -0.5 * square - 0.5 * (_log_determinant(whole) - _log_determinant(others))
+    square = max(0.0, all_records.cost - others.cost)
+    score = -0.5 * square - 0.5 * (_log_determinant(all_records) - _log_determinant(others))
     return HeldOutScore(float(np.sqrt(square / size)), score, size)
 
 
