@@ -27,7 +27,7 @@ from doe_kc.effects.words import effect_label
 from doe_kc.ground.errors import DoeKcError, RunError
 from doe_kc.ground.numbers import number
 from doe_kc.live.effect_switches import EffectSizes, EffectSwitch, effect_switches, effective_axle
-from doe_kc.live.tasks import SavedSizes, TaskFailure, TaskProgress, TaskRequest, TaskResult
+from doe_kc.live.tasks import CANCELLED, SavedSizes, TaskFailure, TaskProgress, TaskRequest, TaskResult
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.variables import build_space
@@ -213,7 +213,7 @@ def _own_output() -> TextIO:
 
 
 def _interrupted(_signal: int, _frame: FrameType | None) -> None:
-    raise RunError("cancelled; results written so far are kept.")
+    raise RunError(CANCELLED)
 
 
 def _end_with_input() -> None:

@@ -13,7 +13,16 @@ from typing import Literal
 from pydantic import ValidationError
 
 from doe_kc.ground.errors import InputError
-from doe_kc.live.tasks import NEWS, News, TaskFailure, TaskKind, TaskProgress, TaskRequest, TaskResult
+from doe_kc.live.tasks import (
+    CANCELLED,
+    NEWS,
+    News,
+    TaskFailure,
+    TaskKind,
+    TaskProgress,
+    TaskRequest,
+    TaskResult,
+)
 
 END_PATIENCE = 8.0
 """Seconds that a process has to end by itself; more than `background.GRACE_PERIOD`."""
@@ -104,7 +113,7 @@ class TaskProcess:
             self._reader.join(END_PATIENCE)
 
     def _read(self) -> None:
-        assert self._process.stdout is not None
+        assert self._process.stdout is not None and self._process.stdin is not None
         last: News | None = None
         for line in self._process.stdout:
             try:
@@ -117,10 +126,12 @@ class TaskProcess:
                 last = news
         self._process.wait()
         self._process.stdout.close()
+        cancelled = self._process.stdin.closed
         self.cancel()  # closes its input
         self._ended()
         code = self._process.returncode
-        ending = TaskFailure(reason=f"the process of {self.request.task} was ended from outside ({code}).")
+        outside = f"the process of {self.request.task} was ended from outside ({code})."
+        ending = TaskFailure(reason=CANCELLED if cancelled else outside)
         self._listen(self.request, last or ending)
 
 

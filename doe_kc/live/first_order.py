@@ -89,7 +89,7 @@ def first_order(slopes: LiveSlopes, space: Space) -> FirstOrder:
         answer=answer,
         space=space,
         columns=columns,
-        curves=drawn_curves(answer.curves),
+        curves=drawn_curves(answer.curves, answer.curves),
         slopes=_curve_slopes(slopes)[:, columns],
         characteristics=answer.characteristics,
         characteristic_slopes=expansion.characteristics[:, columns],
@@ -142,7 +142,7 @@ def checked_range(model: FirstOrder, compilation: Compilation, *, seed: int) -> 
     truth: list[FloatArray | None] = []
     for design in (*alone, *joint):
         solved = solve_live(answer.model, {**base, **design}, compilation)
-        truth.append(None if isinstance(solved, str) else drawn_curves(solved.curves))
+        truth.append(None if isinstance(solved, str) else drawn_curves(solved.curves, model.answer.curves))
     known = [t for t in truth if t is not None]
     if not known:
         raise RunError("none of the designs by which the page would be checked has an equilibrium.")

@@ -54,13 +54,19 @@ class PageFrame:
         return cls(kind, seq, exact, np.asarray(drawn, dtype=float), json.loads(data[end:]))
 
 
-def drawn_curves(curves: CurveSet) -> FloatArray:
+def drawn_curves(curves: CurveSet, announced: CurveSet) -> FloatArray:
     """All mean curves, then all half-widths: load cases in their order, responses, left and right; nan for
-    responses that an outside solver leaves out."""
+    responses that an outside solver leaves out.
+
+    announced: whose inputs the page has; loops have more of them than an axle without friction.
+    """
     parts = []
     for half in (False, True):
-        for case in curves.cases.values():
-            branches = case.half_width if half else case.mean
-            nothing = np.full((2, case.input.size), np.nan)
-            parts += [branches.get(response, nothing).ravel() for response in RESPONSE_UNITS]
+        for ident, case in curves.cases.items():
+            branches, inputs = case.half_width if half else case.mean, announced.cases[ident].input
+            same = np.array_equal(inputs, case.input)
+            for response in RESPONSE_UNITS:
+                rows = branches.get(response, np.full((2, case.input.size), np.nan))
+                at = rows if same else np.array([np.interp(inputs, case.input, row) for row in rows])
+                parts.append(at.ravel())
     return np.concatenate(parts)

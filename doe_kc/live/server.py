@@ -221,7 +221,7 @@ class LiveServer:
         self._in_loop(tell)
 
     def _shape(self, tab: Tab, seq: int) -> bytes:
-        return views.shape_frame(self.session.present, *tab.look, seq).encode()
+        return views.shape_frame(self.session.present, self.session.nominal.curves, *tab.look, seq).encode()
 
     def _show_axle(self, tab: Tab, seq: int) -> None:
         self._in_loop(partial(tab.tell, "shape", self._shape(tab, seq)))

@@ -72,7 +72,7 @@ def _document(session: Session, model: FirstOrder, checked: CheckedRange) -> dic
     said = views.announcement(session)
     answer, own = model.answer, _own_variables(model)
     said["sliders"] = [_slider(said["sliders"][i], session, int(i)) for i in model.columns]
-    said["effects"] = []
+    said["effects"], said["cases"] = [], views.announced_cases(answer)
     references = [("nominal", session.nominal)]
     references += [(s.name, s.answer) for s in session.state.snapshots]
     table = np.nan_to_num(influence(session.slopes(), session.space)[:, model.columns])
@@ -95,7 +95,7 @@ def _document(session: Session, model: FirstOrder, checked: CheckedRange) -> dic
                 "name": name,
                 "values": [a.values.get(p, answer.values[p]) for p in model.paths],
                 "characteristics": _packed(np.nan_to_num(a.characteristics)),
-                "curves": _packed(drawn_curves(a.curves)),
+                "curves": _packed(drawn_curves(a.curves, answer.curves)),
             }
             for name, a in references
         ],
@@ -170,6 +170,8 @@ def _shapes(session: Session, model: FirstOrder) -> dict[str, Any]:
 
 def _drawn(answer: LiveAnswer, rows: dict[str, list[int]]) -> FloatArray:
     frames = [
-        views.shape_frame(answer, case, row, 0).drawn for case, chosen in rows.items() for row in chosen
+        views.shape_frame(answer, answer.curves, case, row, 0).drawn
+        for case, chosen in rows.items()
+        for row in chosen
     ]
     return np.array(frames)

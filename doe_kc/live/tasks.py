@@ -13,6 +13,7 @@ from doe_kc.ground.fields import Finite, Pair, Strict
 from doe_kc.live.effect_switches import EffectSizes
 from doe_kc.study import Study, read_study
 
+CANCELLED = "cancelled; results written so far are kept."
 TaskKind = Literal["correlate", "discover", "confirm"]
 SavedSizes = dict[str, dict[str, Finite] | None]
 

@@ -12,7 +12,7 @@ from doe_kc.axle.geometry import point
 from doe_kc.axle.members import drawn_points, members_of, shared_parts
 from doe_kc.axle.model import Axle
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, SIDES, response_name
+from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, SIDES, CurveSet, response_name
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from doe_kc.live.advice import influence
@@ -43,7 +43,7 @@ def announcement(session: Session) -> dict[str, Any]:
         "axle": model.axle.name,
         "data": int(answer.residual.size),
         "sliders": _sliders(session),
-        "cases": _cases(answer),
+        "cases": announced_cases(answer),
         "responses": [
             {"id": r, "label": RESPONSE_LABELS[r], "name": response_name(r), "unit": unit}
             for r, unit in RESPONSE_UNITS.items()
@@ -75,7 +75,8 @@ def _sliders(session: Session) -> list[dict[str, Any]]:
     ]
 
 
-def _cases(answer: LiveAnswer) -> list[dict[str, Any]]:
+def announced_cases(answer: LiveAnswer) -> list[dict[str, Any]]:
+    """Load cases with the inputs that curves are drawn at."""
     return [
         {
             "id": ident,
@@ -193,7 +194,7 @@ def present_frame(session: Session, seq: int) -> PageFrame:
     """
     set_now = np.array(list(session.values().values()))
     text = {"failure": session.failure, "true": session.present.true}
-    return _answer_frame(PRESENT, seq, session.present, set_now, text)
+    return _answer_frame(session, PRESENT, seq, session.present, set_now, text)
 
 
 def reference_frames(session: Session) -> list[PageFrame]:
@@ -202,12 +203,13 @@ def reference_frames(session: Session) -> list[PageFrame]:
     frames = []
     for place, (name, answer) in enumerate(named):
         values = np.array([answer.values.get(p, math.nan) for p in session.model.space.paths])
-        frames.append(_answer_frame(REFERENCE, place, answer, values, {"name": name, "true": answer.true}))
+        text = {"name": name, "true": answer.true}
+        frames.append(_answer_frame(session, REFERENCE, place, answer, values, text))
     return frames
 
 
 def _answer_frame(
-    kind: int, seq: int, answer: LiveAnswer, values: FloatArray, text: dict[str, Any]
+    session: Session, kind: int, seq: int, answer: LiveAnswer, values: FloatArray, text: dict[str, Any]
 ) -> PageFrame:
     terms = np.full(len(CHARACTERISTICS), math.nan)
     total = math.nan
@@ -216,7 +218,8 @@ def _answer_frame(
         total = answer.rating.total
     last = np.array([answer.gap, total, answer.seconds])
     exact = [values, answer.characteristics, terms, last]
-    return PageFrame(kind, seq, np.concatenate(exact), drawn_curves(answer.curves), text)
+    drawn = drawn_curves(answer.curves, session.nominal.curves)
+    return PageFrame(kind, seq, np.concatenate(exact), drawn, text)
 
 
 def influence_frame(session: Session, slopes: LiveSlopes, seq: int) -> PageFrame:
@@ -226,13 +229,13 @@ def influence_frame(session: Session, slopes: LiveSlopes, seq: int) -> PageFrame
     return PageFrame(INFLUENCE, seq, finite.ravel(), np.zeros(0), {"sliders": table.shape[1]})
 
 
-def shape_frame(answer: LiveAnswer, load_case: str, row: int, seq: int) -> PageFrame:
+def shape_frame(answer: LiveAnswer, announced: CurveSet, load_case: str, row: int, seq: int) -> PageFrame:
     """drawn: points as designed, at rest and at the input, left then right, 3 each; then for rest and input
-    the wheels' spin axes. text: load case, row and input."""
+    the wheels' spin axes. text: load case, row and input. row: of the inputs of `announced`."""
     case = answer.solution.cases.get(load_case) or next(iter(answer.solution.cases.values()))
     grid = rising(case)
-    drawn = answer.curves.cases.get(case.load_case.id)
-    if drawn is not None and drawn.input.size != grid.size:  # an outside solver has inputs of its own
+    drawn = announced.cases.get(case.load_case.id)
+    if drawn is not None and drawn.input.size != grid.size:  # an outside solver and loops have their own
         row = int(np.argmin(np.abs(grid - drawn.input[min(row, drawn.input.size - 1)])))
     row = min(row, grid.size - 1)
     states = [shape_at(answer.axle, *_rest(case)), shape_at(answer.axle, *_branch_row(case, row))]

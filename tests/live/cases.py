@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
+from doe_kc.live.messages import read_message
 from doe_kc.live.model import LiveModel, live_model
-from doe_kc.live.session import Session
+from doe_kc.live.session import Session, Update
 from doe_kc.study import read_study
 from doe_kc.workflow.measure import study_records
 
@@ -26,3 +29,8 @@ def model(example: str = "front_axle") -> LiveModel:
 def session(example: str = "front_axle") -> Session:
     """A fresh session of that study."""
     return Session(model(example))
+
+
+def say(live: Session, **message: Any) -> Update:
+    """The session told a message of the page."""
+    return live.handle(read_message(json.dumps(message)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import threading
 import time
 from collections.abc import Callable
@@ -17,15 +16,14 @@ from doe_kc.live import background
 from doe_kc.live.background_queue import BackgroundQueue, TaskStatus
 from doe_kc.live.background_work import BackgroundWork
 from doe_kc.live.documents import work_document
-from doe_kc.live.messages import read_message
 from doe_kc.live.model import live_model
-from doe_kc.live.session import Session, Update
+from doe_kc.live.session import Session
 from doe_kc.live.tasks import News, TaskFailure, TaskProgress, TaskRequest, TaskResult, task_request
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.correlate import correlate
 from doe_kc.workflow.measure import study_records
-from tests.live.cases import EXAMPLES, RIG
+from tests.live.cases import EXAMPLES, RIG, say
 
 STUDY = """
 schema = "doe_kc.study/1"
@@ -70,10 +68,6 @@ def live(shared: Session) -> Session:
         say(shared, kind="undo")
     shared.result = None
     return shared
-
-
-def say(live: Session, **message: Any) -> Update:
-    return live.handle(read_message(json.dumps(message)))
 
 
 def until(true: Callable[[], bool]) -> None:
@@ -185,6 +179,7 @@ def test_a_task_is_cancelled_and_the_next_one_begins(study: Study) -> None:
     assert ended.wait(PATIENCE)
     task, news = told[-1]
     assert task == "discover" and isinstance(news, TaskFailure)
+    assert news.reason.startswith("cancelled"), news.reason
     until(lambda: queue.running is None)
     queue.close()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -15,11 +14,10 @@ from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError
 from doe_kc.live.effect_switches import effect_switches, effective_axle
 from doe_kc.live.keep import export_axle, read_state, save_state
-from doe_kc.live.messages import read_message
 from doe_kc.live.model import live_model
-from doe_kc.live.session import Session, Update
+from doe_kc.live.session import Session
 from doe_kc.study import Study, read_study
-from tests.live.cases import EXAMPLES
+from tests.live.cases import EXAMPLES, say
 
 EFFECTS = """
 [effects.hub_compliance]
@@ -44,10 +42,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @lru_cache(maxsize=1)
 def study(folder: Path) -> Study:
     return read_study(folder)
-
-
-def say(live: Session, **message: Any) -> Update:
-    return live.handle(read_message(json.dumps(message)))
 
 
 def test_sizes_are_those_of_the_file_and_its_defaults(folder: Path) -> None:

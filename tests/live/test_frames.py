@@ -12,7 +12,7 @@ from doe_kc.curves import RESPONSE_UNITS
 from doe_kc.live import frames, views
 from doe_kc.live.frames import PageFrame
 from doe_kc.live.session import Session
-from tests.live.cases import session
+from tests.live.cases import say, session
 
 
 @pytest.fixture(scope="module")
@@ -45,12 +45,38 @@ def test_an_answer_has_the_announced_length(live: Session) -> None:
     assert frame.exact[-3] == live.present.gap
 
 
+def test_an_effect_with_loops_is_drawn_at_the_announced_inputs() -> None:
+    live = session()
+    before = PageFrame.decode(views.present_frame(live, 1).encode()).drawn
+    say(live, kind="effect", name="strut_friction", sizes={"force_N": 80.0})
+    live.solve_now()
+    live.compilation.wait()
+    case = live.present.curves.cases["vertical"]
+    assert case.input.size > live.nominal.curves.cases["vertical"].input.size
+    frame = PageFrame.decode(views.present_frame(live, 2).encode())
+    assert frame.drawn.size == before.size
+    half = frame.drawn[before.size // 2 :]
+    places = np.cumsum(
+        [0] + [2 * c.input.size for c in live.nominal.curves.cases.values() for _ in RESPONSE_UNITS]
+    )
+    load = list(RESPONSE_UNITS).index("tyre_load")
+    np.testing.assert_allclose(
+        half[places[load] : places[load + 1]].reshape(2, -1)[0],
+        np.interp(live.nominal.curves.cases["vertical"].input, case.input, case.half_width["tyre_load"][0]),
+        rtol=1e-5,
+        atol=1e-4,
+    )
+    last = len(live.nominal.curves.cases["vertical"].input) - 1
+    seen = views.shape_frame(live.present, live.nominal.curves, "vertical", last, 0)
+    assert seen.text["input"] == pytest.approx(live.nominal.curves.cases["vertical"].input[-1])
+
+
 def test_the_axle_at_rest_is_level_and_moves_with_the_input(live: Session) -> None:
     said = views.announcement(live)
     n = len(said["shape"]["points"])
     case = said["cases"][0]
     last = len(case["input"]) - 1
-    frame = views.shape_frame(live.present, "vertical", last, 0)
+    frame = views.shape_frame(live.present, live.nominal.curves, "vertical", last, 0)
     assert frame.text["input"] == case["input"][-1] > 0
     points = frame.drawn[: 3 * 2 * n * 3].reshape(3, 2, n, 3)
     design, rest, moved = points

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,21 +17,17 @@ from doe_kc.live.background_work import BackgroundWork
 from doe_kc.live.confirmation import learnt, stored_outcome
 from doe_kc.live.documents import work_document
 from doe_kc.live.keep import export_axle, export_page, export_table, read_state, save_state
-from doe_kc.live.messages import read_message
 from doe_kc.live.model import live_model
 from doe_kc.live.outside_model import outside_model
-from doe_kc.live.session import Session, Update
+from doe_kc.live.session import Session
 from doe_kc.live.views import present_frame, shape_frame
 from doe_kc.true_solver.own import AxleSolver
 from doe_kc.workflow.measure import study_records
+from tests.live.cases import say
 from tests.live.outside import FAILS_ABOVE, car, outside_study
 
 PATIENCE = 120.0
 DESIGNS = 14
-
-
-def say(live: Session, **message: Any) -> Update:
-    return live.handle(read_message(json.dumps(message)))
 
 
 def move(live: Session, path: str, value: float, *, last: bool) -> None:
@@ -80,7 +75,7 @@ def test_the_start_is_the_stored_answer_and_a_drag_the_surrogates(live: Session)
         twin.curves.cases["lateral"].mean["camber"] - live.present.curves.cases["lateral"].mean["camber"]
     )
     assert worse.max() > 0.01  # the twin alone lacks the effect
-    assert shape_frame(live.present, "roll", 3, 1).drawn.size
+    assert shape_frame(live.present, live.nominal.curves, "roll", 3, 1).drawn.size
 
 
 def test_slopes_are_those_of_differences(live: Session) -> None:

@@ -19,11 +19,7 @@ from doe_kc.solver.compiled import AdaptiveKernel
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.library import find_compiler
 from doe_kc.solver.suite import library_for, solve
-from tests.live.cases import EXAMPLES, session
-
-
-def say(live: Session, **message: Any) -> Update:
-    return live.handle(read_message(json.dumps(message)))
+from tests.live.cases import EXAMPLES, say, session
 
 
 def move(live: Session, path: str, value: float, *, last: bool = True) -> Update:
