@@ -19,9 +19,10 @@ from report_text import number, table
 from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.status import STATUS_LABELS
-from doe_kc.ground.numbers import with_sd
+from doe_kc.reports.discovery_words import size_words
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
+from doe_kc.workflow.adopt import AdoptedEffect
 from doe_kc.workflow.answer import Answer
 from doe_kc.workflow.chain import follow_chain
 from doe_kc.workflow.correlate import correlate
@@ -92,7 +93,7 @@ def _row(car: str, answer: Answer) -> list[str]:
     return [
         car,
         STATUS_LABELS[answer.assessment.status].lower(),
-        "; ".join(_effect(answer, e.id, e.label) for e in adopted) or "none",
+        "; ".join(_effect(answer, e) for e in adopted) or "none",
         f"{sum(map(inside, entries))} of {len(entries)}",
         _worst(answer),
         number(found.mean_improvement, 3),
@@ -102,11 +103,13 @@ def _row(car: str, answer: Answer) -> list[str]:
     ]
 
 
-def _effect(answer: Answer, ident: str, label: str) -> str:
-    assert answer.discovery is not None
-    finding = next(f for f in answer.discovery.findings if f.hypothesis.effect == ident)
-    sizes = ", ".join(f"{with_sd(e.value, e.sd)} {e.unit}" for e in finding.estimates)
-    return f"{label} ({sizes})" if sizes else label
+def _effect(answer: Answer, effect: AdoptedEffect) -> str:
+    discovery, place = answer.discovery, (effect.id, effect.location)
+    assert discovery is not None
+    findings = (*discovery.findings, *discovery.traces)
+    finding = next(f for f in findings if (f.hypothesis.effect, f.hypothesis.location) == place)
+    sizes = size_words(discovery, finding)
+    return f"{effect.label}: {sizes}" if sizes else effect.label
 
 
 def _worst(answer: Answer) -> str:

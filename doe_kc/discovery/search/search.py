@@ -39,6 +39,7 @@ from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
     EFFECTS_MOST,
     FALSE_ALARM,
+    LEADER_ROUNDS,
     LOOP_EVIDENCE,
     LOOPS_SURE,
     MOST_STEPS,
@@ -411,8 +412,7 @@ def _decision(
     screened = _screened(current, known, workers)
     trials = set_refits(current, _proposed(current, screened, prior), prior, workers)
     if not any(_passes(t, current) for t in trials):
-        near = leaders(screened, current, least / 2.0, decoy=not current.model.members)
-        trials += joint_refits(current, near, prior, workers)
+        trials += _leader_refits(current, screened, least, prior, workers)
     if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
@@ -424,6 +424,25 @@ def _decision(
     temper = max(1.0, trials[0].fit.residual_map.mean_square)
     passes = trials[0].gain / temper > ACCEPTED_ODDS
     return Decision(current, tuple(screened), tuple(trials), temper, passes)
+
+
+def _leader_refits(
+    current: Fit, screened: Sequence[Screened], least: float, prior: SetPrior, workers: DiscoveryWorkers
+) -> list[HypothesisFit]:
+    """Refits of what screening has first; where none of them passes, of what it has first among the others.
+
+    A friction that changes little is hardly linear, and can promise hundreds that its refit does not keep.
+    """
+    trials: list[HypothesisFit] = []
+    left, decoy = list(screened), not current.model.members
+    for _ in range(LEADER_ROUNDS):
+        near = leaders(left, current, least / 2.0, decoy=decoy)
+        trials += joint_refits(current, near, prior, workers)
+        if not near or any(_passes(t, current) for t in trials):
+            break
+        done = {s.hypothesis.name for s in near}
+        left, decoy = [s for s in left if s.hypothesis.name not in done], False
+    return trials
 
 
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
