@@ -181,7 +181,7 @@ missed by a screening of first order in the parameters."""
 OVERLOOKED_MOST = 6
 """-, such effects that are refitted at most, those of the largest score. Each costs a
 refit: on a car with one effect 2 and 18 gave the same verdict and sizes."""
-LEADER_ROUNDS = 3
+LEADER_ROUNDS = 2
 """-, times that the next leaders are refitted where the ones before gained nothing. A damper friction of a
 twentieth of its typical size promised 438 of ln evidence in screening and lost 8 in its refit, while a tyre
 compliance that promised 61 gained 69."""
