@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -16,14 +15,14 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect, c_sources
-from doe_kc.solver.compiled import OPERATIONS_BEFORE_COMPILING
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions, kernel_programs
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, build, library_of, stored_library
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
+from doe_kc.solver.library_on_demand import LibraryOnDemand
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.program import interpreter_source
-from doe_kc.solver.program_library import MARCH_SOURCES, ProgramFunction, ProgramSet
+from doe_kc.solver.program_library import MARCH_SOURCES, ProgramFunction, ProgramSet, load_program_library
 
 BATCH_SOURCE = Path(__file__).with_name("batch.c")
 LANES_HEADER = Path(__file__).with_name("lanes.h")
@@ -50,6 +49,22 @@ class BatchStart:
 
 
 @dataclass(frozen=True)
+class BatchProblem:
+    """Equilibria that are asked for of d designs: at path coordinates s (d, n) under controls u (d, n, nu).
+
+    c: (d, nc) constants. columns: of the outputs that are asked for. failed: (d,) designs to leave out.
+    """
+
+    c: FloatArray
+    start: BatchStart
+    s: FloatArray
+    u: FloatArray
+    columns: np.ndarray
+    failed: np.ndarray
+    settings: NewtonSettings
+
+
+@dataclass(frozen=True)
 class BatchMarch:
     """x: (d, n, nx); y: (d, n, outputs asked for); z: (d, nz) after the last step.
 
@@ -70,26 +85,12 @@ class BatchMarcher(Protocol):
     @property
     def lanes(self) -> int: ...
 
-    def constants(self, kernel: Kernel, parameters: FloatArray) -> FloatArray:
+    def constants(self, parameters: FloatArray) -> FloatArray:
         """(d, nc) constants of the internal parameters (d, np), by `layout.parameter_names`."""
         ...
 
-    def march(
-        self,
-        kernel: Kernel,
-        order: EliminationOrder,
-        c: FloatArray,
-        start: BatchStart,
-        s: FloatArray,
-        u: FloatArray,
-        columns: np.ndarray,
-        failed: np.ndarray,
-        settings: NewtonSettings,
-    ) -> BatchMarch:
-        """Equilibria of d designs at path coordinates s (d, n) under the controls u (d, n, nu).
-
-        columns: of the outputs that are asked for. failed: (d,) designs to leave out.
-        """
+    def march(self, kernel: Kernel, order: EliminationOrder, problem: BatchProblem) -> BatchMarch:
+        """Equilibria of the designs, eliminated in the given order."""
         ...
 
 
@@ -101,7 +102,7 @@ class BatchLibrary:
     library: ctypes.CDLL
     lanes: int
 
-    def constants(self, kernel: Kernel, parameters: FloatArray) -> FloatArray:
+    def constants(self, parameters: FloatArray) -> FloatArray:
         """See `BatchMarcher`."""
         given = np.ascontiguousarray(parameters, dtype=float)
         count = self.library.constants_count()
@@ -109,21 +110,9 @@ class BatchLibrary:
         self.library.constants_batch(*given.shape, count, given.ctypes.data, out.ctypes.data)
         return out
 
-    def march(
-        self,
-        kernel: Kernel,
-        order: EliminationOrder,
-        c: FloatArray,
-        start: BatchStart,
-        s: FloatArray,
-        u: FloatArray,
-        columns: np.ndarray,
-        failed: np.ndarray,
-        settings: NewtonSettings,
-    ) -> BatchMarch:
+    def march(self, kernel: Kernel, order: EliminationOrder, problem: BatchProblem) -> BatchMarch:
         """See `BatchMarcher`."""
-        function = self.library.march_batch
-        return _march_by(function, kernel, order, c, start, s, u, columns, failed, settings)
+        return _march_by(self.library.march_batch, kernel, order, problem)
 
 
 class AdaptiveBatch:
@@ -133,16 +122,18 @@ class AdaptiveBatch:
     """
 
     def __init__(self, topology: Topology, instructions: InstructionSet) -> None:
-        self._topology, self._instructions = topology, instructions
+        self._instructions = instructions
         programs = kernel_programs(topology)
         self._library = _program_library(instructions)
         self._programs = ProgramSet([programs[name] for name in MARCHED], instructions.lanes)
         self._constants = ProgramFunction(programs["constants"])
         self._lengths = np.array([programs["residual"].length, programs["jacobian"].length])
-        self._operations = 0
-        self._compiled: BatchLibrary | None = None
-        if stored_library(topology, _kind(instructions), instructions.build_flags) is not None:
-            self._compiled = batch_library(topology, instructions)
+        self._on_demand = LibraryOnDemand(
+            topology,
+            _kind(instructions),
+            instructions.build_flags,
+            lambda: batch_library(topology, instructions),
+        )
 
     @property
     def lanes(self) -> int:
@@ -151,60 +142,37 @@ class AdaptiveBatch:
     @property
     def compiled(self) -> bool:
         """Whether it is the compiled kernel that marches."""
-        return self._compiled is not None
+        return self._on_demand.ready
 
-    def constants(self, kernel: Kernel, parameters: FloatArray) -> FloatArray:
+    def constants(self, parameters: FloatArray) -> FloatArray:
         """See `BatchMarcher`."""
         return np.array([self._constants(row).copy() for row in parameters])
 
-    def march(
-        self,
-        kernel: Kernel,
-        order: EliminationOrder,
-        c: FloatArray,
-        start: BatchStart,
-        s: FloatArray,
-        u: FloatArray,
-        columns: np.ndarray,
-        failed: np.ndarray,
-        settings: NewtonSettings,
-    ) -> BatchMarch:
+    def march(self, kernel: Kernel, order: EliminationOrder, problem: BatchProblem) -> BatchMarch:
         """See `BatchMarcher`."""
-        if self._compiled is None and self._operations >= OPERATIONS_BEFORE_COMPILING:
-            self._operations = 0
-            with suppress(CompileError):
-                self._compiled = batch_library(self._topology, self._instructions)
-        if self._compiled is not None:
-            return self._compiled.march(kernel, order, c, start, s, u, columns, failed, settings)
+        if (library := self._on_demand.library()) is not None:
+            return library.march(kernel, order, problem)
         self._library.use_programs(self._programs.address)
-        function = self._library.march_batch
-        path = _march_by(function, kernel, order, c, start, s, u, columns, failed, settings)
-        self._operations += int(path.counts[:2] @ self._lengths)
+        path = _march_by(self._library.march_batch, kernel, order, problem)
+        self._on_demand.count(int(path.counts[:2] @ self._lengths))
         return path
 
 
 def _march_by(
-    function: Callable[..., int],
-    kernel: Kernel,
-    order: EliminationOrder,
-    c: FloatArray,
-    start: BatchStart,
-    s: FloatArray,
-    u: FloatArray,
-    columns: np.ndarray,
-    failed: np.ndarray,
-    settings: NewtonSettings,
+    function: Callable[..., int], kernel: Kernel, order: EliminationOrder, problem: BatchProblem
 ) -> BatchMarch:
     """function: `march_batch` of batch.c."""
-    (d, n), (nx, nu, nz) = s.shape, (kernel.nx, kernel.nu, kernel.nz)
-    x, y, z = np.zeros((d, n, nx)), np.zeros((d, n, len(columns))), np.array(start.z, order="C")
-    verdict, counts = failed.astype(np.int32), np.zeros(4, dtype=np.int64)
-    numbers = [np.ascontiguousarray(a, dtype=float) for a in (c, start.s, start.x, start.u, s, u)]
+    start, settings = problem.start, problem.settings
+    (d, n), (nx, nu, nz) = problem.s.shape, (kernel.nx, kernel.nu, kernel.nz)
+    column = np.ascontiguousarray(problem.columns, dtype=np.int32)
+    x, y, z = np.zeros((d, n, nx)), np.zeros((d, n, len(column))), np.array(start.z, order="C")
+    verdict, counts = problem.failed.astype(np.int32), np.zeros(4, dtype=np.int64)
+    given = (problem.c, start.s, start.x, start.u, problem.s, problem.u)
+    numbers = [np.ascontiguousarray(a, dtype=float) for a in given]
     c_in, s_known, x_known, u_start, s_in, u_in = (a.ctypes.data for a in numbers)
-    column = np.ascontiguousarray(columns, dtype=np.int32)
     rows, _, tail, scale, slips = kernel.addresses
     code = function(
-        *(nx, len(order.row_of), nu, nz, kernel.ny, c.shape[1], len(kernel.rows), tail, scale),
+        *(nx, len(order.row_of), nu, nz, kernel.ny, numbers[0].shape[1], len(kernel.rows), tail, scale),
         *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
         *(start.guess, kernel.coordinates, len(kernel.slips), slips),
         *(array.ctypes.data for array in order.arrays),
@@ -269,8 +237,6 @@ def _program_library(instructions: InstructionSet) -> ctypes.CDLL:
     """The march and what carries programs out in lanes, the same for all topologies."""
     dialect = _dialect(instructions)
     sources = {"batch": NO_CONSTANTS + _driver(dialect), "program": interpreter_source(dialect)}
-    library = ctypes.CDLL(str(build(sources, instructions.build_flags)))
+    library = load_program_library(sources, instructions.build_flags)
     library.march_batch.argtypes = _BATCH_ARGUMENTS
-    library.use_programs.argtypes = (_ADDRESS,)
-    library.use_programs.restype = None
     return library

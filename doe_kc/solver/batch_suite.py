@@ -17,7 +17,7 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
-from doe_kc.solver.batch_library import BatchMarch, BatchMarcher, BatchStart
+from doe_kc.solver.batch_library import BatchMarch, BatchMarcher, BatchProblem, BatchStart
 from doe_kc.solver.compiled import adaptive_kernel
 from doe_kc.solver.elimination import EliminationOrder, elimination_order
 from doe_kc.solver.kernel import kernel, kernel_programs
@@ -83,7 +83,7 @@ class _BatchSuite:
         for column, name in enumerate(names):
             if name in changes:
                 parameters[:, column] = changes[name]
-        self._c = library.constants(self._kernel, parameters)
+        self._c = library.constants(parameters)
         self._orders = _reference_orders(axle.topology, base.tobytes())
         if not self._orders.ready:
             self._orders.begin(axle, settings)
@@ -109,9 +109,8 @@ class _BatchSuite:
         self, start: BatchStart, s: FloatArray, u: FloatArray, *, full: bool = False, held: bool = False
     ) -> BatchMarch:
         order = self._orders.order(full=full, held=held)
-        path = self._library.march(
-            self._kernel, order, self._c, start, s, u, self._columns, self._failed, self._settings
-        )
+        problem = BatchProblem(self._c, start, s, u, self._columns, self._failed, self._settings)
+        path = self._library.march(self._kernel, order, problem)
         self._failed = path.failed
         self._counts += path.counts
         return path

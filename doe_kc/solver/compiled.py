@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import math
 from collections.abc import Callable
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
@@ -17,7 +16,7 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import c_sources
-from doe_kc.solver.equilibria import Halt, March, Start, substeps
+from doe_kc.solver.equilibria import Halt, March, MarchProblem, substeps
 from doe_kc.solver.kernel import (
     COMPILER_FLAGS,
     KERNEL_LIBRARY,
@@ -26,14 +25,12 @@ from doe_kc.solver.kernel import (
     interpreted_functions,
     kernel_programs,
 )
-from doe_kc.solver.library import CompileError, handwritten, library_of, stored_library
-from doe_kc.solver.newton import NewtonSettings
+from doe_kc.solver.library import handwritten, library_of
+from doe_kc.solver.library_on_demand import LibraryOnDemand
 from doe_kc.solver.program_library import MARCH_SOURCES, ProgramSet, march_library
 
 SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
-OPERATIONS_BEFORE_COMPILING = 8_000_000_000
-"""Of programs: by then they have taken 4 to 9 s more than compiled code, which is what compiling takes."""
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
     *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
@@ -45,16 +42,7 @@ MARCH_ARGUMENTS = (
 class MarchLibrary(Protocol):
     """Marches the axles of one topology."""
 
-    def march(
-        self,
-        kernel: Kernel,
-        c: FloatArray,
-        start: Start,
-        s: FloatArray,
-        u: FloatArray,
-        active: int,
-        settings: NewtonSettings,
-    ) -> March:
+    def march(self, kernel: Kernel, problem: MarchProblem) -> March:
         """See `march.march`."""
         ...
 
@@ -66,18 +54,9 @@ class CompiledKernel:
     path: Path
     library: ctypes.CDLL
 
-    def march(
-        self,
-        kernel: Kernel,
-        c: FloatArray,
-        start: Start,
-        s: FloatArray,
-        u: FloatArray,
-        active: int,
-        settings: NewtonSettings,
-    ) -> March:
+    def march(self, kernel: Kernel, problem: MarchProblem) -> March:
         """See `march.march`."""
-        return _march_by(self.library.march, kernel, c, start, s, u, active, settings)
+        return _march_by(self.library.march, kernel, problem)
 
 
 class AdaptiveKernel:
@@ -87,95 +66,64 @@ class AdaptiveKernel:
     """
 
     def __init__(self, topology: Topology) -> None:
-        self._topology = topology
         programs = kernel_programs(topology)
         self._library = march_library()
         self._library.march.argtypes = MARCH_ARGUMENTS
         self._programs = ProgramSet([programs[name] for name in MARCHED])
         self._lengths = np.array([programs["residual"].length, programs["jacobian"].length])
-        self._operations = 0
-        self._compiled: CompiledKernel | None = None
-        if stored_library(topology, KERNEL_LIBRARY, COMPILER_FLAGS) is not None:
-            self._compiled = compiled_kernel(topology)
+        self._on_demand = LibraryOnDemand(
+            topology, KERNEL_LIBRARY, COMPILER_FLAGS, lambda: compiled_kernel(topology)
+        )
 
     @property
     def compiled(self) -> bool:
         """Whether it is the compiled kernel that marches."""
-        return self._compiled is not None
+        return self._on_demand.ready
 
     @property
     def share_before_compiling(self) -> float:
-        """Operations of the programs, over those after which compiling pays; 0 when that is done."""
-        return 0.0 if self.compiled else self._operations / OPERATIONS_BEFORE_COMPILING
+        """See `LibraryOnDemand.share`."""
+        return self._on_demand.share
 
     def compile(self) -> None:
         """Compile now; where that fails, the programs go on."""
-        self._operations = 0
-        with suppress(CompileError):
-            self._compiled = compiled_kernel(self._topology)
+        self._on_demand.make()
 
-    def march(
-        self,
-        kernel: Kernel,
-        c: FloatArray,
-        start: Start,
-        s: FloatArray,
-        u: FloatArray,
-        active: int,
-        settings: NewtonSettings,
-    ) -> March:
+    def march(self, kernel: Kernel, problem: MarchProblem) -> March:
         """See `march.march`."""
-        if self.share_before_compiling >= 1.0:
-            self.compile()
-        if self._compiled is not None:
-            return self._compiled.march(kernel, c, start, s, u, active, settings)
+        if (library := self._on_demand.library()) is not None:
+            return library.march(kernel, problem)
         self._library.use_programs(self._programs.address)
-        path = _march_by(self._library.march, kernel, c, start, s, u, active, settings)
-        self._operations += int(path.counts[:2] @ self._lengths)
+        path = _march_by(self._library.march, kernel, problem)
+        self._on_demand.count(int(path.counts[:2] @ self._lengths))
         return path
 
 
-def _march_by(
-    function: Callable[..., int],
-    kernel: Kernel,
-    c: FloatArray,
-    start: Start,
-    s: FloatArray,
-    u: FloatArray,
-    active: int,
-    settings: NewtonSettings,
-) -> March:
+def _march_by(function: Callable[..., int], kernel: Kernel, problem: MarchProblem) -> March:
     """function: `march` of driver.c."""
-    capacity = SUBSTEPS * len(s) if kernel.nz else 0
-    path, passed = _march_with(function, kernel, c, start, s, u, active, settings, capacity)
+    capacity = SUBSTEPS * len(problem.s) if kernel.nz else 0
+    path, passed = _march_with(function, kernel, problem, capacity)
     if passed > capacity:
-        path, _ = _march_with(function, kernel, c, start, s, u, active, settings, passed)
+        path, _ = _march_with(function, kernel, problem, passed)
     return path
 
 
 def _march_with(
-    function: Callable[..., int],
-    kernel: Kernel,
-    c: FloatArray,
-    start: Start,
-    s: FloatArray,
-    u: FloatArray,
-    active: int,
-    settings: NewtonSettings,
-    capacity: int,
+    function: Callable[..., int], kernel: Kernel, problem: MarchProblem, capacity: int
 ) -> tuple[March, int]:
     """The path, with `capacity` of its substeps, and how many there were."""
-    n, length = len(s), 2 + kernel.nu + kernel.nz + kernel.nx
+    start, settings, n = problem.start, problem.settings, len(problem.s)
+    length = 2 + kernel.nu + kernel.nz + kernel.nx
     (x, z, y, level, end), out = _zeros((n, kernel.nx), (n, kernel.nz), (n, kernel.ny), (n,), (length,))
     rows, whole = np.zeros((capacity, length)), np.zeros(n + 1, dtype=np.int32)
     counts = np.zeros(4, dtype=np.int64)
     known, (s_known, x_known, u_start, z_start, s_in, u_in, c_in) = _joined(
-        start.s, start.x, start.u, start.z, s, u, c
+        start.s, start.x, start.u, start.z, problem.s, problem.u, problem.c
     )
     jacobian_rows, jacobian_cols, tail, scale, slips = kernel.addresses
     iterations_out = whole.ctypes.data
     code = function(
-        *(kernel.nx, active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
+        *(kernel.nx, problem.active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
         *(jacobian_rows, jacobian_cols, tail, scale, c_in),
         *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
         *(start.guess, kernel.coordinates, len(kernel.slips), slips),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import os
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -15,9 +14,9 @@ import casadi as ca
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.solver.blocks import block_names, interpreted_blocks
 from doe_kc.solver.c_source import c_sources
-from doe_kc.solver.compiled import OPERATIONS_BEFORE_COMPILING
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of, stored_library
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of
+from doe_kc.solver.library_on_demand import LibraryOnDemand
 from doe_kc.solver.program import Program
 from doe_kc.solver.program_library import (
     SENSITIVITY,
@@ -71,37 +70,27 @@ class AdaptiveDerivatives:
     """
 
     def __init__(self, topology: Topology) -> None:
-        self._topology = topology
         programs = derivative_programs(topology)
         self._library = sensitivity_library()
         self._library.sensitivity.argtypes = _ARGUMENTS
         self._programs = ProgramSet([programs["derivatives"]])
         self._length = programs["derivatives"].length
-        self._operations = 0
         self.constants = ProgramFunction(programs["constants_block"])
-        self._compiled: DerivativeLibrary | None = None
-        if stored_library(topology, DERIVATIVE_LIBRARY, DERIVATIVE_FLAGS) is not None:
-            self._compiled = derivative_library(topology)
+        self._on_demand = LibraryOnDemand(
+            topology, DERIVATIVE_LIBRARY, DERIVATIVE_FLAGS, lambda: derivative_library(topology)
+        )
 
     @property
     def compiled(self) -> bool:
         """Whether the derivatives are compiled ones."""
-        return self._compiled is not None
-
-    def compile(self) -> None:
-        """Compile now; where that fails, the programs go on."""
-        self._operations = 0
-        with suppress(CompileError):
-            self._compiled = derivative_library(self._topology)
+        return self._on_demand.ready
 
     def sensitivity(self, points: int, *arguments: object) -> int:
         """See `SensitivityLibrary`."""
-        if self._compiled is None and self._operations >= OPERATIONS_BEFORE_COMPILING:
-            self.compile()
-        if self._compiled is not None:
-            return self._compiled.sensitivity(points, *arguments)
+        if (library := self._on_demand.library()) is not None:
+            return library.sensitivity(points, *arguments)
         self._library.use_programs(self._programs.address)
-        self._operations += points * self._length
+        self._on_demand.count(points * self._length)
         return int(self._library.sensitivity(*arguments))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.kernel import Kernel
+from doe_kc.solver.newton import NewtonSettings
 
 
 @dataclass(frozen=True)
@@ -79,3 +80,18 @@ class Start:
     u: FloatArray
     z: FloatArray
     guess: bool = False
+
+
+@dataclass(frozen=True)
+class MarchProblem:
+    """Equilibria that are asked for: at path coordinates s (n,) under the controls u (n, nu).
+
+    c: constants of the axle. active: how many unknowns are solved for; the controls prescribe the rest.
+    """
+
+    c: FloatArray
+    start: Start
+    s: FloatArray
+    u: FloatArray
+    active: int
+    settings: NewtonSettings

@@ -12,7 +12,7 @@ import numpy as np
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.compiled import MarchLibrary
-from doe_kc.solver.equilibria import Halt, March, Start, substeps
+from doe_kc.solver.equilibria import Halt, March, MarchProblem, Start, substeps
 from doe_kc.solver.kernel import Buffered, Kernel
 from doe_kc.solver.newton import Iterate, Newton, NewtonSettings
 
@@ -54,19 +54,19 @@ def march(
     """
     chosen = settings or NewtonSettings()
     active = kernel.nx if full else kernel.nx - kernel.layout.tail
+    problem = MarchProblem(c, start, s, u, active, chosen)
     if compiled is not None:
-        return compiled.march(kernel, c, start, s, u, active, chosen)
-    return _Marcher(kernel, c, start, active, chosen).run(s, u)
+        return compiled.march(kernel, problem)
+    return _Marcher(kernel, problem).run(s, u)
 
 
 class _Marcher:
     """The Python twin of driver.c."""
 
-    def __init__(
-        self, kernel: Kernel, c: FloatArray, start: Start, active: int, settings: NewtonSettings
-    ) -> None:
+    def __init__(self, kernel: Kernel, problem: MarchProblem) -> None:
+        c, start, settings = problem.c, problem.start, problem.settings
         self._kernel, self._c, self._guess = kernel, c, start.guess
-        self._newton = Newton(kernel, c, active, settings)
+        self._newton = Newton(kernel, c, problem.active, settings)
         self._finest = 0.5**settings.max_halvings * (1.0 + 1e-9)
         self._out, self._state = (Buffered(kernel.functions[n]) for n in ("outputs", "state_update"))
         self._hs, self._hx = list(start.s[-HISTORY:]), [np.array(x) for x in start.x[-HISTORY:]]

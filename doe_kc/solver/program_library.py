@@ -52,11 +52,18 @@ def sensitivity_library() -> ctypes.CDLL:
 
 
 def _program_library(part: str, *files: Path) -> ctypes.CDLL:
-    sources = {part: handwritten(*files), "program": interpreter_source()}
-    library = ctypes.CDLL(str(build(sources, LIBRARY_FLAGS)))
+    library = load_program_library(
+        {part: handwritten(*files), "program": interpreter_source()}, LIBRARY_FLAGS
+    )
+    library.run_program.argtypes = (_ADDRESS, _ADDRESS, _ADDRESS)
+    return library
+
+
+def load_program_library(sources: dict[str, str], flags: Mapping[str, str]) -> ctypes.CDLL:
+    """Build and load what carries programs out, program.c among the sources; CompileError as `build`."""
+    library = ctypes.CDLL(str(build(sources, flags)))
     library.use_programs.argtypes = (_ADDRESS,)
     library.use_programs.restype = None
-    library.run_program.argtypes = (_ADDRESS, _ADDRESS, _ADDRESS)
     return library
 
 

@@ -16,7 +16,7 @@ from doe_kc.effects import EFFECTS, apply_effect
 from doe_kc.examples import EXAMPLE_TYPES, example_folder
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases.vertical import Vertical
-from doe_kc.solver import batch_library as batches
+from doe_kc.solver import library_on_demand
 from doe_kc.solver.batch_library import AdaptiveBatch, BatchLibrary, adaptive_batch, batch_library
 from doe_kc.solver.batch_suite import RESPONSE_COLUMNS, BatchSolution, solve_batch
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
@@ -122,7 +122,7 @@ def test_programs_give_the_digits_of_compiled_code(
     topology, changes = axle().topology, scattered(axle(), 3)
     quick = topology.frictional
     compiled = batch_library(topology, QUICKLY_COMPILED) if quick else library
-    monkeypatch.setattr(batches, "stored_library", lambda *_: None)
+    monkeypatch.setattr(library_on_demand, "stored_library", lambda *_: None)
     programs = AdaptiveBatch(topology, QUICKLY_COMPILED if quick else own_instruction_set())
     assert not programs.compiled
     one, other = (solve_batch(axle(), changes, own) for own in (compiled, programs))

@@ -12,7 +12,7 @@ import pytest
 
 from doe_kc.axle import Axle
 from doe_kc.effects import apply_effect
-from doe_kc.solver import compiled, derivative_library
+from doe_kc.solver import compiled, derivative_library, library_on_demand
 from doe_kc.solver.c_source import EXPRESSIONS
 from doe_kc.solver.compiled import AdaptiveKernel, adaptive_kernel
 from doe_kc.solver.derivative_library import AdaptiveDerivatives, adaptive_derivatives
@@ -151,8 +151,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     for library in (march_library, sensitivity_library):
         library()  # from the cache that has it
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
-    for module in (compiled, derivative_library):
-        monkeypatch.setattr(module, "OPERATIONS_BEFORE_COMPILING", 1)
+    monkeypatch.setattr(library_on_demand, "OPERATIONS_BEFORE_COMPILING", 1)
     caches = (compiled.compiled_kernel, adaptive_kernel, adaptive_derivatives, kernel)
     caches = (*caches, derivative_library.derivative_library)
     for cache in caches:
@@ -177,8 +176,7 @@ def test_what_is_asked_for_often_is_compiled_with_the_same_digits(
         return [*out, slopes.static, *(b for branches in slopes.branches.values() for b in branches)]
 
     with monkeypatch.context() as patch:
-        for module in (compiled, derivative_library):
-            patch.setattr(module, "OPERATIONS_BEFORE_COMPILING", 10**12)
+        patch.setattr(library_on_demand, "OPERATIONS_BEFORE_COMPILING", 10**12)
         programs = run()
         assert not adaptive_kernel(axle.topology).compiled
         assert not adaptive_derivatives(axle.topology).compiled
