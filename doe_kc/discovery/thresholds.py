@@ -181,6 +181,12 @@ missed by a screening of first order in the parameters."""
 OVERLOOKED_MOST = 6
 """-, such effects that are refitted at most, those of the largest score. Each costs a
 refit: on a car with one effect 2 and 18 gave the same verdict and sizes."""
+BENT_SHARE = 0.33
+"""-, share of the parameters that bounds hold back, from which refits begin at the nominal axle too. A
+five-link car with damper friction and a wrong ride height had 0.70 of them there at its best without effects."""
+NOMINAL_REFITS = 3
+"""-, effects that are refitted from there, and pairs of them. Each costs a refit; that car's ride height
+was the second, and the pair the first."""
 LEADER_ROUNDS = 2
 """-, times that the next leaders are refitted where the ones before gained nothing. A damper friction of a
 twentieth of its typical size promised 438 of ln evidence in screening and lost 8 in its refit, while a tyre

@@ -31,6 +31,7 @@ from doe_kc.discovery.search.refits import (
     leaders,
     overlooked,
     plausible_beside,
+    refits_from_nominal,
     set_refits,
     stiffer_first,
 )
@@ -413,6 +414,7 @@ def _decision(
     trials = set_refits(current, _proposed(current, screened, prior), prior, workers)
     if not any(_passes(t, current) for t in trials):
         trials += _leader_refits(current, screened, least, prior, workers)
+    trials += refits_from_nominal(current, screened, trials, prior, workers)
     if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
