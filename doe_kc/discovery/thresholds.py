@@ -183,7 +183,7 @@ OVERLOOKED_MOST = 6
 refit: on a car with one effect 2 and 18 gave the same verdict and sizes."""
 BENT_SHARE = 0.33
 """-, share of the parameters that bounds hold back, from which refits begin at the nominal axle too. A
-five-link car with damper friction and a wrong ride height had 0.70 of them there at its best without effects."""
+five-link car with damper friction and a wrong ride height had 0.70 there, at its best without effects."""
 NOMINAL_REFITS = 3
 """-, effects that are refitted from there, and pairs of them. Each costs a refit; that car's ride height
 was the second, and the pair the first."""

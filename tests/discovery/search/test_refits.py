@@ -9,20 +9,23 @@ from typing import Any
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit, FitStart, fit
 from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.screening.within_bounds import many_held
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     believable,
     leaders,
     more_than_trace,
     overlooked,
+    refits_from_nominal,
     stiffer_first,
 )
 from doe_kc.discovery.search.search import with_conditioning
+from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Size
-from tests.discovery.cases import discovery, library
+from tests.discovery.cases import discovery, library, model
 from tests.discovery.search.test_proposals import ROWS, hypotheses, tuned
 from tests.discovery.search.test_proposals import screened as beside
 
@@ -130,3 +133,39 @@ def screened(absorbed: float, detectability: float, failed: str = "") -> Screene
 )
 def test_what_a_screening_may_have_missed(candidate: Screened, refitted: bool) -> None:
     assert overlooked([candidate], 9.1) == ([candidate] if refitted else [])
+
+
+@pytest.fixture(scope="module")
+def bent() -> tuple[Fit, list[Screened]]:
+    """A car of two effects, tuned between bounds so narrow that most parameters end at one."""
+    car = model("pair")
+    narrow = replace(car, space=car.space.widened(0.1))
+    current = fit(narrow, narrow.centre)
+    known = library("hub_compliance", "steering_friction", "strut_bending", "rig_channel_gain")
+    return current, DiscoveryWorkers().screenings(current, known)
+
+
+def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    current, screened = bent
+    assert many_held(current)
+    prior = SetPrior.of(library())
+    trials = refits_from_nominal(current, screened, [], prior, DiscoveryWorkers())
+    best = max(trials, key=lambda t: t.gain)
+    members = [h.effect for h in best.fit.model.members]
+    assert sorted(members) == ["hub_compliance", "steering_friction"]
+    assert best.hypothesis.effect == members[-1]
+    assert best.gain == pytest.approx(best.fit.evidence - current.evidence + best.prior)
+    singles = [t for t in trials if len(t.fit.model.members) == 1]
+    assert {t.hypothesis.effect for t in singles} >= set(members)
+    assert best.gain > max(t.gain for t in singles) + 100.0
+
+
+def test_where_bounds_hold_few_nothing_is_refitted_from_the_nominal_axle(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    current, screened = bent
+    free = replace(current, z=current.model.centre.copy())
+    assert not many_held(free)
+    assert not refits_from_nominal(free, screened, [], SetPrior({}), DiscoveryWorkers())
