@@ -189,8 +189,8 @@ NOMINAL_REFITS = 3
 was the second, and the pair the first."""
 LEADER_ROUNDS = 6
 """-, times that leaders are refitted, the next ones where those before gained nothing. A damper friction of a
-twentieth of its typical size promised 692 of ln evidence in screening and lost 8 in its refit, three faults of
-the rig 90 and lost 11, while a tyre compliance that promised 65 gained 82."""
+twentieth of its typical size promised 692 of ln evidence in screening and lost 8 in its refit, three faults
+of the rig 90 and lost 11, while a tyre compliance that promised 65 gained 82."""
 TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01
