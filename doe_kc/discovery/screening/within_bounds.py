@@ -69,8 +69,12 @@ def _decrease(
 
 
 def _columns(screened: Screened) -> FloatArray:
-    """(M, k) of its sizes; of an effect without any what it does, which is there or not."""
-    return screened.columns if screened.amplitudes.size else screened.change[:, None]
+    """(M, k) of its sizes; of an effect without any what it does, which is there or not.
+
+    In one order of memory, whether from the cache or not: sums round by it, and a refit is known again by the
+    digits that it begins with.
+    """
+    return np.ascontiguousarray(screened.columns if screened.amplitudes.size else screened.change[:, None])
 
 
 def _size_bounds(screened: Screened) -> tuple[FloatArray, FloatArray]:
