@@ -222,6 +222,14 @@ def _pair_refits(
     return out
 
 
+def best_of_each_set(trials: Sequence[HypothesisFit]) -> list[HypothesisFit]:
+    """Of refits of the same set from several starts the best one; the largest gain first."""
+    best: dict[frozenset[str], HypothesisFit] = {}
+    for trial in sorted(trials, key=lambda t: -t.gain):
+        best.setdefault(frozenset(h.name for h in trial.fit.model.members), trial)
+    return list(best.values())
+
+
 def own_amplitudes(trial: HypothesisFit) -> FloatArray:
     """(m,) of the trial's effect, in typical sizes."""
     return trial.fit.z[trial.fit.z.size - len(trial.hypothesis.sizes) :]

@@ -27,6 +27,7 @@ from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
+    best_of_each_set,
     joint_refits,
     leaders,
     overlooked,
@@ -419,6 +420,7 @@ def _decision(
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
+    trials = best_of_each_set(trials)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:

@@ -15,6 +15,7 @@ from doe_kc.discovery.screening.within_bounds import many_held
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     believable,
+    best_of_each_set,
     leaders,
     more_than_trace,
     overlooked,
@@ -24,7 +25,7 @@ from doe_kc.discovery.search.refits import (
 from doe_kc.discovery.search.search import with_conditioning
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.effects.hypothesis import Size
+from doe_kc.effects.hypothesis import Hypothesis, Size
 from tests.discovery.cases import discovery, library, model
 from tests.discovery.search.test_proposals import ROWS, hypotheses, tuned
 from tests.discovery.search.test_proposals import screened as beside
@@ -160,6 +161,19 @@ def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
     singles = [t for t in trials if len(t.fit.model.members) == 1]
     assert {t.hypothesis.effect for t in singles} >= set(members)
     assert best.gain > max(t.gain for t in singles) + 100.0
+
+
+def test_of_one_set_refitted_twice_the_better_refit_stays(bent: tuple[Fit, list[Screened]]) -> None:
+    current, _ = bent
+    hub, friction = library("hub_compliance", "steering_friction")
+
+    def refit(gain: float, *members: Hypothesis) -> HypothesisFit:
+        model = replace(current.model, members=members)
+        return HypothesisFit(members[-1], replace(current, model=model), gain)
+
+    worse, other = refit(1.0, hub, friction), refit(2.0, friction)
+    better = refit(3.0, friction, hub)
+    assert best_of_each_set([worse, other, better]) == [better, other]
 
 
 def test_where_bounds_hold_few_nothing_is_refitted_from_the_nominal_axle(
