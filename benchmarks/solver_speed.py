@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable
 
 import numpy as np
-from _common import example_axle, machine, publish
+from _common import compile_now, example_axle, machine, publish
 from scipy.optimize import root
 
 from doe_kc.axle import Axle
@@ -134,12 +134,14 @@ def main() -> None:
     by_programs = not adaptive_kernel(axle.topology).compiled
     compiled = median_ms(lambda: solve(axle, compiled=True), 31)
     interpreted = median_ms(lambda: solve(axle, compiled=False), 11)
+    compile_now(axle.topology)
     reduce_ms = median_ms(lambda: reduce_all(curve_set(solution)), 31)
     paths = settable_paths(axle)
     sensitivities(axle, solution, paths)
     exact = median_ms(lambda: sensitivities(axle, solution, paths), 5)
     rubbing = apply_effect(axle, "steering_friction", {}, source="benchmark")
     rubbing = apply_effect(rubbing, "strut_friction", {}, source="benchmark")
+    compile_now(rubbing.topology)
     looped, loop_paths = solve(rubbing), settable_paths(rubbing)
     along = median_ms(lambda: sensitivities(rubbing, looped, loop_paths), 5)
     rows = list(sample(build_space(axle, VariableOptions(), "benchmark"), 400, seed=3).rows())

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import get_args
 
 import numpy as np
-from _common import machine, publish
+from _common import compile_now, machine, publish
 
 from doe_kc.axle import Axle, design_parameters
 from doe_kc.axle.parameters import ParameterMap, settable_paths
@@ -59,6 +59,7 @@ def least_ms(run: Callable[[], object], repeats: int = REPEATS) -> float:
 
 
 def sensitivity_row(name: str, axle: Axle) -> str:
+    compile_now(axle.topology)
     solution, every = solve(axle), settable_paths(axle)
     own = [p.path for p in design_parameters(axle)]
     suite = least_ms(partial(solve, axle))

@@ -96,7 +96,7 @@ class Overview:
         now = sum(inside(e) for e in entries)
         return (
             f"{now} of {len(entries)} characteristics are inside their interval or their noise, "
-            f"before {before}."
+            f"{before} with the axle as handed in."
         )
 
     @property
