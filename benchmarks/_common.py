@@ -7,10 +7,13 @@ import platform
 import sys
 from pathlib import Path
 
+from threadpoolctl import threadpool_limits
+
 ROOT = Path(__file__).parents[1]
 RESULTS = Path(__file__).parent / "results"
 for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(variable, "1")
+threadpool_limits(1)  # of what was loaded before
 if str(ROOT) not in sys.path:
     sys.path.insert(0, str(ROOT))
 

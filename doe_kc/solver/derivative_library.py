@@ -85,6 +85,10 @@ class AdaptiveDerivatives:
         """Whether the derivatives are compiled ones."""
         return self._on_demand.ready
 
+    def compile(self) -> None:
+        """Compile now; where that fails, the programs go on."""
+        self._on_demand.make()
+
     def sensitivity(self, points: int, *arguments: object) -> int:
         """See `SensitivityLibrary`."""
         if (library := self._on_demand.library()) is not None:
