@@ -14,8 +14,10 @@ import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, BENT_SHARE
+from doe_kc.discovery.thresholds import BENT_SHARE
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 
 
@@ -49,7 +51,7 @@ def gains_within_bounds(nominal: Fit, screened: Sequence[Screened]) -> list[Boun
     out = []
     for s in screened:
         if not s.failed:
-            decrease, amplitudes = _decrease(nominal, _columns(s), *_size_bounds(s))
+            decrease, amplitudes = _decrease(nominal, _columns(s), *_size_bounds(nominal.model, s.hypothesis))
             own = amplitudes[: s.amplitudes.size]
             out.append(BoundedGain(s, decrease - without, own))
     return sorted(out, key=lambda g: -g.gain)
@@ -77,10 +79,9 @@ def _columns(screened: Screened) -> FloatArray:
     return np.ascontiguousarray(screened.columns if screened.amplitudes.size else screened.change[:, None])
 
 
-def _size_bounds(screened: Screened) -> tuple[FloatArray, FloatArray]:
+def _size_bounds(model: EffectModel, hypothesis: Hypothesis) -> tuple[FloatArray, FloatArray]:
     """(k,) of the amplitudes, or of the share of an effect without sizes."""
-    sizes = screened.hypothesis.sizes
-    if not sizes:
+    if not hypothesis.sizes:
         return np.zeros(1), np.ones(1)
-    high = np.array([AMPLITUDE_LIMIT * s.most for s in sizes])
-    return np.where([s.signed or s.shape for s in sizes], -high, 0.0), high
+    count, extended = model.lower.size, model.extended(hypothesis)
+    return extended.lower[count:], extended.upper[count:]

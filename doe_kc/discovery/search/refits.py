@@ -213,13 +213,8 @@ def _pair_refits(
         _from_nominal(nominal, [t.hypothesis for t in pair], [own_amplitudes(t) for t in pair])
         for pair in pairs
     ]
-    out = []
-    for (_, other), refit in zip(pairs, workers.fits(starts, "refitting pairs"), strict=True):
-        if refit is not None:
-            odds = prior.log(refit.model.members) - prior.log(before)
-            gain = refit.evidence - current.evidence + odds
-            out.append(HypothesisFit(other.hypothesis, refit, gain, odds))
-    return out
+    fits = workers.fits(starts, "refitting pairs")
+    return [set_fit(refit, current, prior) for refit in fits if refit is not None]
 
 
 def best_of_each_set(trials: Sequence[HypothesisFit]) -> list[HypothesisFit]:
@@ -254,17 +249,14 @@ def set_refits(
         for p in proposals
     ]
     fits = workers.fits(starts, "refitting sets")
-    before = prior.log(current.model.members)
-    return [
-        HypothesisFit(
-            p.members[-1],
-            refit,
-            refit.evidence - current.evidence + prior.log(p.members) - before,
-            prior.log(p.members) - before,
-        )
-        for p, refit in zip(proposals, fits, strict=True)
-        if refit is not None and p.members
-    ]
+    return [set_fit(refit, current, prior) for refit in fits if refit is not None and refit.model.members]
+
+
+def set_fit(fit: Fit, current: Fit, prior: SetPrior) -> HypothesisFit:
+    """A fit of a whole set, by its last member, against the set of `current`."""
+    members = fit.model.members
+    odds = prior.log(members) - prior.log(current.model.members)
+    return HypothesisFit(members[-1], fit, fit.evidence - current.evidence + odds, odds)
 
 
 def hypothesis_fit(fit: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
