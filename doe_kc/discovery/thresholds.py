@@ -265,9 +265,6 @@ RELEVANT = 0.1
 deviations of a trace (`TRACE_SD`): one absent effect in a thousand looks so large."""
 CONFIDENT = 2.0
 """standard deviations, by which a size must be beyond a limit to count as beyond it. The usual level."""
-BESIDE_SHARE = 0.01
-"""-, share of the largest gain, from which an effect beside it is named where a law has a discrepancy. Less
-is what a law a tenth off leaves behind, in squares."""
 WRONG_NAME_CHANCE = 0.05
 """-, chance of a wrong name, from which two effects are alike to the records. The usual level."""
 DECISIVE_EVIDENCE = 4.6

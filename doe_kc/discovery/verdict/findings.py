@@ -13,7 +13,6 @@ from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
-    BESIDE_SHARE,
     DECISIVE_EVIDENCE,
     NAME_ALWAYS_LEVEL,
     NAME_LEVEL,
@@ -37,18 +36,25 @@ def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Fi
         _finding(search, one, place, compared)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     ]
-    most = max((f.gain for f in every), default=0.0)
-    least = BESIDE_SHARE * most if any(search.discrepancy_shares.values()) else 0.0
+    left = {
+        f.hypothesis.name: search.discrepancy_shares.get(f.hypothesis.name, 0.0) ** 2 * f.gain for f in every
+    }
     return tuple(
-        replace(f, relevant=f.relevant and _stands_out(one, least))
+        replace(f, relevant=f.relevant and _stands_out(one, _most_beside(left, f.hypothesis.name)))
         for f, one in zip(every, compared, strict=True)
     )
 
 
-def _stands_out(own: Alternatives, least: float) -> bool:
-    """Whether the effect is more than what the law of a much larger one could leave behind.
+def _most_beside(left: Mapping[str, float], name: str) -> float:
+    """ln evidence, the most that the law of another member leaves behind. left: of each member's own law."""
+    return max((gain for other, gain in left.items() if other != name), default=0.0)
 
-    A weak one is named where noise does not explain what remains without it.
+
+def _stands_out(own: Alternatives, least: float) -> bool:
+    """Whether the effect is more than `least`, what the law of a much larger one could leave behind.
+
+    A law that is off by a share leaves the square of it of what it explains, in ln evidence. A weak effect
+    is named where noise does not explain what remains without it.
     """
     strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
     if strength >= NAME_ALWAYS_LEVEL:
