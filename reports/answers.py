@@ -40,13 +40,14 @@ for, added, and the extended axle correlated, all by default. Inside: characteri
 (equations 5.1, 5.2) or three standard deviations of their target. Worst change: of all characteristics the
 largest growth of the distance from the target, in half-widths of its interval; "none" where nothing has moved
 away by more than noise. Improvement: mean over the characteristics whose baseline is three standard
-deviations off. Gap: whitened RMS of all records, handed in, re-tuned, handed over; 1 is noise. `car_a` and
-`car_s` have no key.
+deviations off. Exact model: what the car's own true values would show on average, as their targets have
+noise; above it the noise is fitted. Gap: whitened RMS of all records, handed in, re-tuned, handed over; 1 is
+noise. `car_a` and `car_s` have no key.
 
 """
 HEAD = (
-    "car", "status", "effects added", "inside", "worst change", "improvement, %", "gap", "at a bound",
-    "evaluations",
+    "car", "status", "effects added", "inside", "worst change", "improvement, %", "exact model, %", "gap",
+    "at a bound", "evaluations",
 )  # fmt: skip
 
 
@@ -97,6 +98,7 @@ def _row(car: str, answer: Answer) -> list[str]:
         f"{sum(map(inside, entries))} of {len(entries)}",
         _worst(answer),
         number(found.mean_improvement, 3),
+        number(found.exact_model_improvement, 3),
         " → ".join(f"{g:.2f}" for g in (gap.nominal, gap.tuned, gap.final) if g is not None) if gap else "-",
         f"{ended} of {point.size}",
         f"{len(found.run.evaluated)}",

@@ -15,7 +15,14 @@ from doe_kc.correlation.problem import Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation
 from doe_kc.correlation.search_targets import all_measured
 from doe_kc.correlation.twin_agreement import TwinAgreement
-from doe_kc.targets import CurveTarget, Improvement, improvements, mean_improvement, score
+from doe_kc.targets import (
+    CurveTarget,
+    Improvement,
+    exact_model_improvement,
+    improvements,
+    mean_improvement,
+    score,
+)
 
 
 @dataclass(frozen=True, repr=False)
@@ -97,6 +104,11 @@ class Correlation:
     def mean_improvement(self) -> float:
         """Percent, over the characteristics that count; nan when none does."""
         return mean_improvement(self.improvements)
+
+    @property
+    def exact_model_improvement(self) -> float:
+        """Percent that an exact model of the car would show, see there; nan when none counts."""
+        return exact_model_improvement(self.improvements)
 
     @property
     def values(self) -> dict[str, float]:

@@ -13,8 +13,6 @@ def summary(correlation: Correlation, assessment: Assessment | None = None) -> d
     """Title -> text, the most important first. assessment: by default the correlation's own."""
     verdict = assessment or assess(correlation)
     past = history(correlation)
-    counted = sum(e.counts for e in correlation.improvements)
-    mean = correlation.mean_improvement
     violated = [
         e.target.entry.id
         for e in correlation.improvements
@@ -25,9 +23,7 @@ def summary(correlation: Correlation, assessment: Assessment | None = None) -> d
         "Rating": f"{correlation.rating:.6g} (baseline {correlation.baseline_rating:.6g}; "
         "0 = every target met exactly)",
         "Constraints": "all met" if correlation.feasible else f"violated: {', '.join(violated)}",
-        "Mean improvement": f"{mean:.1f} % over {counted} characteristics"
-        if math.isfinite(mean)
-        else "none counts: every baseline is within three standard deviations of its target",
+        "Mean improvement": _improvement(correlation),
         "Method": correlation.method,
         "Evaluations": _evaluations(correlation, int(past.failed.sum())),
         "First feasible": f"evaluation {past.first_feasible}" if past.first_feasible else "never",
@@ -39,6 +35,15 @@ def summary(correlation: Correlation, assessment: Assessment | None = None) -> d
     return lines | {
         f"Beforehand{_number(i, len(correlation.steps))}": s for i, s in enumerate(correlation.steps)
     }
+
+
+def _improvement(correlation: Correlation) -> str:
+    mean, exact = correlation.mean_improvement, correlation.exact_model_improvement
+    if not math.isfinite(mean):
+        return "none counts: every baseline is within three standard deviations of its target"
+    words = f"{mean:.1f} % over {sum(e.counts for e in correlation.improvements)} characteristics"
+    noise = f"; an exact model would show {exact:.0f} % on average, by the noise of the targets"
+    return words + (noise if exact < 100.0 else "")
 
 
 def _evaluations(correlation: Correlation, failed: int) -> str:

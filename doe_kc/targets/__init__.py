@@ -3,7 +3,12 @@
 from __future__ import annotations
 
 from doe_kc.targets.build import build_targets
-from doe_kc.targets.improvement import Improvement, improvements, mean_improvement
+from doe_kc.targets.improvement import (
+    Improvement,
+    exact_model_improvement,
+    improvements,
+    mean_improvement,
+)
 from doe_kc.targets.options import CharacteristicOptions, CurveOptions
 from doe_kc.targets.rating import LIMIT_WEIGHT, Rating, Score, rate, score
 from doe_kc.targets.target import Constraint, CurveTarget, MisfitTerm, Objective, Target, Targets
@@ -22,6 +27,7 @@ __all__ = [
     "Target",
     "Targets",
     "build_targets",
+    "exact_model_improvement",
     "improvements",
     "mean_improvement",
     "rate",

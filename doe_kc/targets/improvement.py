@@ -60,5 +60,20 @@ def improvements(
 
 def mean_improvement(entries: list[Improvement]) -> float:
     """Mean percent over those that count; nan when none does."""
-    counted = [e.percent for e in entries if e.counts]
-    return sum(counted) / len(counted) if counted else math.nan
+    return _mean([e.percent for e in entries if e.counts])
+
+
+def exact_model_improvement(entries: list[Improvement]) -> float:
+    """Mean percent over those that count that an exact model of the car shows on average; nan when none does.
+
+    100 (1 - sqrt(2 / pi) sd / |baseline - target|), the mean distance of a Gaussian target from the truth.
+    More than this is reached by fitting the noise of the targets.
+    """
+    share = math.sqrt(2.0 / math.pi)
+    return _mean(
+        [100.0 * (1.0 - share * e.target.sd / abs(e.baseline - e.target.value)) for e in entries if e.counts]
+    )
+
+
+def _mean(percents: list[float]) -> float:
+    return sum(percents) / len(percents) if percents else math.nan

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.targets import Constraint, CurveTarget, Objective, Score, Target, Targets, rate
-from doe_kc.targets.improvement import improvements, mean_improvement
+from doe_kc.targets.improvement import exact_model_improvement, improvements, mean_improvement
 
 A, B, C = list(CHARACTERISTICS.values())[:3]
 
@@ -80,6 +80,20 @@ def test_improvement_counts_beyond_three_deviations_of_the_target() -> None:
     assert [f.counts for f in found] == [True, False, False]
     assert found[0].percent == pytest.approx(90.0)
     assert mean_improvement(found) == pytest.approx(90.0)
+
+
+def test_improvement_of_an_exact_model_is_what_the_noise_of_the_targets_leaves() -> None:
+    sd, truth, baseline, generator = 0.1, 1.0, 1.5, np.random.default_rng(5)
+    shown = []
+    for value in truth + sd * generator.standard_normal(20_000):
+        entries = (target(A, float(value), sd, objective=Objective()),)
+        before, after = (Score(np.array([x]), np.zeros(0)) for x in (baseline, truth))
+        shown.append(mean_improvement(improvements(Targets(entries, (), "hand"), before, after)))
+    entries = (target(A, truth, sd, objective=Objective()),)
+    score = Score(np.array([baseline]), np.zeros(0))
+    expected = exact_model_improvement(improvements(Targets(entries, (), "hand"), score, score))
+    assert expected == pytest.approx(100.0 - 100.0 * np.sqrt(2.0 / np.pi) * sd / 0.5)
+    assert np.nanmean(shown) == pytest.approx(expected, abs=1.5)
 
 
 def test_improvement_of_a_baseline_on_target_is_no_number() -> None:
