@@ -18,7 +18,7 @@ import numpy as np
 from _common import compile_now, machine, publish
 
 from doe_kc.axle import Axle, design_parameters
-from doe_kc.axle.parameters import ParameterMap, settable_paths
+from doe_kc.axle.parameters import ParameterMap, settable_paths, switched_topology
 from doe_kc.axle_file import read_axle
 from doe_kc.campaign.record import StoredCurves
 from doe_kc.campaign.runner import Campaign
@@ -59,8 +59,9 @@ def least_ms(run: Callable[[], object], repeats: int = REPEATS) -> float:
 
 
 def sensitivity_row(name: str, axle: Axle) -> str:
-    compile_now(axle.topology)
     solution, every = solve(axle), settable_paths(axle)
+    for topology in {axle.topology, *(switched_topology(axle, path) for path in every)}:
+        compile_now(topology)
     own = [p.path for p in design_parameters(axle)]
     suite = least_ms(partial(solve, axle))
     all_ms, own_ms = (least_ms(partial(sensitivities, axle, solution, p), 5) for p in (every, own))

@@ -15,7 +15,7 @@ from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.solver.blocks import block_names, interpreted_blocks
 from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, handwritten, library_of
+from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 from doe_kc.solver.library_on_demand import LibraryOnDemand
 from doe_kc.solver.program import Program
 from doe_kc.solver.program_library import (
@@ -23,13 +23,12 @@ from doe_kc.solver.program_library import (
     ProgramFunction,
     ProgramSet,
     programs_for,
+    sensitivity_flags,
     sensitivity_library,
 )
 
 DERIVATIVE_LIBRARY = "derivatives"
 """Kind of the library of a topology's derivatives."""
-DERIVATIVE_FLAGS = {"sensitivity": "-O3"}
-"""By part; the rest -O1."""
 _INT, _ADDRESS = ctypes.c_int, ctypes.c_void_p
 _ARGUMENTS = (
     *(_INT,) * 4, *(_ADDRESS,) * 2, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 6,
@@ -77,7 +76,7 @@ class AdaptiveDerivatives:
         self._length = programs["derivatives"].length
         self.constants = ProgramFunction(programs["constants_block"])
         self._on_demand = LibraryOnDemand(
-            topology, DERIVATIVE_LIBRARY, DERIVATIVE_FLAGS, lambda: derivative_library(topology)
+            topology, DERIVATIVE_LIBRARY, sensitivity_flags(), lambda: derivative_library(topology)
         )
 
     @property
@@ -128,9 +127,9 @@ def derivative_library(topology: Topology) -> DerivativeLibrary:
     def sources() -> dict[str, str]:
         functions = _derivative_functions(topology).values()
         generated = {part: text for function in functions for part, text in c_sources(function).items()}
-        return generated | {"sensitivity": handwritten(SENSITIVITY)}
+        return generated | {"sensitivity": SENSITIVITY.read_text()}
 
-    path = library_of(topology, DERIVATIVE_LIBRARY, sources, DERIVATIVE_FLAGS)
+    path = library_of(topology, DERIVATIVE_LIBRARY, sources, sensitivity_flags())
     library = ctypes.CDLL(str(path))
     library.sensitivity.argtypes = _ARGUMENTS
     return DerivativeLibrary(path, library)

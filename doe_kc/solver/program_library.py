@@ -15,13 +15,14 @@ import numpy as np
 
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.instructions import own_instruction_set
 from doe_kc.solver.library import build, handwritten, store_bytes, stored_bytes
 from doe_kc.solver.program import Program, interpreter_source, program_of, programs_bytes, read_programs
 
 MARCH_SOURCES = (Path(__file__).with_name("march.h"), Path(__file__).with_name("driver.c"))
 """Of the compiled march; the header has the constants of march.py and newton.py."""
 SENSITIVITY = Path(__file__).with_name("sensitivity.c")
-LIBRARY_FLAGS = {"driver": "-O3", "sensitivity": "-O3", "program": "-O2 -ffp-contract=off"}
+PROGRAM_FLAGS = {"program": "-O2 -ffp-contract=off"}
 ALIGNMENT = 8
 """Numbers: of the largest vector registers."""
 _ADDRESS = ctypes.c_void_p
@@ -42,19 +43,23 @@ class _Record(ctypes.Structure):
 @lru_cache(maxsize=1)
 def march_library() -> ctypes.CDLL:
     """The march of driver.c and what carries programs out; CompileError when it cannot be built."""
-    return _program_library("driver", *MARCH_SOURCES)
+    return _program_library({"driver": handwritten(*MARCH_SOURCES)}, {"driver": "-O3"})
 
 
 @lru_cache(maxsize=1)
 def sensitivity_library() -> ctypes.CDLL:
     """The same with sensitivity.c."""
-    return _program_library("sensitivity", SENSITIVITY)
+    return _program_library({"sensitivity": SENSITIVITY.read_text()}, sensitivity_flags())
 
 
-def _program_library(part: str, *files: Path) -> ctypes.CDLL:
-    library = load_program_library(
-        {part: handwritten(*files), "program": interpreter_source()}, LIBRARY_FLAGS
-    )
+def sensitivity_flags() -> dict[str, str]:
+    """Of the compiler for sensitivity.c, by the name of its part: for this machine's vector registers."""
+    return {"sensitivity": " ".join(("-O3", *own_instruction_set().flags))}
+
+
+def _program_library(sources: Mapping[str, str], flags: Mapping[str, str]) -> ctypes.CDLL:
+    """Of what calls programs, and of what carries them out."""
+    library = load_program_library({**sources, "program": interpreter_source()}, {**flags, **PROGRAM_FLAGS})
     library.run_program.argtypes = (_ADDRESS, _ADDRESS, _ADDRESS)
     return library
 

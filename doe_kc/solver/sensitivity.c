@@ -10,25 +10,87 @@ int derivatives(const double **, double **, integer *, double *, int);
 const integer *derivatives_sparsity_out(integer);
 
 #define INLINE static inline __attribute__((always_inline))
-#define TILE 32         /* columns that are handled at once, in registers */
+#if defined(__AVX512F__)
+#define PACK 8          /* columns of one vector register */
+#elif defined(__AVX__)
+#define PACK 4
+#else
+#define PACK 2
+#endif
+#define TILE (4 * PACK) /* columns that are handled at once, in registers; what is left goes by PACK */
 
 enum { R_X, R_C, R_U, Y_X, Y_C, Y_U, R_Z, Y_Z, Z_X, Z_C, Z_U, Z_Z, BLOCKS };
 
-/* A sparse block: numbers column by column as generated code gives them, and their order row by row. */
+typedef double pack __attribute__((vector_size(8 * PACK), aligned(8)));
+typedef struct { pack a, b, c, d; } tile;       /* one row of TILE columns, or of PACK: then `a` alone */
+
+/* width: TILE or PACK, known where the functions are inlined. */
+INLINE tile load(int width, const double *at) {
+    const pack *p = (const pack *)at;
+    tile s = {p[0]};
+    if (width > PACK) s.b = p[1], s.c = p[2], s.d = p[3];
+    return s;
+}
+
+INLINE void store(int width, double *at, tile s) {
+    pack *p = (pack *)at;
+    p[0] = s.a;
+    if (width > PACK) p[1] = s.b, p[2] = s.c, p[3] = s.d;
+}
+
+/* s + v times the row at `at` */
+INLINE tile add(int width, tile s, double v, const double *at) {
+    const pack *p = (const pack *)at;
+    s.a += v * p[0];
+    if (width > PACK) s.b += v * p[1], s.c += v * p[2], s.d += v * p[3];
+    return s;
+}
+
+INLINE tile times(int width, double v, tile s) {
+    s.a *= v;
+    if (width > PACK) s.b *= v, s.c *= v, s.d *= v;
+    return s;
+}
+
+/* Numbers of a sparse matrix row by row. */
+typedef struct {
+    int *start, *column;
+    double *value;
+} by_rows;
+
+/* A sparse block: its numbers column by column as generated code gives them, and row by row. */
 typedef struct {
     int rows, columns;
     const integer *start, *row;         /* by column */
-    int *row_start, *place, *column;    /* by row: which number, in which column */
     double *value;
+    int *place;                         /* of each number of `ordered` in `value` */
+    by_rows ordered;
 } block;
 
+/* dc and the directions of the controls, cut into columns that are handled at once. */
 typedef struct {
-    int columns, stride;                /* of right-hand sides; stride: a multiple of TILE */
-    const int *start, *column;          /* dc by row */
-    const double *value;
+    int columns, padded;                /* padded: a multiple of PACK */
     int directions;
-    const double *direction;            /* (directions, columns) */
+    by_rows dc;                         /* what is not zero, tile after tile; columns within their tile */
+    int *dc_row;                        /* of dc, of each of these numbers */
+    double *direction;                  /* (directions, padded) */
+    double du[TILE];                    /* of one control */
 } right_side;
+
+INLINE int width_at(const right_side *p, int first) { return p->padded - first >= TILE ? TILE : PACK; }
+
+static int open_rows(by_rows *r, int rows, int count) {
+    r->start = calloc(rows + 2, sizeof(int));
+    r->column = malloc(sizeof(int) * (count + 1));
+    r->value = malloc(sizeof(double) * (count + 1));
+    return !r->start || !r->column || !r->value;
+}
+
+static void close_rows(by_rows *r) {
+    free(r->start);
+    free(r->column);
+    free(r->value);
+}
 
 static int open_block(block *b, int index) {
     const integer *pattern = derivatives_sparsity_out(index);
@@ -37,166 +99,213 @@ static int open_block(block *b, int index) {
     b->start = pattern + 2;
     b->row = b->start + b->columns + 1;
     int count = (int)b->start[b->columns];
-    b->row_start = calloc(b->rows + 2, sizeof(int));
     b->place = malloc(sizeof(int) * (count + 1));
-    b->column = malloc(sizeof(int) * (count + 1));
     b->value = malloc(sizeof(double) * (count + 1));
-    if (!b->row_start || !b->place || !b->column || !b->value) return 1;
-    for (int k = 0; k < count; k++) b->row_start[b->row[k] + 2]++;
-    for (int i = 0; i < b->rows; i++) b->row_start[i + 2] += b->row_start[i + 1];
+    if (open_rows(&b->ordered, b->rows, count) || !b->place || !b->value) return 1;
+    int *start = b->ordered.start;
+    for (int k = 0; k < count; k++) start[b->row[k] + 2]++;
+    for (int i = 0; i < b->rows; i++) start[i + 2] += start[i + 1];
     for (int j = 0; j < b->columns; j++)
         for (integer k = b->start[j]; k < b->start[j + 1]; k++) {
-            int at = b->row_start[b->row[k] + 1]++;
+            int at = start[b->row[k] + 1]++;
             b->place[at] = (int)k;
-            b->column[at] = j;
+            b->ordered.column[at] = j;
         }
     return 0;
 }
 
 static void close_block(block *b) {
-    free(b->row_start);
+    close_rows(&b->ordered);
     free(b->place);
-    free(b->column);
     free(b->value);
 }
 
-/* out (rows, stride) = by_c dc + by_u (gradient directions) */
-INLINE void explicit_part(const block *by_c, const block *by_u, const double *gradient, const right_side *p, double *out) {
-    memset(out, 0, sizeof(double) * by_c->rows * p->stride);
-    for (int j = 0; j < by_c->columns; j++)
-        for (integer k = by_c->start[j]; k < by_c->start[j + 1]; k++) {
-            double v = by_c->value[k], *row = out + (size_t)by_c->row[k] * p->stride;
-            for (int i = p->start[j]; i < p->start[j + 1]; i++) row[p->column[i]] += v * p->value[i];
-        }
-    for (int j = 0; j < by_u->columns; j++)
+static int open_right_side(right_side *p, int columns, int rows, const int *start, const int *column,
+                           const double *value, int directions, const double *direction) {
+    p->columns = columns;
+    p->padded = (columns + PACK - 1) / PACK * PACK;
+    p->directions = directions;
+    p->direction = calloc((size_t)directions * p->padded + 1, sizeof(double));
+    p->dc_row = malloc(sizeof(int) * (start[rows] + 1));
+    if (open_rows(&p->dc, p->padded / PACK, start[rows]) || !p->direction || !p->dc_row) return 1;
+    for (int d = 0; d < directions; d++)
+        memcpy(p->direction + (size_t)d * p->padded, direction + (size_t)d * columns, sizeof(double) * columns);
+    int *end = p->dc.start, at = 0;
+    for (int first = 0; first < p->padded; first += width_at(p, first)) {
+        for (int j = 0; j < rows; j++)
+            for (int i = start[j]; i < start[j + 1]; i++)
+                if (column[i] >= first && column[i] < first + width_at(p, first)) {
+                    p->dc_row[at] = j;
+                    p->dc.column[at] = column[i] - first;
+                    p->dc.value[at++] = value[i];
+                }
+        *++end = at;
+    }
+    return 0;
+}
+
+static void close_right_side(right_side *p) {
+    close_rows(&p->dc);
+    free(p->dc_row);
+    free(p->direction);
+}
+
+/* out (rows, width) = columns `first` on, the tile of that number, of by_c dc + by_u (gradient directions) */
+INLINE void explicit_part(int width, const block *by_c, const block *by_u, const double *gradient, right_side *p,
+                          int number, int first, double *out) {
+    memset(out, 0, sizeof(double) * by_c->rows * width);
+    for (int i = p->dc.start[number]; i < p->dc.start[number + 1]; i++) {
+        int j = p->dc_row[i];
+        double v = p->dc.value[i], *column = out + p->dc.column[i];
+        for (integer k = by_c->start[j]; k < by_c->start[j + 1]; k++)
+            column[by_c->row[k] * width] += by_c->value[k] * v;
+    }
+    for (int j = 0; j < by_u->columns; j++) {
+        int moves = 0;
         for (int d = 0; d < p->directions; d++) {
             double moved = gradient[j * p->directions + d];
             if (moved == 0.0) continue;
-            const double *direction = p->direction + (size_t)d * p->columns;
-            for (integer k = by_u->start[j]; k < by_u->start[j + 1]; k++) {
-                double v = by_u->value[k] * moved, *row = out + (size_t)by_u->row[k] * p->stride;
-                for (int i = 0; i < p->columns; i++) row[i] += v * direction[i];
-            }
+            if (!moves) memset(p->du, 0, sizeof(p->du));
+            store(width, p->du, add(width, load(width, p->du), moved, p->direction + (size_t)d * p->padded + first));
+            moves = 1;
         }
-}
-
-/* sum (TILE) += row i of a block times the columns at `matrix`, (block's columns, stride) */
-INLINE void add_row(const block *b, int i, const double *matrix, int stride, double *sum) {
-    for (int k = b->row_start[i]; k < b->row_start[i + 1]; k++) {
-        double v = b->value[b->place[k]];
-        const double *row = matrix + (size_t)b->column[k] * stride;
-        for (int t = 0; t < TILE; t++) sum[t] += v * row[t];
+        if (!moves) continue;
+        for (integer k = by_u->start[j]; k < by_u->start[j + 1]; k++) {
+            double *row = out + by_u->row[k] * width;
+            store(width, row, add(width, load(width, row), by_u->value[k], p->du));
+        }
     }
 }
 
-/* LU of a (n, n), row by row, rows swapped; 0, or 1 where it is singular. */
-INLINE int factor(int n, double *a, int *pivot) {
+/* s + row i of a matrix times the rows at `rows` (., width) */
+INLINE tile add_row(int width, tile s, const by_rows *m, int i, const double *rows) {
+    for (int k = m->start[i]; k < m->start[i + 1]; k++)
+        s = add(width, s, m->value[k], rows + m->column[k] * width);
+    return s;
+}
+
+/* LU of a (n, n), row by row; order: the row that came to each place. 0, or 1 where it is singular. */
+INLINE int factor(int n, double *a, int *order) {
+    for (int i = 0; i < n; i++) order[i] = i;
     for (int k = 0; k < n; k++) {
         int best = k;
         for (int i = k + 1; i < n; i++)
             if (fabs(a[i * n + k]) > fabs(a[best * n + k])) best = i;
-        pivot[k] = best;
         if (!(fabs(a[best * n + k]) > 0.0)) return 1;
-        if (best != k)
+        if (best != k) {
+            int other = order[k];
+            order[k] = order[best];
+            order[best] = other;
             for (int j = 0; j < n; j++) {
                 double t = a[k * n + j];
                 a[k * n + j] = a[best * n + j];
                 a[best * n + j] = t;
             }
+        }
         double inverse = 1.0 / a[k * n + k];
         for (int i = k + 1; i < n; i++) {
+            if (a[i * n + k] == 0.0) continue;
             double f = a[i * n + k] *= inverse;
-            if (f != 0.0)
-                for (int j = k + 1; j < n; j++) a[i * n + j] -= f * a[k * n + j];
+            for (int j = k + 1; j < n; j++) a[i * n + j] -= f * a[k * n + j];
         }
     }
     return 0;
 }
 
-/* TILE columns at x (n, stride): solved for in place. */
-INLINE void solve_tile(int n, const double *a, const int *pivot, double *x, int stride) {
-    double sum[TILE];
-    for (int k = 0; k < n; k++)
-        if (pivot[k] != k)
-            for (int t = 0; t < TILE; t++) {
-                double other = x[(size_t)k * stride + t];
-                x[(size_t)k * stride + t] = x[(size_t)pivot[k] * stride + t];
-                x[(size_t)pivot[k] * stride + t] = other;
-            }
-    for (int i = 1; i < n; i++) {
-        for (int t = 0; t < TILE; t++) sum[t] = x[(size_t)i * stride + t];
-        for (int k = 0; k < i; k++) {
-            double f = a[i * n + k];
-            if (f != 0.0)
-                for (int t = 0; t < TILE; t++) sum[t] -= f * x[(size_t)k * stride + t];
+/* Minus what is not zero of rows below, then above the diagonal of a (n, n): rows 0 to n - 1, and n to 2 n - 1. */
+INLINE void compress(int n, const double *a, by_rows *out) {
+    int at = 0;
+    for (int half = 0; half < 2; half++)
+        for (int i = 0; i < n; i++) {
+            for (int j = half ? i + 1 : 0; j < (half ? n : i); j++)
+                if (a[i * n + j] != 0.0) {
+                    out->column[at] = j;
+                    out->value[at++] = -a[i * n + j];
+                }
+            out->start[half * n + i + 1] = at;
         }
-        for (int t = 0; t < TILE; t++) x[(size_t)i * stride + t] = sum[t];
-    }
-    for (int i = n - 1; i >= 0; i--) {
-        double inverse = 1.0 / a[i * n + i];
-        for (int t = 0; t < TILE; t++) sum[t] = x[(size_t)i * stride + t];
-        for (int k = i + 1; k < n; k++) {
-            double f = a[i * n + k];
-            if (f != 0.0)
-                for (int t = 0; t < TILE; t++) sum[t] -= f * x[(size_t)k * stride + t];
-        }
-        for (int t = 0; t < TILE; t++) x[(size_t)i * stride + t] = sum[t] * inverse;
-    }
 }
 
 typedef struct {
     int nx, ny, nz;
     const double *scale;
     block *of;                          /* BLOCKS of them, with their numbers at the point */
-    double *matrix, *dx, *dy, *dz, *dz_next;
-    int *pivot;
+    double *matrix;                     /* (nx, nx), factorized */
+    int *order;
+    by_rows factors;                    /* of `matrix`, see `compress` */
+    double *right, *dx, *dy, *dz_next;  /* (., TILE) of one tile */
+    double *dz;                         /* (nz, padded), tile after tile */
 } point;
 
-/* One equilibrium: dx, dz_next, and dy if it is wanted. 0, or 1 where it is singular. */
-FOR_THIS_PROCESSOR
-static int differentiate(point *e, const right_side *p, const double *gradient, int wanted) {
-    const block *of = e->of, *r_x = of + R_X;
-    int n = e->nx, stride = p->stride;
-    double sum[TILE];
+/* The columns of one tile: dz, and where they are wanted dy and dx, columns `first` on of (., columns). */
+INLINE void differentiate_tile(int width, point *e, right_side *p, const double *gradient, int number,
+                               int first, double *dy, double *dx) {
+    const block *of = e->of;
+    int n = e->nx, count = p->columns - first < width ? p->columns - first : width;
+    double *dz = e->dz + (size_t)e->nz * first;
+    explicit_part(width, of + R_C, of + R_U, gradient, p, number, first, e->right);
+    for (int i = 0; i < n; i++) {
+        int from = e->order[i];
+        tile s = load(width, e->right + from * width);
+        if (e->nz) s = add_row(width, s, &of[R_Z].ordered, from, dz);
+        s = times(width, -1.0 / e->scale[from], s);
+        store(width, e->dx + i * width, add_row(width, s, &e->factors, i, e->dx));
+    }
+    for (int i = n - 1; i >= 0; i--) {
+        tile s = add_row(width, load(width, e->dx + i * width), &e->factors, n + i, e->dx);
+        store(width, e->dx + i * width, times(width, 1.0 / e->matrix[i * n + i], s));
+        if (dx) memcpy(dx + (size_t)i * p->columns + first, e->dx + i * width, sizeof(double) * count);
+    }
+    if (dy) {
+        explicit_part(width, of + Y_C, of + Y_U, gradient, p, number, first, e->dy);
+        for (int i = 0; i < e->ny; i++) {
+            tile s = add_row(width, load(width, e->dy + i * width), &of[Y_X].ordered, i, e->dx);
+            if (e->nz) s = add_row(width, s, &of[Y_Z].ordered, i, dz);
+            store(width, e->dy + i * width, s);
+            memcpy(dy + (size_t)i * p->columns + first, e->dy + i * width, sizeof(double) * count);
+        }
+    }
+    if (!e->nz) return;
+    explicit_part(width, of + Z_C, of + Z_U, gradient, p, number, first, e->dz_next);
+    for (int i = 0; i < e->nz; i++) {
+        tile s = add_row(width, load(width, e->dz_next + i * width), &of[Z_X].ordered, i, e->dx);
+        store(width, e->dz_next + i * width, add_row(width, s, &of[Z_Z].ordered, i, dz));
+    }
+    memcpy(dz, e->dz_next, sizeof(double) * e->nz * width);
+}
+
+/* One equilibrium; dy (ny, columns), dx (nx, columns): where they are wanted. 0, or 1 where it is singular. */
+static int differentiate(point *e, right_side *p, const double *gradient, double *dy, double *dx) {
+    const block *r_x = e->of + R_X;
+    int n = e->nx;
     memset(e->matrix, 0, sizeof(double) * n * n);
     for (int j = 0; j < n; j++)
         for (integer k = r_x->start[j]; k < r_x->start[j + 1]; k++)
             e->matrix[r_x->row[k] * n + j] = r_x->value[k] / e->scale[r_x->row[k]];
-    if (factor(n, e->matrix, e->pivot)) return 1;
-    explicit_part(of + R_C, of + R_U, gradient, p, e->dx);
-    if (wanted) explicit_part(of + Y_C, of + Y_U, gradient, p, e->dy);
-    if (e->nz) explicit_part(of + Z_C, of + Z_U, gradient, p, e->dz_next);
-    for (int first = 0; first < p->columns; first += TILE) {
-        double *dx = e->dx + first;
-        const double *dz = e->dz + first;
-        for (int i = 0; i < n; i++) {
-            double share = -1.0 / e->scale[i];
-            for (int t = 0; t < TILE; t++) sum[t] = dx[(size_t)i * stride + t];
-            if (e->nz) add_row(of + R_Z, i, dz, stride, sum);
-            for (int t = 0; t < TILE; t++) dx[(size_t)i * stride + t] = share * sum[t];
-        }
-        solve_tile(n, e->matrix, e->pivot, dx, stride);
-        for (int i = 0; wanted && i < e->ny; i++) {
-            double *dy = e->dy + (size_t)i * stride + first;
-            for (int t = 0; t < TILE; t++) sum[t] = dy[t];
-            add_row(of + Y_X, i, dx, stride, sum);
-            if (e->nz) add_row(of + Y_Z, i, dz, stride, sum);
-            for (int t = 0; t < TILE; t++) dy[t] = sum[t];
-        }
-        for (int i = 0; i < e->nz; i++) {
-            double *next = e->dz_next + (size_t)i * stride + first;
-            for (int t = 0; t < TILE; t++) sum[t] = next[t];
-            add_row(of + Z_X, i, dx, stride, sum);
-            add_row(of + Z_Z, i, dz, stride, sum);
-            for (int t = 0; t < TILE; t++) next[t] = sum[t];
-        }
+    if (factor(n, e->matrix, e->order)) return 1;
+    compress(n, e->matrix, &e->factors);
+    static const int used[] = {Y_X, R_Z, Y_Z, Z_X, Z_Z};
+    for (int index = 0; index < (e->nz ? 5 : 1); index++) {
+        block *b = e->of + used[index];
+        int numbers = b->ordered.start[b->rows];
+        for (int k = 0; k < numbers; k++) b->ordered.value[k] = b->value[b->place[k]];
+    }
+    for (int first = 0, number = 0; first < p->padded; first += width_at(p, first), number++) {
+        if (width_at(p, first) == TILE) differentiate_tile(TILE, e, p, gradient, number, first, dy, dx);
+        else differentiate_tile(PACK, e, p, gradient, number, first, dy, dx);
     }
     return 0;
 }
 
-static void copy_rows(int rows, int columns, const double *from, int from_stride, double *to, int to_stride) {
-    for (int i = 0; i < rows; i++)
-        memcpy(to + (size_t)i * to_stride, from + (size_t)i * from_stride, sizeof(double) * columns);
+/* The friction states' derivatives, (nz, columns) as the caller holds them, to or from tile after tile. */
+static void copy_states(const right_side *p, int nz, double *rows, double *tiles, int to_tiles) {
+    for (int first = 0; first < p->padded; first += width_at(p, first)) {
+        int width = width_at(p, first), count = p->columns - first < width ? p->columns - first : width;
+        for (int i = 0; i < nz; i++) {
+            double *row = rows + (size_t)i * p->columns + first, *of_tile = tiles + (size_t)nz * first + i * width;
+            memcpy(to_tiles ? of_tile : row, to_tiles ? row : of_tile, sizeof(double) * count);
+        }
+    }
 }
 
 /* n equilibria x, u, after the friction states z, at constants c; they move with `columns` parameters by dc
@@ -208,43 +317,42 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const doubl
                 const double *u, const double *z, int columns, const int *dc_start, const int *dc_column,
                 const double *dc_value, int directions, const double *direction, const double *gradient,
                 const int *place, double *dy, double *dx, double *dz) {
-    int stride = (columns + TILE - 1) / TILE * TILE, count = nz ? BLOCKS : R_Z, failed = 0, closed = 0;
-    right_side p = {columns, stride, dc_start, dc_column, dc_value, directions, direction};
+    int count = nz ? BLOCKS : R_Z, failed = 0, closed = 0;
     block of[BLOCKS];
-    double *value[BLOCKS], *memory;
-    size_t doubles = (size_t)nx * nx + (size_t)stride * (nx + ny + 2 * nz) + 8;
+    double *value[BLOCKS];
+    right_side p;
+    point e = {nx, ny, nz, scale, of};
     memset(of, 0, sizeof(of));
-    memory = calloc(doubles, sizeof(double));
-    int *pivot = malloc(sizeof(int) * (nx + 1));
     for (int b = 0; b < count; b++) {
         closed |= open_block(of + b, b);
         value[b] = of[b].value;
     }
-    if (!memory || !pivot || closed) failed = -1;
+    closed |= open_right_side(&p, columns, of[R_C].columns, dc_start, dc_column, dc_value, directions, direction);
+    closed |= open_rows(&e.factors, 2 * nx, nx * nx);
+    double *memory = calloc((size_t)nx * nx + (size_t)TILE * (2 * nx + ny + nz) + (size_t)nz * p.padded + 1, sizeof(double));
+    e.order = malloc(sizeof(int) * (nx + 1));
+    if (closed || !memory || !e.order) failed = -1;
     if (!failed) {
-        double *m = memory;
-        point e = {nx, ny, nz, scale, of};
-        e.pivot = pivot;
-        e.dx = m; m += (size_t)stride * nx;
-        e.dy = m; m += (size_t)stride * ny;
-        e.dz = m; m += (size_t)stride * nz;
-        e.dz_next = m; m += (size_t)stride * nz;
-        e.matrix = m;
-        copy_rows(nz, columns, dz, columns, e.dz, stride);
+        e.matrix = memory;
+        e.right = e.matrix + (size_t)nx * nx;
+        e.dx = e.right + TILE * nx;
+        e.dy = e.dx + TILE * nx;
+        e.dz_next = e.dy + TILE * ny;
+        e.dz = e.dz_next + TILE * nz;
+        copy_states(&p, nz, dz, e.dz, 1);
         for (int i = 0; i < n && !failed; i++) {
             const double *arg[4] = {x + (size_t)i * nx, c, u + (size_t)i * nu, z + (size_t)i * nz};
             derivatives(arg, value, 0, 0, 0);
-            if (differentiate(&e, &p, gradient + (size_t)i * nu * directions, place[i] >= 0)) failed = i + 1;
-            if (place[i] >= 0) copy_rows(ny, columns, e.dy, stride, dy + (size_t)place[i] * ny * columns, columns);
-            if (dx) copy_rows(nx, columns, e.dx, stride, dx + (size_t)i * nx * columns, columns);
-            double *before = e.dz;
-            e.dz = e.dz_next;
-            e.dz_next = before;
+            double *own_y = place[i] >= 0 ? dy + (size_t)place[i] * ny * columns : NULL;
+            double *own_x = dx ? dx + (size_t)i * nx * columns : NULL;
+            if (differentiate(&e, &p, gradient + (size_t)i * nu * directions, own_y, own_x)) failed = i + 1;
         }
-        copy_rows(nz, columns, e.dz, stride, dz, columns);
+        copy_states(&p, nz, dz, e.dz, 0);
     }
     for (int b = 0; b < count; b++) close_block(of + b);
+    close_right_side(&p);
+    close_rows(&e.factors);
     free(memory);
-    free(pivot);
+    free(e.order);
     return failed;
 }
