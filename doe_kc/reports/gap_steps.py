@@ -11,6 +11,7 @@ from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.effects.words import hypothesis_label
 from doe_kc.reports import style
 from doe_kc.reports.discovery_gaps import MODEL_COLOURS
+from doe_kc.reports.names import within_sentence
 from doe_kc.reports.panel import PageBox
 from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.words import POINTS, text_width
@@ -49,8 +50,7 @@ def _changed(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> str:
 
 
 def _name(hypothesis: Hypothesis) -> str:
-    label = hypothesis_label(hypothesis)
-    return label[0].lower() + label[1:]
+    return within_sentence(hypothesis_label(hypothesis))
 
 
 STEPS_WIDTH, STEPS_ROW, STEPS_TOP, STEPS_FOOT = 8.0, 0.34, 0.22, 0.55

@@ -21,6 +21,11 @@ def without_remark(axis: str) -> str:
     return re.sub(r" \([^)]*\)", "", axis)
 
 
+def within_sentence(label: str) -> str:
+    """A label that does not begin a sentence: `Roll steer` becomes `roll steer`, `WC lateral` stays."""
+    return label if label[1:2].isupper() else label[:1].lower() + label[1:]
+
+
 def response_axis(response: str) -> str:
     """Axis of a response's curve, with its unit; all but the tyre load are changes from static (Δ)."""
     change = "" if response == TYRE_LOAD else "Δ "

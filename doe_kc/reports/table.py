@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 from doe_kc.ground.numbers import sd_format
@@ -185,6 +185,10 @@ class Table(Generic[Row]):
     def sheet_columns(self) -> list[Column[Row]]:
         """Those of the sheet, in its order."""
         return _ordered([c for c in self.columns if c.head is not None], self.sheet.first)
+
+    def without(self, key: str) -> Table[Row]:
+        """The same for a page, without a column that has nothing to say."""
+        return replace(self, columns=tuple(c for c in self.columns if c.key != key))
 
     @property
     def page_columns(self) -> list[Column[Row]]:

@@ -55,7 +55,15 @@ def test_an_unwritable_place_is_one_sentence(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.0, "0"), (-14.1728, "-14.17"), (0.000123456, "0.0001235"), (12345.6, "1.235e+04"), (math.nan, "–")],
+    [
+        (0.0, "0"),
+        (-14.1728, "-14.17"),
+        (0.000123456, "0.0001235"),
+        (6287.1, "6287"),
+        (12345.6, "12350"),
+        (1.23456e9, "1.235e+09"),
+        (math.nan, "–"),
+    ],
 )
 def test_numbers_read_well(value: float, text: str) -> None:
     assert significant(value) == text

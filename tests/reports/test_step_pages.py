@@ -52,6 +52,8 @@ def test_tables_and_curves_are_there(browser: Page, pages: dict[str, Path], name
     assert (browser.run("document.querySelectorAll('#curves-chart circle').length") > 0) is (
         name != "simulate"
     )
+    at_rest = browser.run("document.querySelectorAll('#curves-readout td').length")
+    assert (at_rest > 0) is (name == "compare"), "a readout without a model or a record says nothing"
     browser.run("document.querySelector('#curves-chart svg').focus()")
     browser.key("ArrowRight")
     heads = browser.run("Array.from(document.querySelectorAll('#curves-readout th'), h => h.textContent)")

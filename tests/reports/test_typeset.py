@@ -36,6 +36,8 @@ def test_zero_has_no_sign(text: str, shown: str) -> None:
 def test_every_parameter_says_what_it_is() -> None:
     assert all(kind.label in meaning(path) for path, kind in KINDS.items())
     assert meaning("right.llr.Fx") == f"{meaning('llr.Fx')}, right side alone"
+    assert meaning("ARB.z") == "Anti-roll bar drop link, upper end, z, mm"
+    assert "WC lateral displacement" in meaning("roll.wc_lateral_disp")
     assert meaning("lateral.toe_change") and meaning("LWB") and meaning("hub_compliance")
     assert meaning("spring") == meaning("of") == meaning("report.html") == ""
 

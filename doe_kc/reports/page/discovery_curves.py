@@ -22,9 +22,10 @@ DISCOVERY_CURVES_LEAD = (
     "Angles and wheel centre are changes from static; the half-width of a loop is (falling − rising) / 2. "
     "The band is ±2 sd of the noise."
 )
-GAP_WORDS = (
-    "Model minus measured as a multiple of the noise of the rig; 1 is noise. The best other effect is fitted "
-    "in the place of the one found: what it closes as well does not speak for a name."
+GAP_WORDS = "Model minus measured as a multiple of the noise of the rig; 1 is noise."
+OTHER_EFFECT_WORDS = (
+    " The best other effect is fitted in the place of the one found: what it closes as well does not speak "
+    "for a name."
 )
 PREFIX = "effect-curves"
 DISCOVERY_MODELS = (
@@ -99,5 +100,8 @@ def _half(view: ModelView, loops: dict[str, ModelView]) -> FloatArray:
 
 
 def gap_section(discovery: Discovery) -> Section:
-    """A row a load case and response."""
-    return Section("Deviation of every curve", table_html(gap_table(discovery)), GAP_WORDS)
+    """A row a load case and response; without a column for another effect where none was fitted."""
+    table, words = gap_table(discovery), GAP_WORDS + OTHER_EFFECT_WORDS
+    if not math.isfinite(discovery.gap.best_decoy):
+        table, words = table.without("best_decoy"), GAP_WORDS
+    return Section("Deviation of every curve", table_html(table), words)

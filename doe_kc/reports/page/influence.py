@@ -21,6 +21,7 @@ from doe_kc.reports.global_tables import (
     global_sentences,
     global_table,
 )
+from doe_kc.reports.names import within_sentence
 from doe_kc.reports.page.axle import png_data
 from doe_kc.reports.render.page import Section, render, table_html, write_page
 from doe_kc.reports.table import (
@@ -83,7 +84,7 @@ def _column(place: int, characteristic: Characteristic) -> Column[InfluenceRow]:
         percent,
         "0",
         page=PageCell(
-            f"{case_label(characteristic.load_case)}: {characteristic.label.lower()}",
+            f"{case_label(characteristic.load_case)}: {within_sentence(characteristic.label)}",
             text=lambda r: f"{percent(r):+.0f}" if shown(r) else "",
             fill=lambda r: _fill(percent(r)) if shown(r) else "",
             style="turned",

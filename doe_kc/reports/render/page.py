@@ -21,6 +21,8 @@ from doe_kc.reports.table import Column, PageCell, Row, Table, Value, ink_on
 
 CHART_DIGITS = 7
 """Significant digits of the numbers that the page's charts hold."""
+WHOLE_DIGITS = 3
+"""Digits before the point that may stand beyond the significant ones: 6290 rather than 6.29e+03."""
 NUMBER_STYLE = "n"
 """CSS class of cells that hold numbers."""
 HEAD_STYLES = ("first", NUMBER_STYLE, "turned")
@@ -101,6 +103,8 @@ def significant(value: float, digits: int = 4) -> str:
     if value == 0.0:
         return "0"
     places = digits - 1 - math.floor(math.log10(abs(value)))
+    if -WHOLE_DIGITS <= places < 0:
+        return f"{round(value, places):.0f}"
     return f"{value:.{places}f}" if 0 <= places <= 7 else f"{value:.{digits}g}"
 
 

@@ -21,6 +21,7 @@ from doe_kc.axle.parameter_kinds import (
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.effects import EFFECTS
 from doe_kc.load_cases import case_label
+from doe_kc.reports.names import within_sentence
 
 MINUS = "\N{MINUS SIGN}"
 _CODE = re.compile(r"(?<![\w.\]])(?:[A-Za-z]\w*\.)?[A-Za-z]\w*(?:\.[A-Za-z]\w*)?(?![\w\[])")
@@ -88,6 +89,8 @@ def meaning(code: str) -> str:
         return f"{known[rest]}, {side} side alone"
     if code in known or not rest:
         return known.get(code, "")
+    if side in EXTRA_HARDPOINTS and rest in COORDINATES:
+        return _parameter(point_kind(EXTRA_HARDPOINTS[side], rest))
     kind = kind_of(code)  # a point or bushing of an axle whose type is data
     return _parameter(kind) if kind is not None else ""
 
@@ -97,7 +100,10 @@ def _meanings() -> Mapping[str, str]:
     points = {**HARDPOINTS, **EXTRA_HARDPOINTS}
     return {
         **{name: f"Hardpoint: {label.lower()}" for name, label in points.items()},
-        **{c.id: f"{case_label(c.load_case)}: {c.label.lower()}, {c.unit}" for c in CHARACTERISTICS.values()},
+        **{
+            c.id: f"{case_label(c.load_case)}: {within_sentence(c.label)}, {c.unit}"
+            for c in CHARACTERISTICS.values()
+        },
         **{name: f"Effect: {effect.label.lower()}" for name, effect in EFFECTS.items()},
         **{path: _parameter(kind) for path, kind in KINDS.items()},
     }

@@ -77,6 +77,10 @@ for (const controls of document.querySelectorAll("[data-curves]")) (function () 
     const names = data.models.map((m) => m.label), last = names[names.length - 1];
     const at = x === null ? [] : ["measured", ...names, ...(last ? [last + " − measured"] : [])];
     const heads = [...at, ...names.map((n) => "RMS " + n)].map((h) => h + " [" + unit + "]");
+    if (!heads.length || (x === null && !(item.rms[response] || []).flat().some((v) => v !== null))) {
+      readout.replaceChildren();
+      return;
+    }
     heads.unshift(x === null ? "" : format(x) + " " + item.unit);
     const table = document.createElement("table"), top = table.createTHead().insertRow(), body = table.createTBody();
     for (const head of heads) top.append(Object.assign(document.createElement("th"), { textContent: head }));
