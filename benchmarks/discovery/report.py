@@ -18,6 +18,7 @@ from benchmarks.discovery.table import (
     excluded_wrongly,
     followup_lines,
     located,
+    members_named,
     parameter_lines,
     suite_table,
 )
@@ -76,6 +77,8 @@ def lines(found: Sequence[Score], run: Run, followed: Sequence[Score] = ()) -> l
         "",
         *suite_table(found),
         "",
+        "- Hidden effects that are named, of those diagnosable by themselves: "
+        f"{members_named(found)} (target >= 90 % of cars with several)",
         f"- Place right, of rightly named effects that have one: {located(found)}",
         f"- Excluded below their true size, of hidden effects that are not named: {excluded_wrongly(found)}",
         *parameter_lines(found),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from benchmarks.discovery.answer import Answer, Named
@@ -41,8 +41,9 @@ class Score:
     testable with these records. wrong: some name is not what is there; trace: some name is clutter, rightly
     sized but too small to matter. missed: answered that nothing is missing. placed: an unexplained deviation
     is reported where it is. located: right places over places asked. closed, decoy: share of the gap that
-    the named effects, and the best other one, close; nan where the answer gives none. excluded: hidden
-    effects that are excluded below their size, over those not named.
+    the named effects, and the best other one, close; nan where the answer gives none. members: hidden effects
+    that are named, over those diagnosable by themselves beside the others. excluded: hidden effects that are
+    excluded below their size, over those not named.
     """
 
     name: str
@@ -67,17 +68,17 @@ class Score:
     closed: float
     decoy: float
     diagnosable: bool | None
+    members: tuple[int, int]
     excluded: tuple[int, int]
     seconds: float
 
 
 @dataclass(frozen=True)
 class Predicted:
-    """From the opened key: detectability of the weakest hidden effect, the chance that noise names a rival,
-    and where its change shows."""
+    """From the opened key: detectability of each hidden effect and the chance that noise names a rival, by
+    its id; and where their changes show."""
 
-    strength: float
-    wrong: float
+    members: Mapping[str, tuple[float, float]]
     shows: frozenset[tuple[str, str]] = frozenset()
 
 
@@ -120,6 +121,7 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         closed=held_out_closed(answer),
         decoy=decoy_closed(answer),
         diagnosable=_diagnosable(truth, answer, predicted),
+        members=_members(truth, names, predicted),
         excluded=_excluded(truth, answer, names),
         seconds=answer.seconds,
     )
@@ -129,6 +131,13 @@ def _excluded(truth: Truth, answer: Answer, names: frozenset[str]) -> tuple[int,
     unnamed = [e for e in truth.effects if e.id not in names and truth.suite != DELETED]
     wrong = [e for e in unnamed if any(contradicted(e, s) for s in said_of(e, answer.excluded))]
     return len(wrong), len(unnamed)
+
+
+def _members(truth: Truth, names: frozenset[str], predicted: Predicted | None) -> tuple[int, int]:
+    if predicted is None or truth.suite == DELETED:
+        return 0, 0
+    clear = [i for i in truth.ids if _clear(*predicted.members[i])]
+    return sum(i in names for i in clear), len(clear)
 
 
 def _traced(truth: Truth, named: Named) -> bool:
@@ -185,7 +194,12 @@ def _diagnosable(truth: Truth, answer: Answer, predicted: Predicted | None) -> b
     """Whether the weakest hidden effect is strong enough and unlike all others; None where nobody says."""
     said = [answer.diagnosable[i] for i in truth.ids if i in answer.diagnosable]
     if predicted is not None:
-        said = [(predicted.strength, predicted.wrong)]
+        said = list(predicted.members.values())
     elif not truth.ids or len(said) < len(truth.ids):
         return None
-    return all(strength >= DETECTABLE and wrong <= WRONG_NAME for strength, wrong in said)
+    return all(_clear(strength, wrong) for strength, wrong in said)
+
+
+def _clear(strength: float, wrong: float) -> bool:
+    """Whether an effect is strong enough and unlike all others."""
+    return strength >= DETECTABLE and wrong <= WRONG_NAME

@@ -88,6 +88,12 @@ def located(found: Iterable[Score]) -> Share:
     return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
 
 
+def members_named(found: Iterable[Score]) -> Share:
+    """Hidden effects that are named, of those diagnosable by themselves beside the others."""
+    pairs = [s.members for s in found]
+    return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
+
+
 def excluded_wrongly(found: Iterable[Score]) -> Share:
     """Hidden effects that are not named, and are said to be smaller than they are."""
     pairs = [s.excluded for s in found]

@@ -39,7 +39,7 @@ def followups(chosen: Sequence[Case], folder: Path) -> list[Score]:
 
 
 def _predicted(case: Case, car: HiddenCar, folder: Path) -> Predicted | None:
-    """Of the weakest hidden effect, from the opened key; kept, since it takes seconds."""
+    """Of the hidden effects, from the opened key; kept, since it takes seconds."""
     if not car.car.hidden:
         return None
     place = folder / "keys" / f"{case.name}.detectability.json"
@@ -47,6 +47,6 @@ def _predicted(case: Case, car: HiddenCar, folder: Path) -> Predicted | None:
         records = reduce_measurement(case_folder(folder, case) / RECORDS)
         found = detectability(car.nominal, car.car, record_likelihood(car.nominal, records))
         place.write_text(json.dumps({k: asdict(d) for k, d in found.items()}, indent=1))
-    said = json.loads(place.read_text()).values()
-    shows = frozenset((at, response) for d in said for at, response in d["shows"])
-    return Predicted(min(d["strength"] for d in said), max(d["wrong"] for d in said), shows)
+    said = json.loads(place.read_text())
+    shows = frozenset((at, response) for d in said.values() for at, response in d["shows"])
+    return Predicted({name: (d["strength"], d["wrong"]) for name, d in said.items()}, shows)

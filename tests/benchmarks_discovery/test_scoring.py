@@ -38,8 +38,13 @@ TRUTHS = (
 )
 
 
+def clear(truth: Truth) -> Predicted:
+    """Every hidden effect stands out by itself."""
+    return Predicted(dict.fromkeys(truth.ids, (50.0, 0.001)))
+
+
 def _scores(analyser: Callable[[Truth], dict[str, Any]]) -> list[Score]:
-    return [score(t, read_answer(analyser(t)), Predicted(50.0, 0.001)) for t in TRUTHS]
+    return [score(t, read_answer(analyser(t)), clear(t)) for t in TRUTHS]
 
 
 def test_the_perfect_analyser_is_always_right(tmp_path: Path) -> None:
@@ -51,7 +56,9 @@ def test_the_perfect_analyser_is_always_right(tmp_path: Path) -> None:
     assert found[3].found and found[3].in_class
     assert all(e.z == 0.0 for s in found for e in s.estimates)
     assert found[1].closed == pytest.approx(1.0) and found[1].decoy == pytest.approx(0.5)
+    assert [s.members for s in found] == [(0, 0), (1, 1), (1, 1), (2, 2), (0, 0), (0, 0)]
     text = "\n".join(write(found, RUN, tmp_path))
+    assert "of those diagnosable by themselves: 4/4 = 100 % (51-100)" in text
     assert "| single | 2 | 100 (34-100) |" in text
     assert (tmp_path / "discovery.png").stat().st_size > 10_000
     assert (tmp_path / "discovery_reliability.png").stat().st_size > 10_000
@@ -63,6 +70,14 @@ def test_finding_nothing_is_right_for_null_cars_only() -> None:
     assert [s.exact for s in found] == [True, False, False, False, False, False]
     assert [s.missed for s in found] == [False, True, True, True, True, True]
     assert not any(s.wrong for s in found)
+    assert [s.members for s in found] == [(0, 0), (0, 1), (0, 1), (0, 2), (0, 0), (0, 0)]
+
+
+def test_a_member_that_is_too_weak_or_like_another_is_not_asked_for() -> None:
+    weak, alike = {"hub_compliance": (9.0, 0.001)}, {"steering_friction": (50.0, 0.2)}
+    found = score(TRUTHS[3], read_answer(pretend.always_none(TRUTHS[3])), Predicted(weak | alike))
+    assert found.members == (0, 0)
+    assert found.diagnosable is False
 
 
 @pytest.mark.parametrize(
@@ -77,7 +92,7 @@ def test_an_effect_that_is_said_not_to_be_testable_is_left_open(
     verdict: str, said: list[str], is_open: bool
 ) -> None:
     answer = pretend.always_none(TRUTHS[3]) | {"verdict": verdict, "not_testable": said}
-    found = score(TRUTHS[3], read_answer(answer), Predicted(50.0, 0.001))
+    found = score(TRUTHS[3], read_answer(answer), clear(TRUTHS[3]))
     assert found.open is is_open
     assert not found.in_class
 
