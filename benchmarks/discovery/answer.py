@@ -21,6 +21,8 @@ class Named:
     location: str | None
     probability: float
     parameters: Mapping[str, tuple[float, float]]
+    verdict: str = ""
+    """Its own: `named`, `class` or `lead`."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,15 @@ class Answer:
         unsure = {e for c in self.classes if len(set(c)) > 1 for e in c}
         return tuple(
             dict.fromkeys(e.id for e in self.effects if e.probability >= SURE and e.id not in unsure)
+        )
+
+    @property
+    def committed(self) -> tuple[str, ...]:
+        """Names, and those that are certain beside something unexplained."""
+        if self.verdict != "unexplained":
+            return self.names
+        return tuple(
+            dict.fromkeys(e.id for e in self.effects if e.verdict == "named" and e.probability >= SURE)
         )
 
     @property
@@ -107,7 +118,11 @@ def _named(effect: Mapping[str, Any]) -> Named:
     }
     probability = effect.get("probability")
     return Named(
-        effect["id"], effect.get("location"), 1.0 if probability is None else float(probability), parameters
+        effect["id"],
+        effect.get("location"),
+        1.0 if probability is None else float(probability),
+        parameters,
+        str(effect.get("verdict") or ""),
     )
 
 

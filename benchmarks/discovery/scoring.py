@@ -42,8 +42,9 @@ class Score:
     sized but too small to matter. missed: answered that nothing is missing. placed: an unexplained deviation
     is reported where it is. located: right places over places asked. closed, decoy: share of the gap that
     the named effects, and the best other one, close; nan where the answer gives none. members: hidden effects
-    that are named, over those diagnosable by themselves beside the others. excluded: hidden effects that are
-    excluded below their size, over those not named.
+    that are named, also beside something unexplained, over those diagnosable by themselves beside the others.
+    false_names: names, those among them, that are not what is there, over all. excluded: hidden effects
+    that are excluded below their size, over those not named.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Score:
     decoy: float
     diagnosable: bool | None
     members: tuple[int, int]
+    false_names: tuple[int, int]
     excluded: tuple[int, int]
     seconds: float
 
@@ -91,8 +93,8 @@ FACTOR = 2.0
 def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> Score:
     """predicted: None for a car without hidden effects, or where the analyser's own word counts."""
     shows = truth.shows | (predicted.shows if predicted is not None else frozenset())
-    names = frozenset(answer.names)
-    small = frozenset(e.id for e in answer.effects if e.id in names - truth.ids and _traced(truth, e))
+    names, committed = frozenset(answer.names), frozenset(answer.committed)
+    small = frozenset(e.id for e in answer.effects if e.id in committed - truth.ids and _traced(truth, e))
     pairs = [(t, n) for t in truth.effects for n in answer.effects if n.id == t.id and t.id in names]
     return Score(
         name=truth.name,
@@ -110,7 +112,7 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         and all(
             e.id in answer.offered | answer.not_testable or unshown(e, answer.excluded) for e in truth.effects
         ),
-        wrong=bool(names - truth.ids - small),
+        wrong=bool(committed - truth.ids - small),
         trace=bool(small),
         missed=bool(truth.ids or truth.outside) and answer.verdict == "none",
         unexplained=answer.verdict == "unexplained",
@@ -121,7 +123,8 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         closed=held_out_closed(answer),
         decoy=decoy_closed(answer),
         diagnosable=_diagnosable(truth, answer, predicted),
-        members=_members(truth, names, predicted),
+        members=_members(truth, committed, predicted),
+        false_names=(len(committed - truth.ids - small), len(committed)),
         excluded=_excluded(truth, answer, names),
         seconds=answer.seconds,
     )

@@ -88,6 +88,12 @@ def located(found: Iterable[Score]) -> Share:
     return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
 
 
+def false_names(found: Iterable[Score]) -> Share:
+    """Names that are not what is there, of all names."""
+    pairs = [s.false_names for s in found]
+    return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
+
+
 def members_named(found: Iterable[Score]) -> Share:
     """Hidden effects that are named, of those diagnosable by themselves beside the others."""
     pairs = [s.members for s in found]

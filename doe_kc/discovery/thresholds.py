@@ -185,8 +185,9 @@ BENT_SHARE = 0.33
 """-, share of the parameters that bounds hold back, from which refits begin at the nominal axle too. A
 five-link car with damper friction and a wrong ride height had 0.70 there, at its best without effects."""
 NOMINAL_REFITS = 3
-"""-, effects that are refitted from there, and pairs of them. Each costs a refit; that car's ride height
-was the second, and the pair the first."""
+"""-, effects that lead between the bounds, and as many that lead by screening, that are refitted from
+there; then pairs. Each costs a refit. On three cars of five effects the ride height was third by screening
+and fourth to seventh between the bounds, on the five-link car second there."""
 LEADER_ROUNDS = 6
 """-, times that leaders are refitted, the next ones where those before gained nothing. A damper friction of a
 twentieth of its typical size promised 692 of ln evidence in screening and lost 8 in its refit, three faults

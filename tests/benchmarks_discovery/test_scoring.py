@@ -59,6 +59,7 @@ def test_the_perfect_analyser_is_always_right(tmp_path: Path) -> None:
     assert [s.members for s in found] == [(0, 0), (1, 1), (1, 1), (2, 2), (0, 0), (0, 0)]
     text = "\n".join(write(found, RUN, tmp_path))
     assert "of those diagnosable by themselves: 4/4 = 100 % (51-100)" in text
+    assert "false names: 0/4" in text
     assert "| single | 2 | 100 (34-100) |" in text
     assert (tmp_path / "discovery.png").stat().st_size > 10_000
     assert (tmp_path / "discovery_reliability.png").stat().st_size > 10_000
@@ -78,6 +79,16 @@ def test_a_member_that_is_too_weak_or_like_another_is_not_asked_for() -> None:
     found = score(TRUTHS[3], read_answer(pretend.always_none(TRUTHS[3])), Predicted(weak | alike))
     assert found.members == (0, 0)
     assert found.diagnosable is False
+
+
+def test_a_name_beside_something_unexplained_counts_whether_right_or_wrong() -> None:
+    named = pretend.perfect(TRUTHS[3]) | {"verdict": "unexplained"}
+    named["effects"] = [effect | {"verdict": "named"} for effect in named["effects"]]
+    both = score(TRUTHS[3], read_answer(named), clear(TRUTHS[3]))
+    assert both.members == (2, 2) and both.false_names == (0, 2)
+    assert not both.exact and not both.wrong and both.names == ()
+    other = score(TRUTHS[4], read_answer(named), None)
+    assert other.wrong and other.false_names == (2, 2)
 
 
 @pytest.mark.parametrize(

@@ -175,17 +175,25 @@ def refits_from_nominal(
         nominal = nominal_fit(current)
     except NotConverged:
         return []
-    best: dict[str, BoundedGain] = {}
-    for one in gains_within_bounds(nominal, screened):
-        if one.gain > ACCEPTED_ODDS:
-            best.setdefault(one.screened.hypothesis.effect, one)
     starts = [
         _from_nominal(nominal, [one.screened.hypothesis], [one.amplitudes])
-        for one in list(best.values())[:NOMINAL_REFITS]
+        for one in leading_from_nominal(gains_within_bounds(nominal, screened))
     ]
     fits = workers.fits(starts, "refitting from the nominal axle")
     own = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
     return own + _pair_refits(current, nominal, [*trials, *own], prior, workers)
+
+
+def leading_from_nominal(gains: Sequence[BoundedGain]) -> list[BoundedGain]:
+    """Of the effects that gain the first ones between the bounds, and the first ones by their screening: a
+    ride height far from its place is hardly linear, and leads by one of them at most."""
+    best: dict[str, BoundedGain] = {}
+    for one in gains:
+        if one.gain > ACCEPTED_ODDS:
+            best.setdefault(one.screened.hypothesis.effect, one)
+    by_screening = sorted(best.values(), key=lambda one: -one.screened.gain)
+    first = {id(one) for one in by_screening[:NOMINAL_REFITS]}
+    return [one for i, one in enumerate(best.values()) if i < NOMINAL_REFITS or id(one) in first]
 
 
 def _pair_refits(

@@ -11,12 +11,13 @@ import pytest
 
 from doe_kc.discovery.fit import Fit, FitStart, fit
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.screening.within_bounds import many_held
+from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     believable,
     best_of_each_set,
     leaders,
+    leading_from_nominal,
     more_than_trace,
     overlooked,
     refits_from_nominal,
@@ -161,6 +162,24 @@ def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
     singles = [t for t in trials if len(t.fit.model.members) == 1]
     assert {t.hypothesis.effect for t in singles} >= set(members)
     assert best.gain > max(t.gain for t in singles) + 100.0
+
+
+def test_from_the_nominal_axle_effects_that_lead_between_bounds_or_by_screening_are_refitted() -> None:
+    """A ride height 8 mm off was third by screening and fifth between the bounds, and missed."""
+    known = library("strut_friction", "hub_compliance", "strut_bending", "steering_friction")
+    ride, gain = library("ride_height_offset", "rig_channel_gain")[:2]
+
+    def bounded(hypothesis: Hypothesis, by_screening: float, between_bounds: float) -> BoundedGain:
+        own = replace(screened(0.5, 10.0), hypothesis=hypothesis, gain=by_screening)
+        return BoundedGain(own, between_bounds, np.zeros(1))
+
+    friction, hub, bending, other = (next(h for h in known if h.effect == e) for e in
+        ("strut_friction", "hub_compliance", "strut_bending", "steering_friction"))  # fmt: skip
+    gains = [
+        bounded(friction, 900.0, 800.0), bounded(gain, 500.0, 400.0), bounded(hub, 100.0, 300.0),
+        bounded(bending, 50.0, 200.0), bounded(ride, 300.0, 100.0), bounded(other, 200.0, 1.0),
+    ]  # fmt: skip
+    assert [g.screened.hypothesis for g in leading_from_nominal(gains)] == [friction, gain, hub, ride]
 
 
 def test_of_one_set_refitted_twice_the_better_refit_stays(bent: tuple[Fit, list[Screened]]) -> None:
