@@ -64,13 +64,21 @@ TABLE_LINE, TABLE_PLACES = 13.0, (0.0, 34.0, 87.0, 140.0)
 """Points."""
 NAME_PLACES = (
     (3.0, 3.0), (3.0, -8.0), (-3.0, 3.0), (-3.0, -8.0),
-    (3.0, 10.0), (3.0, -15.0), (-3.0, 10.0), (-3.0, -15.0),
+    *((side * across, up) for across, up in ((9.0, 8.0), (9.0, -13.0), (13.0, 0.0), (4.0, 15.0), (4.0, -20.0),
+      (16.0, 14.0), (16.0, -19.0), (24.0, 2.0), (24.0, -8.0), (24.0, 22.0), (24.0, -27.0))
+      for side in (1.0, -1.0)),
 )  # fmt: skip
 """Points from a hardpoint to its name, tried in turn."""
+NEAR_NAMES = 4
+"""Of these places, from which on a line leads to the name."""
+POINT_REACH = 2.0
+"""Points about a hardpoint that no name covers."""
 NAME_SIZE = 5.5
 """Points of a hardpoint's name."""
 AXIS_WORDS_OF = ("X (rearwards +) [mm]", "Y (right +) [mm]", "Z (up +) [mm]")
 
+Box = tuple[float, float, float, float]
+"""Left, low, right and high edge, points of the page."""
 View = Literal["side", "top", "rear"]
 PLANES: Mapping[View, tuple[int, int]] = {"side": (0, 2), "top": (0, 1), "rear": (1, 2)}
 """Axes across and up: seen from the left, from above, and from behind."""
@@ -236,23 +244,38 @@ def _moves(panel: Panel, view: AxleView, across: int, up: int) -> None:
 
 
 def _names(panel: Panel, view: AxleView, across: int, up: int) -> None:
-    """Each beside its point, where no other name is yet."""
-    taken: list[tuple[float, float, float, float]] = []
-    for m in view.moves:
-        x, y = float(m.place[across]), float(m.place[up])
+    """Each beside its point; further off with a line to it."""
+    places = [(float(m.place[across]), float(m.place[up])) for m in view.moves]
+    names = [m.name for m in view.moves]
+    boxes = name_boxes([panel.place(x, y) for x, y in places], names)
+    unit = np.subtract(panel.place(1.0, 1.0), panel.place(0.0, 0.0))
+    for name, (x, y), (box, far) in zip(names, places, boxes, strict=True):
         at = panel.place(x, y)
-        wide, high = 0.68 * NAME_SIZE * len(m.name), 1.1 * NAME_SIZE
-        for dx, dy in NAME_PLACES:
-            shift = (dx if dx > 0 else dx - wide, dy)
-            box = (at[0] + shift[0], at[1] + dy, at[0] + shift[0] + wide, at[1] + dy + high)
-            if not any(_overlap(box, other) for other in taken):
-                break
-        taken.append(box)
-        panel.text(x, y, m.name, shift=shift, size=NAME_SIZE, color="#333333")
+        panel.text(x, y, name, shift=(box[0] - at[0], box[1] - at[1]), size=NAME_SIZE, color="#333333")
+        if far:
+            edge = box[0] if box[0] > at[0] else box[2]
+            end = np.array([edge - at[0], (box[1] + box[3]) / 2.0 - at[1]]) / unit
+            panel.plot([x, x + end[0]], [y, y + end[1]], color="#9AA1A8", lw=0.4, zorder=3)
 
 
-def _overlap(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
-    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+def name_boxes(points: list[tuple[float, float]], names: list[str]) -> list[tuple[Box, bool]]:
+    """Where each point's name lies, and whether that is away from it: the place that covers least of other
+    names and points. points: on the page."""
+    taken = [(x - POINT_REACH, y - POINT_REACH, x + POINT_REACH, y + POINT_REACH) for x, y in points]
+    out = []
+    for (x, y), name in zip(points, names, strict=True):
+        wide, high = 0.68 * NAME_SIZE * len(name), 1.1 * NAME_SIZE
+        corners = [(x + (dx if dx > 0 else dx - wide), y + dy) for dx, dy in NAME_PLACES]
+        boxes = [(left, low, left + wide, low + high) for left, low in corners]
+        best = int(np.argmin([sum(_common_area(box, other) for other in taken) for box in boxes]))
+        taken.append(boxes[best])
+        out.append((boxes[best], best >= NEAR_NAMES))
+    return out
+
+
+def _common_area(a: Box, b: Box) -> float:
+    across, up = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
+    return max(0.0, across) * max(0.0, up)
 
 
 def _table(page: Sheet, view: AxleView, x: float, y: float) -> None:

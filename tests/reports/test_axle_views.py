@@ -11,7 +11,7 @@ from matplotlib.patches import FancyArrowPatch
 from doe_kc.axle import with_values
 from doe_kc.axle_file import read_axle
 from doe_kc.reports import style
-from doe_kc.reports.axle_views import LONGEST_ARROW, PLANES, AxleView, axle_figure
+from doe_kc.reports.axle_views import LONGEST_ARROW, PLANES, AxleView, axle_figure, name_boxes
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"
 SD = {f"LWB.{axis}": 0.3 for axis in "xyz"}
@@ -72,3 +72,15 @@ def test_nothing_reaches_beyond_the_page(moved: AxleView, tmp_path: Path, form: 
     page = axle_figure(moved)
     assert page.outside == []
     assert style.save(page, tmp_path / "axle", form).stat().st_size > 10_000
+
+
+def test_names_of_points_close_together_cover_neither_each_other_nor_a_point() -> None:
+    points = [(100.0, 100.0), (101.0, 102.0), (99.0, 104.0), (104.0, 99.0), (102.0, 103.0), (98.0, 98.0),
+              (300.0, 100.0)]  # fmt: skip
+    named = name_boxes(points, ["LFO", "TLO", "SLO", "LWS", "DLO", "ARB", "UPS"])
+    boxes = [box for box, _ in named]
+    for i, a in enumerate(boxes):
+        assert not any(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3] for b in boxes[:i])
+        assert not any(a[0] < x < a[2] and a[1] < y < a[3] for x, y in points)
+    assert [far for _, far in named].count(True) >= 1
+    assert not named[-1][1], "a point alone has its name beside it"
