@@ -242,8 +242,8 @@ NAME_LEVEL = 6.0
 """standard deviations, below which an effect is not named by them alone. One in a billion: the library is
 large and the noise not exactly normal."""
 NAME_ALWAYS_LEVEL = 10.0
-"""standard deviations, from which an effect is named beside any other. A choice: far above the six of
-`NAME_LEVEL`."""
+"""standard deviations, from which an effect can be certain beside something unexplained, and nobody asks how
+often noise leaves as much. A choice: far above the six of `NAME_LEVEL`."""
 GAP_CLOSURE = 0.9
 """-, share of the gap that a name must close where the gap is clear of noise. A law that is a tenth off, the
 largest of `DISCREPANCY_SHARES`, leaves a tenth."""

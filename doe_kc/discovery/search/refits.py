@@ -90,6 +90,20 @@ def overlooked(screened: Sequence[Screened], least: float) -> list[Screened]:
     return [s for s in screened if not s.failed and s.absorbed >= ABSORBED_SHARE and s.detectability >= shows]
 
 
+def untried(screened: Sequence[Screened], trials: Sequence[HypothesisFit]) -> list[Screened]:
+    """Of every effect that no refit had, what screening has first.
+
+    Beside a free play, whose contact moves with every other effect, screening can say next to nothing of one
+    that explains all that remains.
+    """
+    known = {t.hypothesis.effect for t in trials}
+    first: dict[str, Screened] = {}
+    for s in screened:
+        if not s.failed and s.hypothesis.effect not in known:
+            first.setdefault(s.hypothesis.effect, s)
+    return list(first.values())
+
+
 def _explained(screened: Screened, fit: Fit) -> Changes:
     """(M, 1) what the effect does at its size."""
     change = screened.columns @ screened.amplitudes if screened.amplitudes.size else screened.change

@@ -35,6 +35,7 @@ from doe_kc.discovery.search.refits import (
     refits_from_nominal,
     set_refits,
     stiffer_first,
+    untried,
 )
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
@@ -420,6 +421,8 @@ def _decision(
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
+        if not any(_passes(t, current) for t in trials):
+            trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
     trials = best_of_each_set(trials)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)

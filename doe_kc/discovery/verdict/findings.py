@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from scipy.special import log_ndtr, logsumexp, ndtr
@@ -14,7 +13,6 @@ from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, m
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
     DECISIVE_EVIDENCE,
-    NAME_ALWAYS_LEVEL,
     NAME_LEVEL,
     NOISE_CHANCE,
     RIVAL_LISTED,
@@ -32,34 +30,20 @@ NO_EFFECT = ""
 
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
-    every = [
+    return tuple(
         _finding(search, one, place, compared)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
-    ]
-    left = {
-        f.hypothesis.name: search.discrepancy_shares.get(f.hypothesis.name, 0.0) ** 2 * f.gain for f in every
-    }
-    return tuple(
-        replace(f, relevant=f.relevant and _stands_out(one, _most_beside(left, f.hypothesis.name)))
-        for f, one in zip(every, compared, strict=True)
     )
 
 
-def _most_beside(left: Mapping[str, float], name: str) -> float:
-    """ln evidence, the most that the law of another member leaves behind. left: of each member's own law."""
-    return max((gain for other, gain in left.items() if other != name), default=0.0)
+def _stands_out(own: Alternatives) -> bool:
+    """Whether the effect is more than noise, and than what the laws of the others could leave behind.
 
-
-def _stands_out(own: Alternatives, least: float) -> bool:
-    """Whether the effect is more than `least`, what the law of a much larger one could leave behind.
-
-    A law that is off by a share leaves the square of it of what it explains, in ln evidence. A weak effect
-    is named where noise does not explain what remains without it.
+    Its loss is in errors that hold those laws' discrepancies. A weak effect is named where noise does not
+    explain what remains without it.
     """
     strength = float(np.sqrt(2.0 * max(0.0, own.loss)))
-    if strength >= NAME_ALWAYS_LEVEL:
-        return True
-    return own.trials[0].gain >= least and (strength >= NAME_LEVEL or own.removal_chance < NOISE_CHANCE)
+    return strength >= NAME_LEVEL or own.removal_chance < NOISE_CHANCE
 
 
 def _finding(
@@ -100,7 +84,7 @@ def _finding(
         alike=_alike(own, chances),
         largest=max((a for _, a, _ in counted), default=1.0),
         believed=believable(counted),
-        relevant=more_than_trace(counted) and not _trace_would_do(own),
+        relevant=more_than_trace(counted) and not _trace_would_do(own) and _stands_out(own),
         elsewhere=_elsewhere(own),
     )
 

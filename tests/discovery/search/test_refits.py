@@ -22,6 +22,7 @@ from doe_kc.discovery.search.refits import (
     overlooked,
     refits_from_nominal,
     stiffer_first,
+    untried,
 )
 from doe_kc.discovery.search.search import with_conditioning
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -135,6 +136,22 @@ def screened(absorbed: float, detectability: float, failed: str = "") -> Screene
 )
 def test_what_a_screening_may_have_missed(candidate: Screened, refitted: bool) -> None:
     assert overlooked([candidate], 9.1) == ([candidate] if refitted else [])
+
+
+def test_of_effects_that_no_refit_had_the_first_by_screening_is_left_to_try() -> None:
+    friction, left, right = (
+        screened(0.5, 10.0), screened(0.6, 10.0), screened(0.7, 10.0, "no equilibrium"),
+    )  # fmt: skip
+    known = library("left_right_asymmetry", "hub_compliance", "strut_bending")
+    one, other = [h for h in known if h.effect == "left_right_asymmetry"][:2]
+    hub, bending = (next(h for h in known if h.effect == e) for e in ("hub_compliance", "strut_bending"))
+    given = [
+        replace(friction, hypothesis=hub), replace(left, hypothesis=one), replace(left, hypothesis=other),
+        replace(right, hypothesis=bending),
+    ]  # fmt: skip
+    assert untried(given, []) == [given[0], given[1]]
+    done = HypothesisFit(hub, fit(model("pair"), model("pair").centre, steps=0), 1.0)
+    assert untried(given, [done]) == [given[1]]
 
 
 @pytest.fixture(scope="module")

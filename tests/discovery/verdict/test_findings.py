@@ -108,22 +108,24 @@ def test_a_weak_effect_is_named_where_noise_does_not_explain_what_it_explains(
     assert judged(gain=loss, without=without).relevant is named
 
 
-@pytest.mark.parametrize(("share", "named"), [(0.0, True), (0.05, True), (0.1, False)])
-def test_an_effect_is_not_named_where_the_law_of_a_larger_one_may_leave_as_much(
-    share: float, named: bool
-) -> None:
+def test_beside_a_much_larger_effect_a_weak_one_is_named_by_its_own_loss() -> None:
+    """What the larger one's law may leave behind is in the errors that the loss is taken in."""
     found = discovery("pair").search
     large, small = found.with_law_discrepancy.model.members
     screened = {s.hypothesis.name: s for s in found.first.screened}
-    shares = {large.name: share, small.name: 0.0}
-    compared = []
-    for member, gain in ((large, 2000.0), (small, 15.0)):
-        refit = HypothesisFit(member, found.with_law_discrepancy, gain)
-        own = (screened[member.name],)
-        compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
-    one, other = findings(replace(found, discrepancy_shares=shares), compared)
-    assert one.relevant
-    assert other.relevant is named
+
+    def relevant(loss: float) -> list[bool]:
+        compared = []
+        for member, gain in ((large, 2000.0), (small, loss)):
+            refit = HypothesisFit(member, found.with_law_discrepancy, gain)
+            own = (screened[member.name],)
+            without = explained(found.tuned)
+            compared.append(comparison(without, own, effect_change(found.tuned, own), (refit,), 1.0))
+        shares = {large.name: 0.1, small.name: 0.0}
+        return [f.relevant for f in findings(replace(found, discrepancy_shares=shares), compared)]
+
+    assert relevant(19.0) == [True, True]
+    assert relevant(17.0) == [True, False]
 
 
 def test_probabilities_follow_the_evidence_and_are_no_constant() -> None:
