@@ -421,16 +421,15 @@ def _decision(
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
-        if not any(_passes(t, current) for t in trials):
-            trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
+    if current.residual_map.chance < NOISE_CHANCE and not any(_accepted(t, current) for t in trials):
+        trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
     trials = best_of_each_set(trials)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:
         return Decision(current, tuple(screened), (), 1.0, False)
-    temper = max(1.0, trials[0].fit.residual_map.mean_square)
-    passes = trials[0].gain / temper > ACCEPTED_ODDS
-    return Decision(current, tuple(screened), tuple(trials), temper, passes)
+    passes = trials[0].gain / _temper(trials[0]) > ACCEPTED_ODDS
+    return Decision(current, tuple(screened), tuple(trials), _temper(trials[0]), passes)
 
 
 def _leader_refits(
@@ -455,6 +454,16 @@ def _leader_refits(
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
     """Whether a refit is worth a step, all new sizes believed."""
     return trial.gain > ACCEPTED_ODDS and plausible_beside(trial.fit, current.model.members)
+
+
+def _temper(trial: HypothesisFit) -> float:
+    """What ln evidence is divided by."""
+    return max(1.0, trial.fit.residual_map.mean_square)
+
+
+def _accepted(trial: HypothesisFit, current: Fit) -> bool:
+    """Whether it would be accepted if it came first."""
+    return _passes(trial, current) and trial.gain / _temper(trial) > ACCEPTED_ODDS
 
 
 def _screened(current: Fit, known: Sequence[Screened], workers: DiscoveryWorkers) -> list[Screened]:
