@@ -286,3 +286,17 @@ def test_more_than_a_hundred_parameters_at_once() -> None:
     exact = sensitivities(axle, tight(axle), paths)
     assert all(np.isfinite(d).all() for branches in exact.branches.values() for d in branches)
     assert len(CHARACTERISTICS) == characteristic_gradients(axle, tight(nominal()), paths[:3]).shape[0]
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 8, 9, 31, 33, 65])
+def test_few_parameters_have_the_derivatives_that_they_have_among_many(count: int) -> None:
+    """Columns are handled some at once, by the width of the machine's registers, and what is left singly."""
+    axle = with_values(short(nominal()), {"rebound_stop.clearance": 63.0})
+    axle = apply_effect(axle, "strut_friction", {}, source="test")
+    solution, paths = tight(axle), settable_paths(axle)[:80]
+    every, some = sensitivities(axle, solution, paths), sensitivities(axle, solution, paths[:count])
+    np.testing.assert_allclose(some.static, every.static[:, :count], rtol=1e-12, atol=1e-12)
+    for ident, branches in some.branches.items():
+        for own, among in zip(branches, every.branches[ident], strict=True):
+            largest = np.abs(among[..., :count]).max(axis=(0, 1))
+            assert (np.abs(own - among[..., :count]) <= 1e-12 * largest + 1e-300).all()
