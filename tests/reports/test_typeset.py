@@ -20,6 +20,7 @@ from tests.reports.correlations import EVIL
         ("1e-05", "1e-05"),
         ("5.2 -> 1.0", "5.2 → 1.0"),
         ("0 +- 1 1/mm^2", "0 ± 1 1/mm²"),
+        ("over +-0.05 mm", "over ±0.05 mm"),
     ],
 )
 def test_signs_of_print(typed: str, printed: str) -> None:

@@ -72,7 +72,7 @@ def _own_meaning(code: str, labels: Mapping[str, str]) -> str:
 
 def signs(text: str) -> str:
     """Typewriter signs as those of print."""
-    text = _NEGATIVE.sub(MINUS, text).replace("->", "→").replace("+-", "±")
+    text = _NEGATIVE.sub(MINUS, text.replace("+-", "±").replace("->", "→"))
     return text.replace("^2", "²").replace("^3", "³")
 
 
