@@ -421,7 +421,8 @@ def _decision(
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
-    if current.residual_map.chance < NOISE_CHANCE and not any(_accepted(t, current) for t in trials):
+    unexplained = current.residual_map.chance < NOISE_CHANCE
+    if unexplained and not any(_accepted(t, current) for t in trials) and not _by_a_law(current):
         trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
     trials = best_of_each_set(trials)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
@@ -454,6 +455,12 @@ def _leader_refits(
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
     """Whether a refit is worth a step, all new sizes believed."""
     return trial.gain > ACCEPTED_ODDS and plausible_beside(trial.fit, current.model.members)
+
+
+def _by_a_law(current: Fit) -> bool:
+    """Whether what remains may be another law of a friction in the set, which comes before further effects:
+    a third law of the steering friction looked like a compliance of the rack's mount."""
+    return any(EFFECTS[h.effect].laws for h in current.model.members)
 
 
 def _temper(trial: HypothesisFit) -> float:
