@@ -124,7 +124,12 @@ def common_name(labels: Sequence[str]) -> str:
     while shared < min(map(len, words)) - 1 and len({w[shared] for w in words}) == 1:
         shared += 1
     if not shared or not " ".join(words[0][:shared]).count(","):
-        return " or ".join(labels)
+        kinds: dict[str, list[str]] = {}
+        for label in labels:
+            kinds.setdefault(label.partition(",")[0], []).append(label)
+        return " or ".join(
+            common_name(own) if len(own) < len(labels) else " or ".join(own) for own in kinds.values()
+        )
     return f"{' '.join(words[0][:shared])} {' or '.join(' '.join(w[shared:]) for w in words)}"
 
 

@@ -165,6 +165,8 @@ def test_effects_of_which_every_pair_is_alike_are_one_group() -> None:
     assert np.isnan(rows[5].nearest)
     assert common_name(labels[:2]) == "Gain, toe or camber"
     assert common_name(labels[2:4]) == "c or d"
+    mixed = ["Preload, SFF", "Preload, SFR", "Offset of the alignment, caster"]
+    assert common_name(mixed) == "Preload, SFF or SFR or Offset of the alignment, caster"
 
 
 @pytest.mark.parametrize(
