@@ -16,14 +16,15 @@ from doe_kc.discovery.screening.disagreement import raw_map
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.decision import temper, threshold
 from doe_kc.discovery.search.law_discrepancy import is_friction
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch, threshold
+from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.certainty import certain, name_doubt
-from doe_kc.discovery.verdict.exchange import exchanged, temper
+from doe_kc.discovery.verdict.exchange import exchanged
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothesis_statuses
 from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.verdict.findings import findings
@@ -50,7 +51,7 @@ def discover(
     nominal = model.residual(model.centre)
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
-    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper(search))
+    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper(search.with_law_discrepancy))
     members = findings(search, compared)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
     predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.search.search import Step
+from doe_kc.discovery.search.decision import Step
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.effects.words import hypothesis_label, hypothesis_words
 from doe_kc.reports import style

@@ -16,6 +16,7 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.decision import threshold
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     hypothesis_fit,
@@ -23,7 +24,7 @@ from doe_kc.discovery.search.refits import (
     plausible,
     refit_starts,
 )
-from doe_kc.discovery.search.search import EffectSearch, threshold
+from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, NAME_ALWAYS_LEVEL
 from doe_kc.discovery.workers import DiscoveryWorkers

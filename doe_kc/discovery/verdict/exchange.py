@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from doe_kc.discovery.fit import FitStart
+from doe_kc.discovery.search.decision import temper
 from doe_kc.discovery.search.law_exchange import with_exchanged_laws
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch, search_from
@@ -28,7 +29,7 @@ def exchanged(
     errors its own, grows with each exchange.
     """
     search = with_exchanged_laws(search, library, workers)
-    compared = alternatives(search, temper(search), workers)
+    compared = alternatives(search, temper(search.with_law_discrepancy), workers)
     while (better := better_rival(compared)) is not None:
         own, rival, gain = better
         last = search.with_effects
@@ -37,13 +38,8 @@ def exchanged(
         if other.log_posterior <= search.log_posterior:
             break
         search = with_exchanged_laws(other, library, workers)
-        compared = alternatives(search, temper(search), workers)
+        compared = alternatives(search, temper(search.with_law_discrepancy), workers)
     return search, compared
-
-
-def temper(search: EffectSearch) -> float:
-    """T >= 1, by which ln evidence about the last set is divided: the mean square of its residual map."""
-    return max(1.0, search.with_law_discrepancy.residual_map.mean_square)
 
 
 def better_rival(compared: Sequence[Alternatives]) -> tuple[Hypothesis, HypothesisFit, float] | None:

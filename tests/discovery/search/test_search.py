@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from doe_kc.discovery.search import search as search_module
+from doe_kc.discovery.search import decision as decision_module
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import library, model
@@ -20,7 +20,7 @@ def test_where_nothing_is_accepted_all_others_are_refitted(
 ) -> None:
     """A steering friction of 210 N by a third law was answered as 322 N and a compliance of its mount."""
     asked = []
-    monkeypatch.setattr(search_module, "untried", lambda screened, trials: asked.append(trials) or [])
+    monkeypatch.setattr(decision_module, "untried", lambda screened, trials: asked.append(trials) or [])
     found = search(model("pair"), library(known), DiscoveryWorkers())
     members = found.with_law_discrepancy.model.members
     assert [h.effect for h in members] == [known], "the car has both, the library one"
