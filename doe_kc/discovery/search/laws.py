@@ -45,6 +45,16 @@ def _default(member: Hypothesis) -> Hypothesis:
     return next((h for h in known if h.name == member.name), member)
 
 
+def may_open(current: Fit) -> bool:
+    """Whether what remains may be another law of a friction in the set.
+
+    That comes before further effects that nothing points to: a third law of a steering friction looked like a
+    compliance of the rack's mount.
+    """
+    unexplained = current.residual_map.chance < NOISE_CHANCE
+    return unexplained and any(open_laws(member) for member in current.model.members)
+
+
 def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with laws that have one number more each, as it is where noise explains what remains.
 
@@ -65,16 +75,28 @@ def with_free_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     return current
 
 
+def with_best_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
+    """The fit with the closed law of most evidence for every friction on which other sizes may hang.
+
+    The free shape begins from it, and does not find back from a wrong one: its sliders make the cost rough.
+    """
+    for member in _frictions_beside_others(current):
+        if not open_laws(member):
+            continue
+        starts = [FitStart(*with_law(current, member, law), current) for law in other_laws(member)]
+        refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
+        current = max([current, *refits], key=lambda f: f.evidence)
+    return current
+
+
 def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with every friction by the law of most numbers, where sizes of other effects may hang on it.
 
     Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
     as a law with drifting loops could make it, the fit stays as it is.
     """
-    frictions = [h for h in current.model.members if EFFECTS[h.effect].laws]
-    others = [h for h in current.model.members if h not in frictions and not EFFECTS[h.effect].on_rig]
     model, z = current.model, current.z
-    for member in frictions if others else ():
+    for member in _frictions_beside_others(current):
         for law in open_laws(member)[-1:]:
             model, z = _replaced(model, z, member, law)
     if model is current.model:
@@ -83,6 +105,14 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     if refit is None or refit.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
         return current
     return refit
+
+
+def _frictions_beside_others(current: Fit) -> list[Hypothesis]:
+    """Frictions of the set, where it has other effects of the car too."""
+    members = current.model.members
+    frictions = [h for h in members if EFFECTS[h.effect].laws]
+    others = [h for h in members if h not in frictions and not EFFECTS[h.effect].on_rig]
+    return frictions if others else []
 
 
 def _opened(

@@ -22,7 +22,13 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     without_own_discrepancy,
 )
-from doe_kc.discovery.search.laws import with_free_laws, with_free_shapes, with_open_laws
+from doe_kc.discovery.search.laws import (
+    may_open,
+    with_best_laws,
+    with_free_laws,
+    with_free_shapes,
+    with_open_laws,
+)
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
@@ -68,7 +74,7 @@ class EffectSearch:
 
     @property
     def evidence(self) -> float:
-        """ln evidence of the last set by the laws that it was chosen with, to the records' own errors."""
+        """ln evidence of the last set by the closed laws of most evidence, to the records' own errors."""
         return self.with_effects.evidence + self.shape_loss
 
     @property
@@ -143,12 +149,13 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     """The search from there to its end."""
     tuned, prior, current = state.tuned, state.prior, state.current
     model, first = tuned.model, None
-    steps, loops_known = list(state.steps), False
+    steps, loops_known, laws_tried = list(state.steps), False, False
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
-        decision = next_decision(current, library, prior, workers, screened)
+        laws_open = not laws_tried and may_open(current)
+        decision = next_decision(current, library, prior, workers, screened, laws_open=laws_open)
         first = first or decision
         steps.append(decision.step(model.likelihood))
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
@@ -158,11 +165,11 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         if decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
+            laws_tried = False
+        elif laws_open:
+            current, laws_tried = with_free_laws(current, workers), True
         else:
-            following = with_free_laws(current, workers)
-            if following is current:
-                break
-            current = following
+            break
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         screened = _latest(screened, decision, current)
         del decision
@@ -170,6 +177,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             first = first.without_derivatives
     if len(current.model.members) != 1:
         first = first.without_derivatives
+    current = with_best_laws(current, workers)
     closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
     with_effects = refit_to_errors(current, model.likelihood)

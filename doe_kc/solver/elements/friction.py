@@ -6,7 +6,7 @@ at i = 1 and loads first as Berg's F = Fc x / (x_pre + x) at 2. Prandtl-Iwan: Je
 F = sum clip(k_j (x - z_j), +-F_j), closed minor loops; the distribution of yield displacements makes its
 virgin curve the Dahl one, Fc (1 - exp(-x / x_pre)): density y exp(-y / x_pre) of strength, a gamma law. The
 same with yield displacements that are log-normal, x_pre = Fc / initial stiffness. Or a backbone of its own:
-five sliders at fixed yield displacements, whose shares in Fc are numbers of the axle, so that any monotone
+seven sliders at fixed yield displacements, whose shares in Fc are numbers of the axle, so that any monotone
 backbone of decreasing slope is near one of them.
 """
 
