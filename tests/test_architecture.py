@@ -42,6 +42,9 @@ FLOORS = [
     "cli",
 ]
 """A module imports from its own floor and those before it."""
+LINES_MOST = 300
+TABLE = ROOT / "discovery" / "thresholds.py"
+"""One table on purpose: every threshold of discovery, with its reason."""
 
 
 @cache
@@ -115,6 +118,11 @@ def test_no_module_imports_itself_by_way_of_others() -> None:
         leaves = {n for n, targets in graph.items() if not targets & graph.keys()}
         assert leaves, f"modules that import each other: {sorted(graph)}"
         graph = {n: targets for n, targets in graph.items() if n not in leaves}
+
+
+def test_no_module_is_longer_than_a_reader_takes_in() -> None:
+    lengths = {path: len(path.read_text("utf-8").splitlines()) for path in trees() if path != TABLE}
+    assert {str(path): lines for path, lines in lengths.items() if lines > LINES_MOST} == {}
 
 
 def test_a_class_name_means_one_class() -> None:

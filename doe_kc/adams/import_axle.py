@@ -5,20 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from doe_kc.adams.anti_roll_bar import add_bar
 from doe_kc.adams.bushing_orientation import top_mount_direction
 from doe_kc.adams.bushings import add_bushings
+from doe_kc.adams.completeness import note_missing, note_unknown
 from doe_kc.adams.conversion import Conversion
 from doe_kc.adams.database import read_database
 from doe_kc.adams.name_map import MAPPED_TYPES, NameMap, name_map_path, read_name_map
 from doe_kc.adams.orientation import shortest_turn
 from doe_kc.adams.points import add_points, derive_mcpherson_points, set_frame
 from doe_kc.adams.springs import add_springs, add_stops
-from doe_kc.adams.steering import add_bar, add_hub, add_static, add_steering
-from doe_kc.adams.subsystem import AdamsElement, AdamsSubsystem
+from doe_kc.adams.steering import add_steering
+from doe_kc.adams.wheel import add_hub, add_static
 from doe_kc.axle.model import BUSHING_AXES, EXTRA_HARDPOINTS, HARDPOINTS
 from doe_kc.axle_types import read_axle_type
 from doe_kc.axle_types.read import DEFAULT_TYPE, AxleType
@@ -32,13 +33,6 @@ UNITS_TABLE = {
     "stiffness": "N/mm",
     "rotational_stiffness": "Nm/deg",
 }
-REQUIRED = {
-    "static": ("toe", "camber"),
-    "tyre": ("rate",),
-    "arb": ("rate",),
-    "steering": ("column", "rack_mm_per_rev"),
-}
-"""Keys without which there is no axle, by table; a table counts where the type has the part."""
 
 
 @dataclass(frozen=True)
@@ -138,8 +132,8 @@ def convert(source: AdamsSource, *, folder: Path = Path()) -> Conversion:
         add_bar(c)
     add_hub(c)
     _apply_values(c)
-    _note_unknown(c)
-    _note_missing(c, axle_type)
+    note_unknown(c)
+    note_missing(c, axle_type)
     return c
 
 
@@ -235,98 +229,3 @@ def _apply_bushing(c: Conversion, name: str, keys: list[str], value: float, path
     if keys[0] == "stiffness":
         table.get("table", {}).pop(keys[1], None)
     c.comments["bushings", name] = "value of the name map"
-
-
-def _note_unknown(c: Conversion) -> None:
-    """Blocks that are of no known kind, and elements that no name of the map stands for."""
-    hub = [] if c.names.hub is None else [c.names.hub]
-    mapped = {n.lower() for names in (*c.names.bushings.values(), *hub) for n in names.usage}
-    mapped |= {n.lower() for n in (*c.names.steering.torsion_bar, *c.names.steering.rack_mount)}
-    for subsystem in c.database.subsystems:
-        for block in subsystem.unknown:
-            c.left_out.append(f"{subsystem.path.name}: block [{block}] is not known")
-        taken = {p.element.block.line for p in c.elements.values() if p.subsystem is subsystem}
-        for element in subsystem.elements:
-            _note_file(c, subsystem, element)
-            if element.kind in ("bushing", "spring") and element.block.line not in taken:
-                if element.usage.lower() in mapped:
-                    continue
-                c.left_out.append(
-                    f"{subsystem.path.name}: {element.kind} {element.usage}: the type has no such"
-                )
-    if "damper" not in c.document and c.structure is None:
-        c.document["damper"] = {"gas_force": 0.0}
-        c.comments["damper", "gas_force"] = "no file says it"
-
-
-def _note_file(c: Conversion, subsystem: AdamsSubsystem, element: AdamsElement) -> None:
-    """The property file of an element that nothing was made of, so that an export copies it."""
-    cell = element.block.entries.get("PROPERTY_FILE")
-    if cell is None or not cell.text:
-        return
-    try:
-        path = c.database.property_path(cell.text, subsystem.where(element))
-    except InputError:
-        c.left_out.append(f"{subsystem.path.name}: {element.usage}: its file {cell.text} is not there")
-        return
-    if path not in c.files:
-        c.files.append(path)
-
-
-def _note_missing(c: Conversion, axle_type: AxleType | None) -> None:
-    c.left_out[:] = dict.fromkeys(c.left_out)
-    c.inferred[:] = dict.fromkeys(c.inferred)
-    points = c.document.get("hardpoints", {})
-    wanted: tuple[str, ...] = tuple(p for p in (*HARDPOINTS, "ARB"))
-    if axle_type is not None:
-        wanted = (*axle_type.structure.points, *axle_type.structure.single_points)
-    for point in wanted:
-        if point not in points or None in points[point]:
-            named = " or ".join(c.names.hardpoints.get(point, [])) or "no name in the map"
-            c.missing.append(
-                f"hardpoint {point} ({named}): name it in the name map, or give {point}.x, .y, .z"
-            )
-    for name in c.names.bushings:
-        table = c.document.get("bushings", {}).get(name)
-        axes = set() if table is None else {*table.get("stiffness", {}), *table.get("table", {})}
-        if table is not None and len(axes) < len(BUSHING_AXES):
-            c.missing.append(
-                f"bushing {name}: stiffness of {', '.join(a for a in BUSHING_AXES if a not in axes)}"
-            )
-    c.missing[:] = [m for m in c.missing if not _given_meanwhile(c, m)]
-    for table_name, keys in REQUIRED.items():
-        for key in keys:
-            path = f"{table_name}.{key}"
-            needed = _has_part(table_name, axle_type) and key not in c.document.get(table_name, {})
-            asked = any(path in m or (table_name == "steering" and "ratio_unit" in m) for m in c.missing)
-            if needed and not asked:
-                c.missing.append(f"{path}: no file says it; give it under [values]")
-    if c.spring_force is None and "static_load" not in c.document.get("tyre", {}):
-        c.missing.append("tyre.static_load: no spring tells it; give it under [values]")
-
-
-def _given_meanwhile(c: Conversion, sentence: str) -> bool:
-    """Whether a bushing of an unread class has all of its stiffnesses among the values."""
-    return any(
-        f"{name}.stiffness.Fx to" in sentence
-        and len(c.document.get("bushings", {}).get(name, {}).get("stiffness", {})) == len(BUSHING_AXES)
-        for name in c.names.bushings
-    )
-
-
-def _has_part(table: str, axle_type: AxleType | None) -> bool:
-    if axle_type is None:
-        return True
-    parts: dict[str, Any] = {"arb": axle_type.structure.bar, "steering": axle_type.structure.rack}
-    return parts.get(table, True) is not None
-
-
-class IncompleteAxle(InputError):
-    """The files leave out what an axle needs; the name map is where to say it."""
-
-
-def refuse_missing(c: Conversion) -> None:
-    """IncompleteAxle that lists what an axle file cannot do without."""
-    if c.missing:
-        head = f"{c.database.subsystems[0].path}: the axle is not complete"
-        raise IncompleteAxle(f"{head}; missing is " + "; ".join(c.missing) + ".")

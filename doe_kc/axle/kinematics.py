@@ -13,8 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.axle.freedoms import FreeTurns, free_spins, wheel_freedoms
+from doe_kc.axle.freedoms import free_spins, wheel_freedoms
 from doe_kc.axle.model import BUSHING_AXES, FORCE_AXES, Axle
+from doe_kc.axle.small_motions import FreeTurns
 from doe_kc.axle.structure import BushingConnection, KinematicJoint, Structure, of_side
 from doe_kc.ground.errors import InputError
 

@@ -16,7 +16,8 @@ from doe_kc.axle.topology import Topology
 from doe_kc.axle_file.schema import AxleFile, SteerArmTable, StrutTable
 from doe_kc.axle_file.tables import bushing_values, chosen_load_cases, stop_values, strut_values
 from doe_kc.axle_types import DEFAULT_TYPE, read_axle_type
-from doe_kc.axle_types.read import bushing_axes, check_follow
+from doe_kc.axle_types.checks import check_follow
+from doe_kc.axle_types.read import bushing_axes
 from doe_kc.effects import apply_effect, refuse_on_rig
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.files import read_toml, validate

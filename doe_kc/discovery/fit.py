@@ -1,9 +1,9 @@
-"""Joint fit of parameters and effects: the most probable axle, and the evidence for it.
+"""Joint fit of parameters and effects: the most probable axle, its covariance, and the evidence for it.
 
-Minimizes |r(z)|^2 + |(z - z0) / P|^2 between bounds by Gauss-Newton steps in a trust region. Evidence by
-Laplace's approximation, ln Z = -1/2 min - 1/2 ln det(1 + P J'J P) + ln(share of each posterior inside its
-half-line over that of its prior), relative to constants that all models of the same data share. What a bound
-holds back is integrated along its half-line, from the bound on.
+Of the cost |r(z)|^2 + |(z - z0) / P|^2 between bounds. Evidence by Laplace's approximation,
+ln Z = -1/2 min - 1/2 ln det(1 + P J'J P) + ln(share of each posterior inside its half-line over that of its
+prior), relative to constants that all models of the same data share. What a bound holds back is integrated
+along its half-line, from the bound on.
 """
 
 from __future__ import annotations
@@ -16,32 +16,16 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
-from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.half_lines import log_kept
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import INPUT_EFFECT, input_gain_amplitude
 from doe_kc.discovery.projection import Changes, Projection, changes
 from doe_kc.discovery.screening.disagreement import Map, residual_map
-from doe_kc.discovery.thresholds import (
-    BEYOND_DOUBT,
-    CHORD_STEPS,
-    FIT_DECREASE,
-    FIT_GOOD_RATIO,
-    FIT_POOR_RATIO,
-    FIT_STEPS,
-    FRESH_DECREASE,
-    HOPELESS_SHARE,
-    LARGEST_RADIUS,
-    LAST_STEP_DECREASE,
-    LEAST_STEP,
-    REUSE_DECREASE,
-)
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.result import NotConverged
 
 
 @dataclass(frozen=True)
@@ -179,99 +163,6 @@ class Fit(FieldsOnly):
         return np.asarray((low & (self.gradient > 0.0)) | (high & (self.gradient < 0.0)))
 
 
-@dataclass(frozen=True)
-class FitStart:
-    """Where a fit begins."""
-
-    model: EffectModel
-    """What is fitted."""
-    z: FloatArray
-    """(d + m,) the point."""
-    near: Fit
-    """Whose derivatives serve the first steps."""
-    ceiling: float = np.inf
-    """Cost above which the fit is of no use, see `fit`."""
-
-
-def fit(
-    model: EffectModel,
-    start: FloatArray,
-    *,
-    steps: int = FIT_STEPS,
-    known: FloatArray | None = None,
-    aged: float = np.inf,
-    ceiling: float = np.inf,
-) -> Fit:
-    """The most probable point reached from `start` (d + m,). NotConverged when the start has no solution.
-
-    known: (M, p + m) derivatives that are known, see `known_columns`. aged: decrease of the sum of squares
-    since they were taken; by default they are those of a model nearby, good enough for the first step.
-    ceiling: cost above which the fit is of no use; one whose steps promise no less is given up, where that is
-    close not before it has derivatives of its own.
-    """
-    z = np.clip(start, model.lower, model.upper)
-    current = _expanded(model, z, model.residual(z), 1, known)
-    radius, aged = 1.0, 0.0 if known is None else aged
-    for taken in range(steps):
-        gradient, hessian = current.gradient, current.hessian
-        low = np.maximum(model.lower - current.z, -radius)
-        high = np.minimum(model.upper - current.z, radius)
-        step = bounded_step(hessian, gradient, low, high)
-        predicted = float(-(2.0 * gradient @ step + step @ hessian @ step))
-        if predicted < LAST_STEP_DECREASE and aged > FRESH_DECREASE:
-            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
-            continue
-        if predicted < FIT_DECREASE:
-            return replace(current, converged=True)
-        if taken and _hopeless(current, ceiling):
-            if aged <= FRESH_DECREASE or _hopeless(current, ceiling + 2.0 * BEYOND_DOUBT):
-                return current
-            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
-            continue
-        trial, residual = current.z + step, None
-        try:
-            residual = model.residual(trial)
-            cost = cost_of(model, trial, residual)
-        except NotConverged:
-            cost = np.inf
-        current = replace(current, evaluations=current.evaluations + 1)
-        ratio = (current.cost - cost) / predicted
-        if ratio < FIT_POOR_RATIO and max(predicted, aged) < FRESH_DECREASE:  # a law with corners: rough
-            if residual is not None and cost < current.cost:
-                current = replace(current, z=trial, residual=residual, cost=cost)
-            return replace(current, converged=True)
-        if ratio < FIT_POOR_RATIO:
-            radius = min(radius, float(np.abs(step).max())) / 4.0
-        elif ratio > FIT_GOOD_RATIO:
-            radius = min(LARGEST_RADIUS, 2.0 * radius)
-        if residual is not None and cost < current.cost:
-            if predicted < LAST_STEP_DECREASE:
-                return replace(current, z=trial, residual=residual, cost=cost, converged=True)
-            gained = current.cost - cost
-            aged = aged + gained if gained < REUSE_DECREASE else 0.0
-            if aged and abs(ratio - 1.0) < 1.0 - FIT_GOOD_RATIO:
-                missed = residual - current.residual - current.jacobian.moved(step)
-                jacobian = current.jacobian.secant(missed, step)
-                current = replace(current, z=trial, residual=residual, jacobian=jacobian, cost=cost)
-                continue
-            current, aged = _expanded(model, trial, residual, current.evaluations), 0.0
-        elif aged > FRESH_DECREASE:
-            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
-        if radius < LEAST_STEP:
-            return current
-    return current
-
-
-def _hopeless(fit: Fit, ceiling: float) -> bool:
-    """Whether even half as much again as the whole Gauss-Newton step promises stays above a cost."""
-    if np.isinf(ceiling):
-        return False
-    model = fit.model
-    step = bounded_step(fit.hessian, fit.gradient, model.lower - fit.z, model.upper - fit.z)
-    promised = float(-(2.0 * fit.gradient @ step + step @ fit.hessian @ step))
-    return fit.cost - (1.0 + HOPELESS_SHARE) * promised > ceiling
-
-
 def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     """Sum of squares of the data that fits look at, with the prior's."""
     seen = residual[model.used]
@@ -286,14 +177,6 @@ def rewhitened_fit(fit: Fit, model: EffectModel) -> Fit:
     return replace(
         fit, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, fit.z, residual)
     )
-
-
-def refit_to_errors(fit: Fit, likelihood: Likelihood) -> Fit:
-    """The fit to the same records with other errors, by the chord method from where it is."""
-    if fit.model.likelihood is likelihood:
-        return fit
-    model = fit.model.with_likelihood(likelihood)
-    return chord_fit(rewhitened_fit(fit, model), model)
 
 
 def amplitude_estimates(fit: Fit, hypothesis: Hypothesis) -> tuple[FloatArray, FloatArray]:
@@ -320,62 +203,3 @@ def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:
     order = np.concatenate([np.delete(np.arange(fit.z.size), own), own])
     moved = model.without(hypothesis).extended(hypothesis)
     return replace(fit, model=moved, z=fit.z[order], jacobian=fit.jacobian.ordered(order))
-
-
-def known_columns(fit: Fit, model: EffectModel) -> FloatArray:
-    """(M, p + m) derivatives at a fit as far as they serve another model of the same records.
-
-    Those to parameters and calibrations, p together, then those to the sizes of its members; nan where the
-    fit's model has not got the member.
-    """
-    own, end, first = fit.jacobian.own, fit.model.calibrations.stop, fit.model.linear
-    places = {h.name: p for h, p in fit.model.places()}
-    columns = [own[:, :end]]
-    for member in model.members:
-        place = places.get(member.name, slice(first.stop, first.stop))
-        known = own[:, end + place.start - first.stop : end + place.stop - first.stop]
-        none = np.full((fit.residual.size, len(member.sizes)), np.nan)
-        columns.append(known if known.shape[1] == len(member.sizes) else none)
-    return np.hstack(columns)
-
-
-def _expanded(
-    model: EffectModel,
-    z: FloatArray,
-    residual: FloatArray,
-    evaluations: int,
-    known: FloatArray | None = None,
-) -> Fit:
-    """With derivatives at z, those that are `known` taken from there."""
-    own = model.own_columns(z, residual) if known is None else known.copy()
-    missing = np.flatnonzero(np.isnan(own[0]))
-    places = missing - model.calibrations.stop + model.dimension
-    own[:, missing] = model.amplitude_columns(z, residual, places)
-    cost = cost_of(model, z, residual)
-    return Fit(model, z, residual, model.jacobian(own), cost, evaluations + missing.size, False)
-
-
-def chord_fit(fit: Fit, model: EffectModel) -> Fit:
-    """The fit of the same model to other data, by the chord method: steps along the derivatives of `fit`.
-
-    For small changes, such as a load case left out: no new derivatives are taken. Not `converged` where those
-    of `fit` did not lead to an end.
-    """
-    cost = cost_of(model, fit.z, fit.residual)
-    current = replace(fit, model=model, cost=cost, converged=False)
-    hessian = current.hessian
-    for _ in range(CHORD_STEPS):
-        low, high = model.lower - current.z, model.upper - current.z
-        gradient = current.gradient
-        step = bounded_step(hessian, gradient, low, high)
-        if -(2.0 * gradient @ step + step @ hessian @ step) < FIT_DECREASE:
-            return replace(current, converged=True)
-        try:
-            residual = model.residual(current.z + step)
-        except NotConverged:
-            break
-        cost = cost_of(model, current.z + step, residual)
-        if cost >= current.cost:
-            break
-        current = replace(current, z=current.z + step, residual=residual, cost=cost)
-    return current

@@ -10,7 +10,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from doe_kc.campaign.executors import InProcess
-from doe_kc.discovery.fit import Fit, FitStart, cost_of, fit, known_columns
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
 from doe_kc.discovery.screening.scan import Scan, scan

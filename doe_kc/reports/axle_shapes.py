@@ -19,9 +19,9 @@ from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
 from doe_kc.reports import style
-from doe_kc.reports.axle_views import ARROW_FACTORS, LONGEST_ARROW
 from doe_kc.reports.panel import Dash, PageBox, Panel
 from doe_kc.reports.panel_axis import ticks
+from doe_kc.reports.point_moves import ARROW_FACTORS, LONGEST_ARROW
 from doe_kc.reports.series import draw_series
 from doe_kc.reports.sheet import Sheet
 from doe_kc.solver.result import CaseSolution, Solution

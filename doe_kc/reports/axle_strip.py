@@ -3,17 +3,10 @@
 from __future__ import annotations
 
 from doe_kc.reports import style
-from doe_kc.reports.axle_views import (
-    AXIS_WORDS_OF,
-    PLANES,
-    AxleView,
-    View,
-    draw_view,
-    view_extent,
-    view_handles,
-)
+from doe_kc.reports.axle_views import AXIS_WORDS_OF, PLANES, View, draw_view, view_extent, view_handles
 from doe_kc.reports.panel import PageBox
 from doe_kc.reports.panel_axis import ticks
+from doe_kc.reports.point_moves import AxleView
 from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.words import POINTS
 

@@ -17,8 +17,9 @@ from doe_kc.axle.model import Axle
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.reports import style
-from doe_kc.reports.axle_views import AxleView, axle_figure, member_colours
+from doe_kc.reports.axle_views import axle_figure, member_colours
 from doe_kc.reports.panel import PageBox, Panel
+from doe_kc.reports.point_moves import AxleView
 from doe_kc.reports.series import Job, draw_series
 from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.words import POINTS

@@ -1,9 +1,8 @@
-"""The axle drawn from three sides: hardpoints, members and wheel, and how far each point moved."""
+"""The axle drawn from three sides: hardpoints, members and wheel, with an arrow for each move."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -13,14 +12,12 @@ from matplotlib.patches import Circle, FancyArrowPatch
 from doe_kc.axle.geometry import point
 from doe_kc.axle.members import drawn_points, members_of
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import with_values
-from doe_kc.correlation.result import Correlation
 from doe_kc.ground.numbers import signed
 from doe_kc.ground.typing import FloatArray
 from doe_kc.reports import style
-from doe_kc.reports.correlation_parameters import parameter_rows
 from doe_kc.reports.panel import PageBox, Panel
 from doe_kc.reports.panel_axis import ticks
+from doe_kc.reports.point_moves import SHOWN_MOVE, AxleView
 from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.words import POINTS
 
@@ -49,12 +46,6 @@ OTHER_COLOURS = (
     DARK_YELLOW,
 )
 TRIM = "#C9CED3"
-BOTH_ENDS = np.array([-1.0, 1.0])
-LONGEST_ARROW = 100.0
-"""mm of the axle that the longest arrow takes at most; its factor is the next smaller round one."""
-ARROW_FACTORS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-SHOWN_MOVE = 0.05
-"""mm; a point that moved less has no arrow: points are measured to a tenth."""
 BORDER = 60.0
 """mm of free space about the axle in each view, and of what reaches over to the other side."""
 LEFT_EDGE, RIGHT_EDGE, BETWEEN_ACROSS = 56.0, 18.0, 50.0
@@ -82,64 +73,6 @@ Box = tuple[float, float, float, float]
 View = Literal["side", "top", "rear"]
 PLANES: Mapping[View, tuple[int, int]] = {"side": (0, 2), "top": (0, 1), "rear": (1, 2)}
 """Axes across and up: seen from the left, from above, and from behind."""
-
-
-@dataclass(frozen=True)
-class PointMove:
-    """A hardpoint of the left side, all (3,) mm. place: as it was. sd: of the move, nan where not known."""
-
-    name: str
-    place: FloatArray
-    move: FloatArray
-    sd: FloatArray
-
-    @property
-    def distance(self) -> float:
-        """Length of the move, mm."""
-        return float(np.linalg.norm(self.move))
-
-
-@dataclass(frozen=True)
-class AxleView:
-    """after: None where nothing is compared. sd: parameter path -> standard deviation in mm."""
-
-    title: str
-    before: Axle
-    after: Axle | None = None
-    sd: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def moves(self) -> list[PointMove]:
-        """Of every hardpoint of the left side, in the order of the thesis's Table 1."""
-        last = self.after or self.before
-        return [
-            PointMove(
-                name,
-                point(self.before, name),
-                point(last, name) - point(self.before, name),
-                np.array([self.sd.get(f"{name}.{axis}", np.nan) for axis in "xyz"]),
-            )
-            for name in drawn_points(self.before)
-        ]
-
-    @property
-    def factor(self) -> int:
-        """By which moves are drawn longer than they are."""
-        longest = max((m.distance for m in self.moves), default=0.0)
-        fitting = [f for f in ARROW_FACTORS if f * longest <= LONGEST_ARROW]
-        return fitting[-1] if fitting and longest >= SHOWN_MOVE else 1
-
-
-def correlation_view(correlation: Correlation, study: str) -> AxleView:
-    """The axle that a correlation was given and the one that it hands over."""
-    first = correlation.problem.axle
-    space = correlation.problem.space
-    return AxleView(
-        f"The axle before and after: {study}",
-        with_values(first, space.values(correlation.baseline.point)),
-        correlation.axle,
-        {r.path: r.sd for r in parameter_rows(correlation)},
-    )
 
 
 def axle_figure(view: AxleView) -> Sheet:

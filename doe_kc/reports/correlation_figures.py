@@ -15,13 +15,14 @@ from doe_kc.ground.numbers import signed
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
 from doe_kc.reports import style
-from doe_kc.reports.axle_views import axle_figure, correlation_view
+from doe_kc.reports.axle_views import axle_figure
 from doe_kc.reports.correlation_convergence import convergence_figure
 from doe_kc.reports.correlation_curves import case_views, curve_figure
 from doe_kc.reports.correlation_dna import dna_figure
 from doe_kc.reports.correlation_parameters import ParameterRow, parameter_rows
 from doe_kc.reports.hysteresis import hysteresis_figure
 from doe_kc.reports.panel import Panel
+from doe_kc.reports.point_moves import correlation_view
 from doe_kc.reports.series import Job, draw_series
 from doe_kc.reports.sheet import Sheet, sheet
 

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from doe_kc.correlation.likelihood import Branches, CurveData
+from doe_kc.correlation.curve_data import Branches, CurveData
 from doe_kc.curves import RESPONSE_UNITS, TYRE_LOAD, response_name
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray

@@ -17,12 +17,8 @@ from doe_kc.parameter_influence.identifiability import COLLINEAR, NO_INFLUENCE
 from doe_kc.parameter_influence.relations import Relations
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.parameter_influence.study import NONLINEAR_PERCENT, Influence
-from doe_kc.reports.global_tables import (
-    GLOBAL_LEGEND,
-    convergence_table,
-    disagreement_table,
-    global_table,
-)
+from doe_kc.reports.global_tables import convergence_table, disagreement_table, global_table
+from doe_kc.reports.global_words import GLOBAL_LEGEND
 from doe_kc.reports.influence_sheets import absolute_sheet, exact_sheet, influence_sheet
 from doe_kc.reports.influence_tables import (
     characteristic_links_table,

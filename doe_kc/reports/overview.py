@@ -13,8 +13,8 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.status import STATUS_LABELS
 from doe_kc.ground.numbers import at_sd, signed, unit_words, with_sd
 from doe_kc.load_cases import CASE_ORDER, case_label
-from doe_kc.reports.axle_views import AxleView, correlation_view
 from doe_kc.reports.correlation_parameters import ParameterRow, parameter_rows
+from doe_kc.reports.point_moves import AxleView, correlation_view
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 STATUS_FILLS = {"sound": "0072B2", "doubtful": "E69F00", "not_usable": "D55E00"}

@@ -10,8 +10,9 @@ from pathlib import Path
 import tomlkit
 
 from doe_kc.adams.axle_text import axle_text
+from doe_kc.adams.completeness import IncompleteAxle, refuse_missing
 from doe_kc.adams.conversion import Conversion
-from doe_kc.adams.import_axle import AdamsSource, IncompleteAxle, convert, inferred_type, refuse_missing
+from doe_kc.adams.import_axle import AdamsSource, convert, inferred_type
 from doe_kc.adams.name_map import name_map_path
 from doe_kc.adams.points import PRODUCT_DIGITS, tidy
 from doe_kc.axle.model import Axle

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.adams.import_axle import AdamsSource, convert, refuse_missing
+from doe_kc.adams.completeness import refuse_missing
+from doe_kc.adams.import_axle import AdamsSource, convert
 from doe_kc.adams.property_files import read_bushing_file, read_damper_file, read_spring_file, read_stop_file
 from doe_kc.adams.subsystem import read_subsystem
 from doe_kc.ground.errors import InputError

@@ -33,34 +33,6 @@ def test_every_element_and_point_has_a_label(name: str) -> None:
         assert axle_type.labels[point].strip() and axle_type.labels[point] != point
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('inner = "subframe"', 'inner = "subfrane"', "bushings.ufi.*'subfrane'.*subframe"),
-        ('at = "UFI"', 'at = "UFX"', r"bushings.ufi.*'UFX'.*not in \[points\]"),
-        ('TLI = "Toe link inner"\n', "", r"bushings.tli.*'TLI'"),
-        (
-            'TLI = "Toe link inner"\n',
-            'TLI = "Toe link inner"\nXXX = "Nothing"\n',
-            "'XXX' is used by no element",
-        ),
-        ('WLC = "Wheel centre"\n', "", "no WLC, the wheel centre"),
-        ('carrier = "knuckle"', 'carrier = "hub_carrier"', "carrier = 'hub_carrier' is no body"),
-        ('toe_link = "side"\n', 'toe_link = "side"\nspare = "side"\n', "'spare' is connected with nothing"),
-        ("[balls.tlo]", "[balls.tyre]", "'tyre' is taken by every axle"),
-        ("[balls.tlo]", "[balls.ufo]", "TOML|twice|overwrite"),
-        ("[balls.tlo]", "[balls.TLO]", "two elements or points are named 'TLO'"),
-        ("[springs.spring]", "[spring.spring]", "springs is missing"),
-    ],
-)
-def test_a_wrong_type_file_is_refused_in_words(tmp_path: Path, old: str, new: str, message: str) -> None:
-    assert old in TEXT
-    (tmp_path / "own.toml").write_text(TEXT.replace(old, new, 1), encoding="utf-8")
-    with pytest.raises(InputError, match=f"(?s){message}") as error:
-        read_axle_type("own.toml", tmp_path, source="axle.toml")
-    assert "own.toml" in str(error.value)
-
-
 def test_an_unknown_type_is_answered_with_those_that_there_are() -> None:
     with pytest.raises(InputError, match=r"axle.toml: type = 'five_link' is no axle type.*five_link_rear"):
         read_axle_type("five_link", Path(), source="axle.toml")

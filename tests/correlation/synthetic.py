@@ -16,7 +16,8 @@ import numpy as np
 from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.correlation.likelihood import CurveData, Likelihood
+from doe_kc.correlation.curve_data import CurveData
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate
 from doe_kc.correlation.problem import Problem

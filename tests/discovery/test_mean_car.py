@@ -10,7 +10,8 @@ import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.axle.model import Axle
-from doe_kc.correlation.likelihood import CurveData, Likelihood, record_likelihood
+from doe_kc.correlation.curve_data import CurveData
+from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.discovery.car_scatter import most_likely_scatter, series_scatter
 from doe_kc.discovery.mean_car import mean_car_likelihood, with_rounding

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.fit import Fit, amplitude_estimates, fit, known_columns
+from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.gauss_newton import fit, known_columns
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import INPUT_GAIN

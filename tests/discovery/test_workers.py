@@ -11,7 +11,8 @@ import pytest
 
 from doe_kc.campaign.executors import processes
 from doe_kc.discovery import result_cache
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache
 from doe_kc.discovery.screening.screen import effort

@@ -11,7 +11,8 @@ from matplotlib.patches import FancyArrowPatch
 from doe_kc.axle import with_values
 from doe_kc.axle_file import read_axle
 from doe_kc.reports import style
-from doe_kc.reports.axle_views import LONGEST_ARROW, PLANES, AxleView, axle_figure, name_boxes
+from doe_kc.reports.axle_views import PLANES, axle_figure, name_boxes
+from doe_kc.reports.point_moves import LONGEST_ARROW, AxleView
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "front_axle" / "axle.toml"
 SD = {f"LWB.{axis}": 0.3 for axis in "xyz"}

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
-from doe_kc.correlation.likelihood import Branches, CurveGroup, Likelihood
+from doe_kc.correlation.curve_data import Branches, CurveGroup
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
 

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.thresholds import BENT_SHARE

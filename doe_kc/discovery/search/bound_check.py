@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.search import EffectSearch, search
 from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, SHARE_AT_BOUNDS

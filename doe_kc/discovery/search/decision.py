@@ -9,8 +9,10 @@ import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.screening.screen import Screened, score_tests, shape_of
+from doe_kc.discovery.screening.score_test import score_tests
+from doe_kc.discovery.screening.screen import Screened, shape_of
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.nominal_refits import refits_from_nominal
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
@@ -19,7 +21,6 @@ from doe_kc.discovery.search.refits import (
     leaders,
     overlooked,
     plausible_beside,
-    refits_from_nominal,
     set_refits,
     stiffer_first,
     untried,

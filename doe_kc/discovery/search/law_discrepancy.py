@@ -13,9 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from doe_kc.correlation.likelihood import Branches, CurveData, CurveGroup, Likelihood
+from doe_kc.correlation.curve_data import Branches, CurveData, CurveGroup
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.curves import TYRE_LOAD
-from doe_kc.discovery.fit import Fit, chord_fit, rewhitened_fit
+from doe_kc.discovery.fit import Fit, rewhitened_fit
+from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, DISCREPANCY_SHARES
 from doe_kc.effects.hypothesis import Hypothesis

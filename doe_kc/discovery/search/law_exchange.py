@@ -10,7 +10,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.screening.screen import rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.laws import other_laws, with_law

@@ -16,7 +16,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers

@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, FitStart, refit_to_errors
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers

@@ -7,24 +7,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.projection import Changes
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.screening.within_bounds import (
-    BoundedGain,
-    gains_within_bounds,
-    many_held,
-    nominal_fit,
-)
-from doe_kc.discovery.search.compatibility import compatible_set
 from doe_kc.discovery.search.proposals import SetProposal
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ABSORBED_SHARE,
-    ACCEPTED_ODDS,
     CONFIDENT,
-    NOISE_CHANCE,
-    NOMINAL_REFITS,
     PLACES_REFITTED,
     REFIT_SHARE,
     REFITS_MOST,
@@ -34,8 +25,6 @@ from doe_kc.discovery.thresholds import (
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.result import NotConverged
 
 Sized = Iterable[tuple[Size, float, float]]
 """Amplitude of a size in typical ones, and its standard deviation."""
@@ -170,95 +159,12 @@ def refit_starts(current: Fit, screened: Sequence[Screened], ceiling: float = np
     ]
 
 
-def refits_from_nominal(
-    current: Fit,
-    screened: Sequence[Screened],
-    trials: Sequence[HypothesisFit],
-    prior: SetPrior,
-    workers: DiscoveryWorkers,
-) -> list[HypothesisFit]:
-    """Where bounds hold many parameters back, refits that begin at the nominal axle: of the effects that
-    promise most there, then of the best of all with each of the others that gain, as one set.
-
-    From an axle that is bent a refit may not find back, and beside one of two large effects the other does
-    not show. trials: other refits of the same step, which count among all.
-    """
-    if not many_held(current) or current.residual_map.chance >= NOISE_CHANCE:
-        return []
-    try:
-        nominal = nominal_fit(current)
-    except NotConverged:
-        return []
-    starts = [
-        _from_nominal(nominal, [one.screened.hypothesis], [one.amplitudes])
-        for one in leading_from_nominal(gains_within_bounds(nominal, screened))
-    ]
-    fits = workers.fits(starts, "refitting from the nominal axle")
-    own = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
-    return own + _pair_refits(current, nominal, [*trials, *own], prior, workers)
-
-
-def leading_from_nominal(gains: Sequence[BoundedGain]) -> list[BoundedGain]:
-    """Of the effects that gain the first ones between the bounds, and the first ones by their screening: a
-    ride height far from its place is hardly linear, and leads by one of them at most."""
-    best: dict[str, BoundedGain] = {}
-    for one in gains:
-        if one.gain > ACCEPTED_ODDS:
-            best.setdefault(one.screened.hypothesis.effect, one)
-    by_screening = sorted(best.values(), key=lambda one: -one.screened.gain)
-    first = {id(one) for one in by_screening[:NOMINAL_REFITS]}
-    return [one for i, one in enumerate(best.values()) if i < NOMINAL_REFITS or id(one) in first]
-
-
-def _pair_refits(
-    current: Fit,
-    nominal: Fit,
-    trials: Sequence[HypothesisFit],
-    prior: SetPrior,
-    workers: DiscoveryWorkers,
-) -> list[HypothesisFit]:
-    """The refits of the best trial's effect with each other one that gains, each against the set of
-    `current`."""
-    before = current.model.members
-    best: dict[str, HypothesisFit] = {}
-    for trial in sorted(trials, key=lambda t: -t.gain):
-        alone = trial.fit.model.members == (*before, trial.hypothesis)
-        if alone and trial.gain > ACCEPTED_ODDS and plausible(trial):
-            best.setdefault(trial.hypothesis.effect, trial)
-    if not best:
-        return []
-    first, *others = list(best.values())[: 1 + NOMINAL_REFITS]
-    pairs = [
-        (first, other) for other in others if compatible_set([*before, first.hypothesis, other.hypothesis])
-    ]
-    starts = [
-        _from_nominal(nominal, [t.hypothesis for t in pair], [own_amplitudes(t) for t in pair])
-        for pair in pairs
-    ]
-    fits = workers.fits(starts, "refitting pairs")
-    return [set_fit(refit, current, prior) for refit in fits if refit is not None]
-
-
 def best_of_each_set(trials: Sequence[HypothesisFit]) -> list[HypothesisFit]:
     """Of refits of the same set from several starts the best one; the largest gain first."""
     best: dict[frozenset[str], HypothesisFit] = {}
     for trial in sorted(trials, key=lambda t: -t.gain):
         best.setdefault(frozenset(h.name for h in trial.fit.model.members), trial)
     return list(best.values())
-
-
-def own_amplitudes(trial: HypothesisFit) -> FloatArray:
-    """(m,) of the trial's effect, in typical sizes."""
-    return trial.fit.z[trial.fit.z.size - len(trial.hypothesis.sizes) :]
-
-
-def _from_nominal(
-    nominal: Fit, hypotheses: Sequence[Hypothesis], amplitudes: Sequence[FloatArray]
-) -> FitStart:
-    model = nominal.model
-    for hypothesis in hypotheses:
-        model = model.extended(hypothesis)
-    return FitStart(model, np.concatenate([nominal.z, *amplitudes]), nominal)
 
 
 def set_refits(

@@ -9,11 +9,13 @@ import numpy as np
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, FitStart, chord_fit, cost_of, fit, known_columns, refit_to_errors
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import FitStart, chord_fit, fit, known_columns, refit_to_errors
 from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
+from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
@@ -34,8 +36,6 @@ from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
     EFFECTS_MOST,
-    LOOP_EVIDENCE,
-    LOOPS_SURE,
     MOST_STEPS,
     TRACE_SD,
     TRACE_SEEN,
@@ -249,34 +249,6 @@ def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
     jacobian = model.jacobian(tuned.jacobian.own)
     state = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
     return chord_fit(state, model)
-
-
-def with_conditioning(current: Fit, own: Axle, workers: DiscoveryWorkers) -> tuple[Fit, bool]:
-    """The fit with one loop before the record or with none, as the records with friction ask for, and whether
-    they are sure of it.
-
-    A rig runs until loops close; a simulated record may begin right after the first rise. Nothing in the
-    files tells. Effects are looked for beside the better of the two. own: the axle as given, whose load cases
-    stand where no friction is left, and loops change nothing.
-    """
-    model = current.model
-    if not model.with_effects(current.z).topology.frictional:
-        return own_loops(current, own), False
-    other = replace(model, axle=model.axle.conditioned(0 if model.axle.conditioning else 1))
-    (refit,) = workers.fits([FitStart(other, current.z, current)], "loops before the record")
-    if refit is None:
-        return current, False
-    gain = refit.evidence - current.evidence
-    return (refit if gain >= LOOP_EVIDENCE else current), abs(gain) > LOOPS_SURE
-
-
-def own_loops(current: Fit, own: Axle) -> Fit:
-    """The fit, its load cases those of the axle as given where no friction is left."""
-    model = current.model
-    if model.with_effects(current.z).topology.frictional:
-        return current
-    axle = replace(model.axle, load_cases=own.load_cases)
-    return replace(current, model=replace(model, axle=axle))
 
 
 def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:

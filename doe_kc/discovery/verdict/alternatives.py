@@ -13,8 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, FitStart, last_member, refit_to_errors
-from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings, score_tests
+from doe_kc.discovery.fit import Fit, last_member
+from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.screening.score_test import score_tests
+from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.decision import threshold
 from doe_kc.discovery.search.refits import (

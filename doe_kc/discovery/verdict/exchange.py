@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from doe_kc.discovery.fit import FitStart
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.decision import temper
 from doe_kc.discovery.search.law_exchange import with_exchanged_laws
 from doe_kc.discovery.search.refits import HypothesisFit

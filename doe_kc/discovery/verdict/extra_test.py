@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import block_diag, cho_factor, cho_solve
 
-from doe_kc.correlation.likelihood import CurveData, Likelihood
+from doe_kc.correlation.curve_data import CurveData
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import AMPLITUDE_FACTOR, TEST_WORTH, TESTS_LISTED

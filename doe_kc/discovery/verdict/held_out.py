@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit, known_columns
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
 from doe_kc.discovery.thresholds import CHORD_DECREASE, NOISE_SD_SHARE, REFIT_STEPS
 
 

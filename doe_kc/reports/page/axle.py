@@ -11,8 +11,9 @@ from doe_kc.axle.members import drawn_points
 from doe_kc.axle.model import HARDPOINTS, Axle
 from doe_kc.correlation.result import Correlation
 from doe_kc.reports.axle_strip import strip_figure
-from doe_kc.reports.axle_views import AxleView, axle_figure, correlation_view
+from doe_kc.reports.axle_views import axle_figure
 from doe_kc.reports.png import png_bytes
+from doe_kc.reports.point_moves import AxleView, correlation_view
 from doe_kc.reports.render.page import Section, render
 from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.style import DPI, write_svg

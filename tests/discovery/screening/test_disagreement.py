@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.projection import changes
 from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.screening.disagreement import raw_map, residual_map

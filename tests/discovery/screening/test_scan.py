@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from doe_kc.discovery.fit import fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.scan import Place, scan
 from tests.discovery.cases import model
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.screening.within_bounds import gains_within_bounds, many_held, nominal_fit
 from doe_kc.discovery.thresholds import AMPLITUDE_LIMIT, BENT_SHARE

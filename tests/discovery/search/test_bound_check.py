@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.search.bound_check import at_bounds, beyond, bound_evidence, with_wider_bounds
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers

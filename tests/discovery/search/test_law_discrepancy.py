@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, cost_of, fit, rewhitened_fit
+from doe_kc.discovery.fit import Fit, cost_of, rewhitened_fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.search.law_discrepancy import (

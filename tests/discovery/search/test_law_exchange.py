@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from doe_kc.discovery.fit import Fit, FitStart
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search import law_exchange
 from doe_kc.discovery.search.law_exchange import promise, with_exchanged_laws
 from doe_kc.discovery.search.search import EffectSearch

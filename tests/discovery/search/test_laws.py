@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit, FitStart, amplitude_estimates
+from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.laws import (
     open_laws,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, fit, known_columns, refit_to_errors, rewhitened_fit
+from doe_kc.discovery.fit import Fit, rewhitened_fit
+from doe_kc.discovery.gauss_newton import fit, known_columns, refit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior

@@ -1,32 +1,25 @@
-"""Which hypotheses are refitted, which refit leads, which sizes are believed, which loop is tried."""
+"""Which hypotheses are refitted, which refit leads, which sizes are believed."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit, FitStart, fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.screen import Screened
-from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     believable,
     best_of_each_set,
     leaders,
-    leading_from_nominal,
     more_than_trace,
     overlooked,
-    refits_from_nominal,
     stiffer_first,
     untried,
 )
-from doe_kc.discovery.search.search import with_conditioning
-from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from tests.discovery.cases import discovery, library, model
 from tests.discovery.search.test_proposals import ROWS, hypotheses, tuned
@@ -83,39 +76,6 @@ def test_a_rival_that_explains_the_same_is_refitted_however_little_it_gains(
     assert leaders([best, other, rival], fit, 40.0, decoy=False) == [best]
 
 
-class Asked(DiscoveryWorkers):
-    """Notes which axles are to be fitted, and fits none."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.loops: list[int] = []
-
-    def fits(self, starts: Sequence[FitStart], what: str) -> list[Fit | None]:
-        self.loops += [s.model.axle.conditioning for s in starts]
-        return [None for _ in starts]
-
-
-@pytest.mark.parametrize(("own", "other"), [(0, 1), (1, 0), (2, 0)])
-def test_the_other_loop_is_one_that_an_axle_file_can_say(own: int, other: int) -> None:
-    found = discovery("friction").search.with_law_discrepancy
-    model = replace(found.model, axle=found.model.axle.conditioned(own))
-    asked = Asked()
-    current = replace(found, model=model)
-    refit, sure = with_conditioning(current, model.axle, asked)
-    assert refit is current and not sure
-    assert asked.loops == [other]
-
-
-def test_without_friction_the_loops_are_those_of_the_file() -> None:
-    found = discovery("named").search.with_law_discrepancy
-    assert not found.model.with_effects(found.z).topology.frictional
-    looped = replace(found, model=replace(found.model, axle=found.model.axle.conditioned(1)))
-    again, sure = with_conditioning(looped, found.model.axle, Asked())
-    assert not sure
-    assert again.model.axle.conditioning == 0
-    np.testing.assert_allclose(again.model.residual(again.z), looped.residual, atol=1e-9)
-
-
 def screened(absorbed: float, detectability: float, failed: str = "") -> Screened:
     (hypothesis,) = library("tie_rod_compliance")
     none: Any = np.zeros(1)
@@ -154,53 +114,8 @@ def test_of_effects_that_no_refit_had_the_first_by_screening_is_left_to_try() ->
     assert untried(given, [done]) == [given[1]]
 
 
-@pytest.fixture(scope="module")
-def bent() -> tuple[Fit, list[Screened]]:
-    """A car of two effects, tuned between bounds so narrow that most parameters end at one."""
-    car = model("pair")
-    narrow = replace(car, space=car.space.widened(0.1))
-    current = fit(narrow, narrow.centre)
-    known = library("hub_compliance", "steering_friction", "strut_bending", "rig_channel_gain")
-    return current, DiscoveryWorkers().screenings(current, known)
-
-
-def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
-    bent: tuple[Fit, list[Screened]],
-) -> None:
-    current, screened = bent
-    assert many_held(current)
-    prior = SetPrior.of(library())
-    trials = refits_from_nominal(current, screened, [], prior, DiscoveryWorkers())
-    best = max(trials, key=lambda t: t.gain)
-    members = [h.effect for h in best.fit.model.members]
-    assert sorted(members) == ["hub_compliance", "steering_friction"]
-    assert best.hypothesis.effect == members[-1]
-    assert best.gain == pytest.approx(best.fit.evidence - current.evidence + best.prior)
-    singles = [t for t in trials if len(t.fit.model.members) == 1]
-    assert {t.hypothesis.effect for t in singles} >= set(members)
-    assert best.gain > max(t.gain for t in singles) + 100.0
-
-
-def test_from_the_nominal_axle_effects_that_lead_between_bounds_or_by_screening_are_refitted() -> None:
-    """A ride height 8 mm off was third by screening and fifth between the bounds, and missed."""
-    known = library("strut_friction", "hub_compliance", "strut_bending", "steering_friction")
-    ride, gain = library("ride_height_offset", "rig_channel_gain")[:2]
-
-    def bounded(hypothesis: Hypothesis, by_screening: float, between_bounds: float) -> BoundedGain:
-        own = replace(screened(0.5, 10.0), hypothesis=hypothesis, gain=by_screening)
-        return BoundedGain(own, between_bounds, np.zeros(1))
-
-    friction, hub, bending, other = (next(h for h in known if h.effect == e) for e in
-        ("strut_friction", "hub_compliance", "strut_bending", "steering_friction"))  # fmt: skip
-    gains = [
-        bounded(friction, 900.0, 800.0), bounded(gain, 500.0, 400.0), bounded(hub, 100.0, 300.0),
-        bounded(bending, 50.0, 200.0), bounded(ride, 300.0, 100.0), bounded(other, 200.0, 1.0),
-    ]  # fmt: skip
-    assert [g.screened.hypothesis for g in leading_from_nominal(gains)] == [friction, gain, hub, ride]
-
-
-def test_of_one_set_refitted_twice_the_better_refit_stays(bent: tuple[Fit, list[Screened]]) -> None:
-    current, _ = bent
+def test_of_one_set_refitted_twice_the_better_refit_stays() -> None:
+    current = discovery("named").search.tuned
     hub, friction = library("hub_compliance", "steering_friction")
 
     def refit(gain: float, *members: Hypothesis) -> HypothesisFit:
@@ -210,12 +125,3 @@ def test_of_one_set_refitted_twice_the_better_refit_stays(bent: tuple[Fit, list[
     worse, other = refit(1.0, hub, friction), refit(2.0, friction)
     better = refit(3.0, friction, hub)
     assert best_of_each_set([worse, other, better]) == [better, other]
-
-
-def test_where_bounds_hold_few_nothing_is_refitted_from_the_nominal_axle(
-    bent: tuple[Fit, list[Screened]],
-) -> None:
-    current, screened = bent
-    free = replace(current, z=current.model.centre.copy())
-    assert not many_held(free)
-    assert not refits_from_nominal(free, screened, [], SetPrior({}), DiscoveryWorkers())

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
-from doe_kc.discovery.fit import Fit, fit
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, screen
 from doe_kc.discovery.thresholds import DETECTION_LEVEL, PARTS_MOST

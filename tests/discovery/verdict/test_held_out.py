@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from doe_kc.discovery.fit import Fit, chord_fit, cost_of, fit
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import chord_fit, fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import HELD_OUT_LIMIT

@@ -1,0 +1,73 @@
+"""Refits from the nominal axle: where bounds hold many parameters, of what leads there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import fit
+from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
+from doe_kc.discovery.search.nominal_refits import leading_from_nominal, refits_from_nominal
+from doe_kc.discovery.search.set_prior import SetPrior
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Hypothesis
+from tests.discovery.cases import library, model
+from tests.discovery.search.test_refits import screened
+
+
+@pytest.fixture(scope="module")
+def bent() -> tuple[Fit, list[Screened]]:
+    """A car of two effects, tuned between bounds so narrow that most parameters end at one."""
+    car = model("pair")
+    narrow = replace(car, space=car.space.widened(0.1))
+    current = fit(narrow, narrow.centre)
+    known = library("hub_compliance", "steering_friction", "strut_bending", "rig_channel_gain")
+    return current, DiscoveryWorkers().screenings(current, known)
+
+
+def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    current, screened = bent
+    assert many_held(current)
+    prior = SetPrior.of(library())
+    trials = refits_from_nominal(current, screened, [], prior, DiscoveryWorkers())
+    best = max(trials, key=lambda t: t.gain)
+    members = [h.effect for h in best.fit.model.members]
+    assert sorted(members) == ["hub_compliance", "steering_friction"]
+    assert best.hypothesis.effect == members[-1]
+    assert best.gain == pytest.approx(best.fit.evidence - current.evidence + best.prior)
+    singles = [t for t in trials if len(t.fit.model.members) == 1]
+    assert {t.hypothesis.effect for t in singles} >= set(members)
+    assert best.gain > max(t.gain for t in singles) + 100.0
+
+
+def test_from_the_nominal_axle_effects_that_lead_between_bounds_or_by_screening_are_refitted() -> None:
+    """A ride height 8 mm off was third by screening and fifth between the bounds, and missed."""
+    known = library("strut_friction", "hub_compliance", "strut_bending", "steering_friction")
+    ride, gain = library("ride_height_offset", "rig_channel_gain")[:2]
+
+    def bounded(hypothesis: Hypothesis, by_screening: float, between_bounds: float) -> BoundedGain:
+        own = replace(screened(0.5, 10.0), hypothesis=hypothesis, gain=by_screening)
+        return BoundedGain(own, between_bounds, np.zeros(1))
+
+    friction, hub, bending, other = (next(h for h in known if h.effect == e) for e in
+        ("strut_friction", "hub_compliance", "strut_bending", "steering_friction"))  # fmt: skip
+    gains = [
+        bounded(friction, 900.0, 800.0), bounded(gain, 500.0, 400.0), bounded(hub, 100.0, 300.0),
+        bounded(bending, 50.0, 200.0), bounded(ride, 300.0, 100.0), bounded(other, 200.0, 1.0),
+    ]  # fmt: skip
+    assert [g.screened.hypothesis for g in leading_from_nominal(gains)] == [friction, gain, hub, ride]
+
+
+def test_where_bounds_hold_few_nothing_is_refitted_from_the_nominal_axle(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    current, screened = bent
+    free = replace(current, z=current.model.centre.copy())
+    assert not many_held(free)
+    assert not refits_from_nominal(free, screened, [], SetPrior({}), DiscoveryWorkers())

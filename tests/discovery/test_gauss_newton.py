@@ -1,0 +1,69 @@
+"""The way to the most probable point: derivatives that serve, fits that are given up, chord steps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
+from doe_kc.discovery.thresholds import FIT_DECREASE
+from tests.discovery.cases import library, model
+
+
+@pytest.fixture(scope="module")
+def with_hub() -> Fit:
+    (hub,) = library("hub_compliance")
+    extended = model("named").extended(hub)
+    return fit(extended, extended.centre)
+
+
+def test_the_minimum_is_one(with_hub: Fit) -> None:
+    assert with_hub.converged
+    rng = np.random.default_rng(3)
+    for _ in range(5):
+        near = with_hub.z + 0.3 * rng.standard_normal(with_hub.z.size) * np.sqrt(np.diag(with_hub.covariance))
+        near = np.clip(near, with_hub.model.lower, with_hub.model.upper)
+        assert cost_of(with_hub.model, near, with_hub.model.residual(near)) > with_hub.cost - 0.5
+
+
+def test_followed_goes_most_of_the_way_of_a_fit(with_hub: Fit) -> None:
+    without = replace(with_hub.model, left_out="lateral")
+    near, full = chord_fit(with_hub, without), fit(without, with_hub.z)
+    start = cost_of(without, with_hub.z, with_hub.residual)
+    assert full.cost <= near.cost + FIT_DECREASE < start
+    assert near.cost - full.cost < 0.2 * (start - full.cost) + 0.5
+
+
+def test_derivatives_that_are_known_are_not_taken_anew(with_hub: Fit) -> None:
+    """Beside a member the derivatives of all others are known; a new one's are not."""
+    (rod,) = library("tie_rod_compliance")[:1]
+    extended = with_hub.model.extended(rod)
+    known = known_columns(with_hub, extended)
+    assert known.shape[1] == with_hub.model.calibrations.stop + len(extended.sizes)
+    new = np.isnan(known).all(axis=0)
+    assert new.sum() == len(rod.sizes) and new[-len(rod.sizes) :].all()
+    back = known_columns(with_hub, with_hub.model.without(with_hub.model.members[0]))
+    np.testing.assert_array_equal(back, with_hub.jacobian.own[:, : with_hub.model.calibrations.stop])
+
+
+def test_a_fit_that_cannot_come_near_another_is_given_up(with_hub: Fit) -> None:
+    """From far away, with the ceiling far below what it reaches: fewer solutions, no end."""
+    start = with_hub.model.centre
+    whole = fit(with_hub.model, start)
+    early = fit(with_hub.model, start, ceiling=whole.cost - 1e6)
+    assert whole.converged and not early.converged
+    assert early.evaluations < whole.evaluations
+
+
+def test_a_fit_near_its_ceiling_is_not_given_up_on_derivatives_of_another(with_hub: Fit) -> None:
+    """Those of a model nearby say nothing of what only its own show."""
+    model, z = with_hub.model, with_hub.z.copy()
+    z[: model.parameters] += 0.05 * model.prior_sd[: model.parameters]
+    flat = known_columns(with_hub, model)
+    flat[:, : model.parameters] *= 0.01
+    reached = fit(model, z, known=flat)
+    again = fit(model, z, known=flat, ceiling=reached.cost + 1.0)
+    assert again.converged and again.cost == pytest.approx(reached.cost, abs=0.1)
