@@ -74,7 +74,8 @@ def with_best_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     for member in _frictions_beside_others(current):
         if not open_laws(member):
             continue
-        starts = [FitStart(*with_law(current, member, law), current) for law in other_laws(member)]
+        most = current.cost + 2.0 * LAW_WINDOW  # widths of the sizes hardly make good as much
+        starts = [FitStart(*with_law(current, member, law), current, most) for law in other_laws(member)]
         refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
         current = max([current, *refits], key=lambda f: f.evidence)
     return current
