@@ -136,8 +136,11 @@ def next_decision(
     prior: SetPrior,
     workers: DiscoveryWorkers,
     known: Sequence[Screened],
+    *,
+    laws_open: bool,
 ) -> Decision:
-    """known: every hypothesis as it was screened last, in the errors of `current`.
+    """known: every hypothesis as it was screened last, in the errors of `current`. laws_open: whether other
+    laws of the frictions in the set have yet to be tried.
 
     A decoy of another kind is refitted beside the first effect alone: beside further ones the verdict does so
     at the last set.
@@ -153,7 +156,7 @@ def next_decision(
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
     unexplained = current.residual_map.chance < NOISE_CHANCE
-    if unexplained and not any(_accepted(t, current) for t in trials) and not _by_a_law(current):
+    if unexplained and not laws_open and not any(_accepted(t, current) for t in trials):
         trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
     trials = best_of_each_set(trials)
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
@@ -186,12 +189,6 @@ def _leader_refits(
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
     """Whether a refit is worth a step, all new sizes believed."""
     return trial.gain > ACCEPTED_ODDS and plausible_beside(trial.fit, current.model.members)
-
-
-def _by_a_law(current: Fit) -> bool:
-    """Whether what remains may be another law of a friction in the set, which comes before further effects:
-    a third law of the steering friction looked like a compliance of the rack's mount."""
-    return any(EFFECTS[h.effect].laws for h in current.model.members)
 
 
 def temper(fit: Fit) -> float:

@@ -46,6 +46,16 @@ def _default(member: Hypothesis) -> Hypothesis:
     return next((h for h in known if h.name == member.name), member)
 
 
+def may_open(current: Fit) -> bool:
+    """Whether what remains may be another law of a friction in the set.
+
+    That comes before further effects that nothing points to: a third law of a steering friction looked like a
+    compliance of the rack's mount.
+    """
+    unexplained = current.residual_map.chance < NOISE_CHANCE
+    return unexplained and any(open_laws(member) for member in current.model.members)
+
+
 def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with laws that have one number more each, as it is where noise explains what remains.
 

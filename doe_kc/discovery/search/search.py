@@ -25,6 +25,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     without_own_discrepancy,
 )
 from doe_kc.discovery.search.laws import (
+    may_open,
     with_best_laws,
     with_free_laws,
     with_free_shapes,
@@ -148,12 +149,13 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     """The search from there to its end."""
     tuned, prior, current = state.tuned, state.prior, state.current
     model, first = tuned.model, None
-    steps, loops_known = list(state.steps), False
+    steps, loops_known, laws_tried = list(state.steps), False, False
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
-        decision = next_decision(current, library, prior, workers, screened)
+        laws_open = not laws_tried and may_open(current)
+        decision = next_decision(current, library, prior, workers, screened, laws_open=laws_open)
         first = first or decision
         steps.append(decision.step(model.likelihood))
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
@@ -163,11 +165,11 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         if decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
+            laws_tried = False
+        elif laws_open:
+            current, laws_tried = with_free_laws(current, workers), True
         else:
-            following = with_free_laws(current, workers)
-            if following is current:
-                break
-            current = following
+            break
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         screened = _latest(screened, decision, current)
         del decision
