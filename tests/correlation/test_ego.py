@@ -11,7 +11,12 @@ from doe_kc.correlation.least_squares import Prior
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import run_method
 from doe_kc.correlation.methods import METHODS, MethodSettings
-from doe_kc.correlation.methods.ego.proposer import ExpectedImprovement
+from doe_kc.correlation.methods.ego.proposer import (
+    RELEVANCE_FROM,
+    RELEVANCE_TO,
+    ExpectedImprovement,
+    outputs_model,
+)
 from doe_kc.correlation.methods.ego.strategy import (
     EGO_PATIENCE,
     PROPOSAL_CYCLE,
@@ -20,11 +25,13 @@ from doe_kc.correlation.methods.ego.strategy import (
     VarianceCalibration,
 )
 from doe_kc.correlation.modelled.archive import build_archive
-from doe_kc.correlation.modelled.proposal import gauss_newton
+from doe_kc.correlation.modelled.proposal import fit_outputs, gauss_newton
 from doe_kc.correlation.modelled.trust_region import TrustBox
 from doe_kc.correlation.options import Gradients
 from doe_kc.correlation.problem import Candidate, Evaluated, RatingForecast
 from doe_kc.surrogate_models.models.gp import GaussianProcess
+from doe_kc.surrogate_models.models.gp_ard import RelevanceProcess
+from doe_kc.surrogate_models.varying import fit_varying
 from doe_kc.targets import Score, improvements, mean_improvement
 from doe_kc.true_solver.outcome import Outcome
 from doe_kc.variables import VariableOptions
@@ -49,6 +56,36 @@ def test_expected_improvement_has_exact_slopes() -> None:
         down[i] -= h
         known = (search.log(up)[0] - search.log(down)[0]) / (2.0 * h)
         assert found[i] == pytest.approx(known, rel=1e-3, abs=1e-4 * np.abs(found).max())
+
+
+@pytest.mark.parametrize(
+    ("rows", "slopes", "scales_each"),
+    [
+        (RELEVANCE_FROM - 1, False, False),
+        (RELEVANCE_FROM, False, True),
+        (RELEVANCE_FROM, True, False),
+        (RELEVANCE_TO + 1, False, False),
+    ],
+    ids=["few", "enough", "with slopes", "too many"],
+)
+def test_outputs_have_length_scales_of_their_own_where_values_alone_can_tell_them(
+    rows: int, slopes: bool, scales_each: bool
+) -> None:
+    rng = np.random.default_rng(7)
+    points = rng.uniform(0.4, 0.6, (rows, 3))
+    outputs = np.sin(4.0 * points @ rng.standard_normal((3, 2)))
+    given = replace(
+        build_archive(problem("car_b").targets, designs()), points=points, outputs=outputs, expansion=None
+    )
+    if slopes:
+        solved = replace(given.best, candidate=Candidate(points[0], "start"))
+        given = replace(given, solved=(solved,), expansion=np.ones((2, 3)))
+    model = RelevanceProcess() if scales_each else None
+    expected = fit_outputs(given) if model is None else fit_varying(model, points, outputs, seed=0)
+    other = fit_outputs(given) if scales_each else fit_varying(RelevanceProcess(), points, outputs, seed=0)
+    near = rng.uniform(0.4, 0.6, (4, 3))
+    np.testing.assert_array_equal(outputs_model(given).predict(near), expected.predict(near))
+    assert np.abs(other.predict(near) - expected.predict(near)).max() > 1e-6
 
 
 def test_gauss_newton_raises_the_expected_rating_and_stays_in_its_box() -> None:

@@ -20,11 +20,10 @@ from doe_kc.correlation.least_squares import most_probable_step
 from doe_kc.correlation.methods._base import MethodSettings, register
 from doe_kc.correlation.methods._sampled import SurrogateMethod
 from doe_kc.correlation.methods.ego.mapped_search import MAPPED, MappedSearch
-from doe_kc.correlation.methods.ego.proposer import Proposer
+from doe_kc.correlation.methods.ego.proposer import Proposer, outputs_model
 from doe_kc.correlation.methods.ego.strategy import PATIENCE_WITH_SLOPES, Strategy, VarianceCalibration
 from doe_kc.correlation.modelled.archive import Archive, Slopes, build_archive
 from doe_kc.correlation.modelled.initial_design import InitialDesign
-from doe_kc.correlation.modelled.proposal import fit_outputs
 from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.solver.result import NotConverged
 
@@ -135,7 +134,7 @@ class Ego(SurrogateMethod):
 
     def _proposer(self) -> Proposer:
         archive = self._archive()
-        model = fit_outputs(archive, seed=self._settings.seed)
+        model = outputs_model(archive, seed=self._settings.seed)
         return Proposer(self._problem, archive, model, self._calibration.factor)
 
     def _archive(self) -> Archive:

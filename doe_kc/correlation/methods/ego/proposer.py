@@ -25,6 +25,8 @@ from doe_kc.correlation.modelled.unit_samples import scrambled_sobol
 from doe_kc.correlation.problem import Candidate, Problem, RatingForecast
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.interface import Fitted
+from doe_kc.surrogate_models.models.gp_ard import RelevanceProcess
+from doe_kc.surrogate_models.varying import fit_varying
 
 IMPROVEMENT_LEVELS = 6
 """Binary logarithm of the samples of the predicted errors, which are common to all points: their number
@@ -121,10 +123,24 @@ def _nearness(point: FloatArray, failed: FloatArray) -> tuple[float, FloatArray]
 
 HALF_WIDTH = 0.3
 """Of the box about the best design in which proposals lie."""
+RELEVANCE_FROM, RELEVANCE_TO = 14, 100
+"""Designs known by values alone whose outputs have a length-scale of every variable each: fewer do not tell
+them, and more take longer than they gain. Of 72 variables, 0.1 % of the deviation came at evaluation 23 in
+the median instead of 33; with it from the first proposal on, 10 % came at 13 instead of 10."""
 AWAY = 2
 """Random starts of the search for the expected improvement, beside the Gauss-Newton proposal."""
 SCATTERED = 256
 """Random points among which a restart finds its place."""
+
+
+def outputs_model(archive: Archive, *, seed: int = 0) -> Fitted:
+    """Surrogates of all outputs of an archive, at their best for so many designs, with slopes or without.
+
+    InputError when no output varies.
+    """
+    if archive.expansion is None and RELEVANCE_FROM <= len(archive.points) <= RELEVANCE_TO:
+        return fit_varying(RelevanceProcess(), archive.points, archive.outputs, seed=seed)
+    return fit_outputs(archive, seed=seed)
 
 
 @dataclass(frozen=True)
@@ -167,7 +183,7 @@ class Proposer:
             points=np.vstack([self.archive.points, point]),
             outputs=np.vstack([self.archive.outputs, self.model.predict(point[None])]),
         )
-        return replace(self, archive=archive, model=fit_outputs(archive))
+        return replace(self, archive=archive, model=outputs_model(archive))
 
     def predict(self, point: FloatArray) -> RatingForecast:
         """Characteristics and expected rating at a point, with their standard deviations."""
