@@ -155,7 +155,8 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
         laws_open = not laws_tried and may_open(current)
-        decision = next_decision(current, library, prior, workers, screened, laws_open=laws_open)
+        opening = first.screened if first else ()
+        decision = next_decision(current, library, prior, workers, screened, opening, laws_open=laws_open)
         first = first or decision
         steps.append(decision.step(model.likelihood))
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST

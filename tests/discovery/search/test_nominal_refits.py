@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
-from doe_kc.discovery.search.nominal_refits import leading_from_nominal, refits_from_nominal
+from doe_kc.discovery.search.nominal_refits import leading_at_first, leading_from_nominal, refits_from_nominal
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
@@ -35,7 +35,7 @@ def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
     current, screened = bent
     assert many_held(current)
     prior = SetPrior.of(library())
-    trials = refits_from_nominal(current, screened, [], prior, DiscoveryWorkers())
+    trials = refits_from_nominal(current, screened, [], [], prior, DiscoveryWorkers())
     best = max(trials, key=lambda t: t.gain)
     members = [h.effect for h in best.fit.model.members]
     assert sorted(members) == ["hub_compliance", "steering_friction"]
@@ -64,10 +64,28 @@ def test_from_the_nominal_axle_effects_that_lead_between_bounds_or_by_screening_
     assert [g.screened.hypothesis for g in leading_from_nominal(gains)] == [friction, gain, hub, ride]
 
 
+def test_what_led_before_any_effect_is_refitted_from_the_nominal_axle_too() -> None:
+    """Beside a strut friction that bent the axle a ride height 7 mm off promised -3 of ln evidence, and a
+    gain of the tyre load stood for it."""
+    (friction, hub, *gains), (ride,) = (
+        library("strut_friction", "hub_compliance", "rig_channel_gain"), library("ride_height_offset"),
+    )  # fmt: skip
+
+    def at_first(hypothesis: Hypothesis, gain: float) -> Screened:
+        return replace(screened(0.5, 10.0), hypothesis=hypothesis, gain=gain)
+
+    opening = [
+        at_first(hub, 100.0), at_first(ride, 300.0), at_first(gains[0], 400.0), at_first(gains[1], 350.0),
+        at_first(friction, 900.0), at_first(library("strut_bending")[0], 1.0),
+    ]  # fmt: skip
+    led = leading_at_first(opening, model("pair").extended(friction))
+    assert [s.hypothesis for s in led] == [gains[0], ride, hub]
+
+
 def test_where_bounds_hold_few_nothing_is_refitted_from_the_nominal_axle(
     bent: tuple[Fit, list[Screened]],
 ) -> None:
     current, screened = bent
     free = replace(current, z=current.model.centre.copy())
     assert not many_held(free)
-    assert not refits_from_nominal(free, screened, [], SetPrior({}), DiscoveryWorkers())
+    assert not refits_from_nominal(free, screened, [], [], SetPrior({}), DiscoveryWorkers())
