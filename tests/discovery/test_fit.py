@@ -8,18 +8,10 @@ from scipy.stats import multivariate_normal, norm
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.discovery.fit import Fit, cost_of
-from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.effects import EFFECTS
 from tests.discovery.cases import library, model
-
-
-@pytest.fixture(scope="module")
-def with_hub() -> Fit:
-    (hub,) = library("hub_compliance")
-    extended = model("named").extended(hub)
-    return fit(extended, extended.centre)
 
 
 def test_residual_and_its_derivatives_agree(with_hub: Fit) -> None:

@@ -10,14 +10,7 @@ import pytest
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
 from doe_kc.discovery.thresholds import FIT_DECREASE
-from tests.discovery.cases import library, model
-
-
-@pytest.fixture(scope="module")
-def with_hub() -> Fit:
-    (hub,) = library("hub_compliance")
-    extended = model("named").extended(hub)
-    return fit(extended, extended.centre)
+from tests.discovery.cases import library
 
 
 def test_the_minimum_is_one(with_hub: Fit) -> None:

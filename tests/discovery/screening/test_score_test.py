@@ -5,19 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-import pytest
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import screen
-from tests.discovery.cases import library, model
-
-
-@pytest.fixture(scope="module")
-def tuned() -> Fit:
-    car = model("named")
-    return fit(car, car.centre)
+from tests.discovery.cases import library
 
 
 def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:

@@ -21,12 +21,6 @@ from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_dete
 from tests.discovery.cases import library, model
 
 
-@pytest.fixture(scope="module")
-def tuned() -> Fit:
-    car = model("named")
-    return fit(car, car.centre)
-
-
 def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
     gains = {h.name: screen(tuned, h).gain for h in library("hub_compliance", "strut_friction")}
     assert gains["hub_compliance"] > 50.0
