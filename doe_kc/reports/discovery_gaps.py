@@ -35,12 +35,13 @@ def gap_figure(rows: Sequence[GapRow], study: str) -> Sheet:
     lines: list[GapRow | str] = []
     for case, members in groupby(rows, key=lambda r: r.case):
         lines += [case_label(case) if case else "All records", *members]
-    deep = _break(lines)
+    second = _break(lines)
+    deep = max(second, len(lines) - second)
     height = GAP_ROW * deep + 1.5
     margins = {"left": 0.18, "right": 0.985, "wspace": 0.5, "top": 1 - 0.55 / height, "bottom": 0.95 / height}
     page, panels = sheet(1, 2, size=(8.27, height), margins=margins)
     highest = 1.4 * max(np.nanmax([getattr(r.gap, m) for m in MODEL_LABELS]) for r in rows)
-    for panel, part in zip(panels[0], (lines[:deep], lines[deep:]), strict=True):
+    for panel, part in zip(panels[0], (lines[:second], lines[second:]), strict=True):
         _column(panel, part, deep, highest)
     _legend(page, rows[0].gap)
     page.set_heading(f"Gap between model and records: {study}", 1 - 0.12 / height)
@@ -48,7 +49,7 @@ def gap_figure(rows: Sequence[GapRow], study: str) -> Sheet:
 
 
 def _break(lines: Sequence[GapRow | str]) -> int:
-    """Rows of the first column: the second begins with a load case."""
+    """Where the second column begins, with a load case: the longer of the two is the shortest there."""
     heads = [i for i, line in enumerate(lines) if isinstance(line, str)]
     return min(heads[1:] or [len(lines)], key=lambda i: max(i, len(lines) - i))
 
