@@ -48,17 +48,12 @@ def composite(solver: CountingSolver, seed: int) -> str:
     return _search(solver, seed, composed=True)
 
 
-def composite_on_levels(solver: CountingSolver, seed: int) -> str:
-    """The same, each proposal rounded to the variables' levels, on which `ego` searches too."""
-    return _search(solver, seed, composed=True, levels=True)
-
-
 def scalar(solver: CountingSolver, seed: int) -> str:
     """-log(-rating) modelled: the rating itself spans three decades."""
     return _search(solver, seed, composed=False)
 
 
-def _search(solver: CountingSolver, seed: int, *, composed: bool, levels: bool = False) -> str:
+def _search(solver: CountingSolver, seed: int, *, composed: bool) -> str:
     import torch
 
     torch.manual_seed(seed)
@@ -74,7 +69,7 @@ def _search(solver: CountingSolver, seed: int, *, composed: bool, levels: bool =
         model, state = _fitted(x, y, state)
         low, high = np.maximum(best.point - region.half, 0.0), np.minimum(best.point + region.half, 1.0)
         point = _proposed(model, objective, best.point, np.array([low, high]), seed + len(known))
-        new = solver.at(space.snapped(point) if levels else point)
+        new = solver.at(point)
         region = region.after(won=new.merit > best.merit + 1e-3 * abs(best.merit))
         if new.rating is not None and not any(np.array_equal(new.point, e.point) for e in known):
             known.append(new)
@@ -158,14 +153,5 @@ def _proposed(
 
 PEERS = (
     Peer("botorch_composite", "BoTorch composite", "outputs", composite, 50, needs="botorch"),
-    Peer(
-        "botorch_levels",
-        "BoTorch composite, on the levels",
-        "outputs",
-        composite_on_levels,
-        50,
-        needs="botorch",
-        levels=True,
-    ),
     Peer("botorch_scalar", "BoTorch, GP of the rating", "rating", scalar, 150, needs="botorch", seeds=3),
 )

@@ -14,7 +14,6 @@ LEVELS = (0.1, 0.01, 0.001)
 OURS = {
     "ego": "`ego` as shipped, which also sees the exact slopes of the solver",
     "ego_values": "`ego` with `gradients = false`, which sees what its peers see",
-    "ego_continuous": "`ego` with `gradients = false` and continuous variables",
 }
 """Rows that the peers are held against, with what to know of them."""
 

@@ -18,8 +18,7 @@ class Peer:
     """search: given the solver and a seed, runs until it stops or `BudgetSpent`; returns why it stopped.
 
     needs: package that must be installed, with its name in a registry if that differs. seeds: how many are
-    run. levels: keeps to the variables' levels. seconds: wall time of one run, for peers too slow to use
-    their budget.
+    run. seconds: wall time of one run, for peers too slow to use their budget.
     """
 
     id: str
@@ -31,7 +30,6 @@ class Peer:
     needs: str = ""
     package: str = ""
     seeds: int = 5
-    levels: bool = False
     seconds: float = float("inf")
 
     @property

