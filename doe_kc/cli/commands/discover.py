@@ -18,8 +18,6 @@ from doe_kc.workflow.discover import discover_study, expected_steps
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines
 from doe_kc.workflow.measure import study_measurement
 from doe_kc.workflow.twin_discovery import discovery_ground
-from doe_kc.workflow.write_correlation import AXLE
-from doe_kc.workflow.write_discovery import write_discovery
 
 DISCOVERED_AXLE = (
     "{axle}: refitted to the records with what was found, not yet correlated to the targets; doe-kc run does "
@@ -40,6 +38,10 @@ def discover(
     ground = discovery_ground(studied, study_measurement(studied))
     study, records = ground.study, ground.records
     discovery = discovered(study, records, exclude=exclude or (), workers=study_options.workers)
+    # The writers load 40 MB of libraries, which the search does without.
+    from doe_kc.workflow.write_correlation import AXLE
+    from doe_kc.workflow.write_discovery import write_discovery
+
     folder = study.out / "discover"
     written = write_discovery(study, discovery, records, folder, workers=study_options.workers)
     if study_options.json is not None:

@@ -12,6 +12,7 @@ from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
 from doe_kc.discovery.search.nominal_refits import leading_at_first, leading_from_nominal, refits_from_nominal
+from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
@@ -89,3 +90,21 @@ def test_where_bounds_hold_few_nothing_is_refitted_from_the_nominal_axle(
     free = replace(current, z=current.model.centre.copy())
     assert not many_held(free)
     assert not refits_from_nominal(free, screened, [], [], SetPrior({}), DiscoveryWorkers())
+
+
+def test_where_a_fault_of_the_rig_leads_what_led_before_any_effect_is_refitted(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    """A ride height 7 mm off beside a friction of the strut was told by way of twelve steps: a gain of the
+    tyre load led, and bounds held too few parameters."""
+    current, screened = bent
+    free, none = replace(current, z=current.model.centre.copy()), SetPrior({})
+    rig, hub = (
+        next(s for s in screened if s.hypothesis.effect == e) for e in ("rig_channel_gain", "hub_compliance")
+    )
+    fault, effect = (HypothesisFit(s.hypothesis, free, 400.0, 0.0) for s in (rig, hub))
+    refits = refits_from_nominal(free, screened, [hub], [fault], none, DiscoveryWorkers())
+    assert [t.fit.model.members for t in refits] == [(hub.hypothesis,)]
+    assert refits[0].gain > 1000.0
+    stronger = replace(effect, gain=500.0)
+    assert not refits_from_nominal(free, screened, [hub], [fault, stronger], none, DiscoveryWorkers())
