@@ -104,11 +104,13 @@ class DiscoveryWorkers:
             out += [own[j::parts] for j in range(parts)]
         return out
 
-    def fits(self, starts: Sequence[FitStart], what: str, *, derivatives: bool = True) -> list[Fit | None]:
+    def fits(
+        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+    ) -> list[Fit | None]:
         """Fits from several starts, None where one has no equilibrium.
 
         They are of the very models of `starts`, wherever they were computed: whether two fits are to the same
-        errors is asked by identity. derivatives: whether they are kept, see `Fit.without_derivatives`.
+        errors is asked by identity. derivatives: whether a fit keeps its own, see `Fit.without_derivatives`.
         """
         keys = [_fit_key(start) for start in starts]
         self._begun += len(starts)
@@ -116,7 +118,7 @@ class DiscoveryWorkers:
 
         def unpacked(i: int, arrays: Arrays) -> None:
             refit = _unpacked_fit(starts[i].model, arrays)
-            out[i] = refit if refit is None or derivatives else refit.without_derivatives
+            out[i] = refit if refit is None or derivatives(refit) else refit.without_derivatives
 
         for i, key in enumerate(keys):
             arrays = self._cache.get(key)

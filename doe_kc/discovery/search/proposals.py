@@ -131,21 +131,25 @@ class LinearSets:
     def _moves(self, members: Members) -> Iterator[Members]:
         """One effect more, one less, or one for another."""
         outside = [i for i in range(len(self.hypotheses)) if i not in members]
-        for i in members:
-            yield members - {i}
-        for base in (members, *(members - {i} for i in members)):
+        fewer = [members - {i} for i in members if self._linear(i)]
+        yield from fewer
+        for base in (members, *fewer):
             for i in outside:
                 if self._compatible(base | {i}):
                     yield base | {i}
 
     def _pairs(self, members: Members, values: dict[Members, float]) -> Iterator[Members]:
         """Two effects more, or two for one, of those that do best alone."""
-        for base in (members, *(members - {i} for i in members)):
+        for base in (members, *(members - {i} for i in members if self._linear(i))):
             single = [m - base for m in values if base < m and len(m) == len(base) + 1]
             single.sort(key=lambda one: -values[base | one])
             for one, other in combinations(single[:PROPOSAL_PAIRS], 2):
                 if self._compatible(base | one | other):
                     yield base | one | other
+
+    def _linear(self, i: int) -> bool:
+        """Whether it can be taken out to first order: a member without sizes has no columns."""
+        return i >= self.count or bool(self.hypotheses[i].sizes)
 
     def _compatible(self, members: Members) -> bool:
         return compatible_set([self.hypotheses[i] for i in members])

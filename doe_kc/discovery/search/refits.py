@@ -126,13 +126,18 @@ def joint_refits(
 ) -> list[HypothesisFit]:
     """The joint refits from the screened sizes, best first; those without a solution are left out.
 
-    least: gain below which a refit is of no use, so that it need not come to its end.
+    least: gain below which a refit is of no use, so that it need not come to its end. Such refits keep their
+    derivatives only where no effect is in yet: the verdict on a single effect begins with them.
     """
     starts = [
         replace(start, ceiling=useful_cost(current, s.hypothesis, least, prior))
         for s, start in zip(screened, refit_starts(current, screened), strict=True)
     ]
-    fits = workers.fits(starts, "refitting leaders")
+
+    def useful(refit: Fit) -> bool:
+        return not current.model.members or hypothesis_fit(refit, current, prior).gain > least
+
+    fits = workers.fits(starts, "refitting leaders", derivatives=useful)
     trials = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
     return sorted(trials, key=lambda t: -t.gain)
 

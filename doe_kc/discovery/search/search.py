@@ -168,7 +168,12 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
             laws_tried = False
         elif laws_open:
-            current, laws_tried = with_free_laws(current, workers), True
+            opened, laws_tried = with_free_laws(current, workers), True
+            if opened is current:  # the same step again, now with every other effect
+                steps.pop()
+                continue
+            current = opened
+            del opened
         else:
             break
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
@@ -178,6 +183,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             first = first.without_derivatives
     if len(current.model.members) != 1:
         first = first.without_derivatives
+    decision = decision.without_trials
     current = with_best_laws(current, workers)
     closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))

@@ -136,7 +136,7 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     places = _on_true_solutions(places, workers)
     rivals = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
     every = [start for own in rivals for start in own]
-    refits = iter(workers.fits(every, "refitting rivals", derivatives=False))
+    refits = iter(workers.fits(every, "refitting rivals", derivatives=lambda _: False))
     return tuple(
         _place_comparison(place, [next(refits) for _ in own], search, temper)
         for place, own in zip(places, rivals, strict=True)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
@@ -91,3 +93,14 @@ def test_an_amplitude_that_cannot_be_negative_is_held_at_nothing() -> None:
     sets = LinearSets.of(fit, [screened(positive, column)], SetPrior({}))
     _, amplitudes = sets.evidence(frozenset({0}))
     assert amplitudes == pytest.approx([0.0])
+
+
+def test_an_effect_without_sizes_is_not_proposed_to_go(case: tuple[Fit, np.ndarray, LinearSets]) -> None:
+    """Its removal changes no column, and was every step's best proposal beside a roll technique."""
+    fit, columns, _ = case
+    member, known = Hypothesis("roll_technique", "", ()), hypotheses(8)
+    with_member = replace(fit, model=replace(fit.model, members=(member,)))
+    there = [screened(h, c) for h, c in zip(known, columns.T, strict=True)]
+    proposals = LinearSets.of(with_member, there, SetPrior({})).proposals()
+    assert proposals
+    assert all(member in p.members for p in proposals)
