@@ -86,7 +86,8 @@ class Decision:
     """Joint refits, best first, those of a plausible size that pass the threshold before all others. One of
     several effects at once stands by the last of them."""
     temper: float
-    """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
+    """T >= 1: ln evidence is divided by T, the mean square of the residual map with the first refit, or
+    before it where it does not pass, when that exceeds 1."""
     accepted: bool
     """Whether the first refit passes the threshold."""
     has_derivatives: bool = True
@@ -164,8 +165,9 @@ def next_decision(
     trials = stiffer_first(trials)
     if not trials:
         return Decision(current, tuple(screened), (), 1.0, False)
-    passes = trials[0].gain / temper(trials[0].fit) > ACCEPTED_ODDS
-    return Decision(current, tuple(screened), tuple(trials), temper(trials[0].fit), passes)
+    first = trials[0]
+    divisor = temper(first.fit if first.gain > ACCEPTED_ODDS else current)
+    return Decision(current, tuple(screened), tuple(trials), divisor, first.gain / divisor > ACCEPTED_ODDS)
 
 
 def _leader_refits(

@@ -35,3 +35,11 @@ def test_a_step_whose_laws_gain_nothing_is_told_once(monkeypatch: pytest.MonkeyP
     found = search(model("pair"), library("steering_friction"), DiscoveryWorkers())
     assert [[h.effect for h in step.members] for step in found.steps] == [[], ["steering_friction"]]
     assert [step.accepted for step in found.steps] == [True, False]
+
+
+def test_refits_that_lose_are_told_without_their_derivatives() -> None:
+    """The car has another effect beside the compliance, so that every effect of the library is refitted."""
+    found = search(model("pair"), library("hub_compliance", "steering_ratio"), DiscoveryWorkers())
+    last = found.steps[-1]
+    assert [h.effect for h in last.members] == ["hub_compliance"] and not last.accepted
+    assert any(c.joint and c.hypothesis.effect == "steering_ratio" for c in last.candidates)
