@@ -43,7 +43,7 @@ def report(found: Sequence[Result], overhead: str, command: str) -> list[str]:
         "# Optimizers",
         "",
         f"{datetime.now(UTC):%Y-%m-%d}, `{command}`, {machine()}, one thread, other work on the "
-        f"machine, source {CODE}. Peers' runs are of the same problem, some of an earlier source of ours.",
+        f"machine, source {CODE}. Peers' runs are of the same problem, maybe of an earlier source of ours.",
         ", ".join(f"{name} {_version(name)}" for name in PACKAGES) + ".",
         "",
         *CONDITIONS.format(size=size, rating=rating, share=100.0 * deviation / _start(found)).splitlines(),

@@ -67,6 +67,24 @@ def refits_from_nominal(
     return own + (_pair_refits(current, nominal, [*trials, *own], prior, workers) if bent else [])
 
 
+def refit_anew(current: Fit, workers: DiscoveryWorkers) -> Fit | None:
+    """The same set, fitted from the nominal axle with its effects as they are; None where that brings
+    nothing, or noise explains what remains.
+
+    A free play makes the cost rough: beside a friction its fit ended at four times the cost of another one.
+    """
+    if current.residual_map.chance >= NOISE_CHANCE:
+        return None
+    try:
+        nominal = nominal_fit(current)
+    except NotConverged:
+        return None
+    (refit,) = workers.fits([FitStart(current.model, nominal.z, nominal)], "refitting from the nominal axle")
+    if refit is None or refit.evidence - current.evidence <= ACCEPTED_ODDS:
+        return None
+    return refit
+
+
 def _rig_fault_leads(trials: Sequence[HypothesisFit]) -> bool:
     """A ride height 7 mm off gave 403 of ln evidence to a gain of the tyre load, and lost 890 beside it."""
     best = max(trials, key=lambda t: t.gain, default=None)

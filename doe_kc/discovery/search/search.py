@@ -31,6 +31,7 @@ from doe_kc.discovery.search.laws import (
     with_free_shapes,
     with_open_laws,
 )
+from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
@@ -167,6 +168,9 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
             laws_tried = False
+        elif (anew := refit_anew(current, workers)) is not None:
+            current = anew
+            del anew
         elif laws_open:
             opened, laws_tried = with_free_laws(current, workers), True
             if opened is current:  # the same step again, now with every other effect
