@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS, appendix_c
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.style import save
+from doe_kc.reports.drawing.style import save
 
 HERE = Path(__file__).parent
 AXLE = HERE.parent / "examples" / "front_axle" / "axle.toml"

@@ -33,8 +33,8 @@ from matplotlib.patches import Rectangle
 
 import doe_kc as kc
 from doe_kc.axle_file.write import write_axle
-from doe_kc.reports.influence_figures import ANNOTATE
-from doe_kc.reports.style import PALETTE, save
+from doe_kc.reports.drawing.style import PALETTE, save
+from doe_kc.reports.influence.figures import ANNOTATE
 
 HERE = Path(__file__).parent
 EXAMPLE = HERE.parent / "examples" / "front_axle" / "axle.toml"

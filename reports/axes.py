@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.influence_figures import ANNOTATE, LINE_COLOUR, diverging
-from doe_kc.reports.style import A4, COLOUR_CYCLE, DPI
+from doe_kc.reports.drawing.style import A4, COLOUR_CYCLE, DPI
+from doe_kc.reports.influence.figures import ANNOTATE, LINE_COLOUR, diverging
 
 RC: Mapping[str, object] = {
     "font.size": 8.0,

@@ -18,7 +18,7 @@ from configurations_text import file_name, markdown
 from correlation_runs import Trace, arguments, cached_trace
 
 from doe_kc.correlation.posterior import BOUND_SHARE
-from doe_kc.reports.style import save
+from doe_kc.reports.drawing.style import save
 
 
 @dataclass(frozen=True)

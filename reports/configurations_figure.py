@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 from report_figures import legend, title
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.style import COLOUR_CYCLE, PALETTE
+from doe_kc.reports.drawing.style import COLOUR_CYCLE, PALETTE
 
 Runs = Mapping[str, Sequence[Trace]]
 PLAIN = FuncFormatter(lambda v, _: f"{v:,.0f}" if v >= 100.0 else f"{v:.3g}")

@@ -20,7 +20,7 @@ from recovery import Fit, far_off, fitted
 from synthetic_cars import record, scattered
 
 from doe_kc.correlation.options import Gradients
-from doe_kc.reports.style import save
+from doe_kc.reports.drawing.style import save
 
 CARS = ("car_b", "car_e")
 SLOPES: Mapping[str, Gradients] = {"exact": "auto", "learnt": False}

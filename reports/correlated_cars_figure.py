@@ -12,7 +12,7 @@ from recovery import STATED, Fit
 from report_figures import legend, title
 from scipy.stats import norm
 
-from doe_kc.reports.style import PALETTE
+from doe_kc.reports.drawing.style import PALETTE
 
 SEEN, UNSEEN = PALETTE["blue"], PALETTE["grey"]
 

@@ -22,7 +22,7 @@ from synthetic_cars import quieter, record, scattered
 
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Problem
-from doe_kc.reports.style import save
+from doe_kc.reports.drawing.style import save
 from doe_kc.targets import Targets
 from doe_kc.variables import Space, VariableOptions, build_space
 

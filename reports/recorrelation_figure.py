@@ -13,7 +13,7 @@ from recorrelation_case import Case
 from report_figures import legend, title
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.style import PALETTE
+from doe_kc.reports.drawing.style import PALETTE
 
 FREE = PALETTE["green"]
 EGO, NEWTON = PALETTE["vermillion"], PALETTE["blue"]

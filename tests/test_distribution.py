@@ -12,7 +12,7 @@ def test_what_starts_first_is_there() -> None:
 
 
 def test_files_that_look_at_small_cars_are_one() -> None:
-    files = ("discovery/test_discover.py", "workflow/test_adopt.py", "reports/test_discovery_figures.py")
+    files = ("discovery/test_discover.py", "workflow/test_adopt.py", "reports/discovery/test_figures.py")
     assert {group_of(TESTS / name) for name in files} == {SMALL_CARS}
     assert group_of(TESTS / "ground/test_numbers.py") == "ground/test_numbers.py"
 

@@ -14,7 +14,7 @@ from optimizers.figures import best_so_far
 from optimizers.running import PEERS, Result
 
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.style import PALETTE
+from doe_kc.reports.drawing.style import PALETTE
 
 LOOKS = {
     "ego": ("black", "-"),

@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from doe_kc.curves import RESPONSE_UNITS, SIDE_WORDS, CurveSet
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.load_cases import case_label
+from doe_kc.reports.drawing.style import PALETTE
 from doe_kc.reports.names import input_label, response_axis
-from doe_kc.reports.style import PALETTE
 
 SIDE_PALETTE = {"L": PALETTE["blue"], "R": PALETTE["vermillion"]}
 

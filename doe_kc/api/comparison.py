@@ -13,7 +13,7 @@ from doe_kc.api.axle import as_axle
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import as_study
 from doe_kc.axle import Axle
-from doe_kc.reports.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.reports.comparison.tables import compared_characteristic_table, compared_curve_table
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
@@ -60,7 +60,7 @@ class ComparisonResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Difference of every characteristic in half widths of its constraint interval: within +-1 is met."""
         from doe_kc.api.deviation_plot import draw_deviations
-        from doe_kc.reports.style import PALETTE
+        from doe_kc.reports.drawing.style import PALETTE
 
         rows = self.comparison.characteristics
         half = np.array([(r.high - r.low) / 2.0 for r in rows])

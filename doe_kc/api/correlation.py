@@ -20,10 +20,10 @@ from doe_kc.correlation.problem import Evaluated
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.status import Status
 from doe_kc.measurement import Measurement
-from doe_kc.reports.correlation_characteristics import characteristic_rows, characteristic_table
-from doe_kc.reports.correlation_evaluations import evaluation_table
-from doe_kc.reports.correlation_parameters import parameter_table
-from doe_kc.reports.correlation_terms import curve_table
+from doe_kc.reports.correlation.characteristics import characteristic_rows, characteristic_table
+from doe_kc.reports.correlation.evaluations import evaluation_table
+from doe_kc.reports.correlation.parameters import parameter_table
+from doe_kc.reports.correlation.terms import curve_table
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.workflow.correlate import CorrelationChoices
@@ -104,7 +104,7 @@ class CorrelationResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Every characteristic before and after, in half widths of its interval: within +-1 is met."""
         from doe_kc.api.deviation_plot import draw_deviations
-        from doe_kc.reports.style import BASELINE_COLOUR, FINAL_COLOUR
+        from doe_kc.reports.drawing.style import BASELINE_COLOUR, FINAL_COLOUR
 
         rows = characteristic_rows(self.correlation)
         half = np.array([(r.interval[1] - r.interval[0]) / 2.0 for r in rows])

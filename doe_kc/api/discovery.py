@@ -15,10 +15,10 @@ from doe_kc.api.studies import Progress, as_study, stored
 from doe_kc.axle import Axle
 from doe_kc.discovery.result import Discovery, Gap, VerdictKind
 from doe_kc.measurement import Measurement
-from doe_kc.reports.discovery_effects import effect_table
-from doe_kc.reports.discovery_library import library_table
-from doe_kc.reports.discovery_parameters import tuned_table
-from doe_kc.reports.discovery_tables import gap_table, held_out_table
+from doe_kc.reports.discovery.effects import effect_table
+from doe_kc.reports.discovery.library import library_table
+from doe_kc.reports.discovery.parameters import tuned_table
+from doe_kc.reports.discovery.tables import gap_table, held_out_table
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study
@@ -104,7 +104,7 @@ class DiscoveryResult(FrameResult):
         """The gap of every curve, as handed in, re-tuned, and with the effects; 1 is noise."""
         from doe_kc.api.axes import axes_or_new
         from doe_kc.curves import response_name
-        from doe_kc.reports.style import PALETTE
+        from doe_kc.reports.drawing.style import PALETTE
 
         rows = self.discovery.gaps
         ax = axes_or_new(ax, (6.4, 1.6 + 0.19 * len(rows)))

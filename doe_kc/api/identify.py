@@ -90,7 +90,7 @@ class IdentificationResult(FrameResult):
         """Heat map of the measured matrix, of the identified axle's, or of their difference, percent of each
         column's largest measured entry; InputError for another word."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.matrix_plot import matrix_size
+        from doe_kc.reports.drawing.matrix_plot import matrix_size
 
         if view not in MATRIX_VIEWS:
             raise InputError(f"view {view!r}: expected {', '.join(MATRIX_VIEWS)}.")

@@ -112,7 +112,7 @@ class InfluenceResult(FrameResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Heat map of the percent matrix, blue negative, orange positive, numbers from 5 % on."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.matrix_plot import draw_matrix_plot, matrix_size
+        from doe_kc.reports.drawing.matrix_plot import draw_matrix_plot, matrix_size
 
         frame = self.to_frame()
         ax = axes_or_new(ax, matrix_size(frame))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import as_study
-from doe_kc.reports.measurement_tables import (
+from doe_kc.reports.measurement.tables import (
     gradient_table,
     measured_characteristic_table,
     measured_curve_frame,

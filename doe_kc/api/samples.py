@@ -80,7 +80,7 @@ class SamplingResult(FrameResult):
     def plot(self, parameter: str, characteristic: str, ax: Axes | None = None) -> Axes:
         """A characteristic over a variable, one point a design; InputError for an unknown name."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.style import PALETTE
+        from doe_kc.reports.drawing.style import PALETTE
 
         designs, responses = self.designs, self.responses
         for name, frame in ((parameter, designs), (characteristic, responses)):

@@ -85,7 +85,7 @@ class SensitivityResult(FrameResult):
         """Bars of the change of one characteristic (by default the first) for one step of each parameter
         (`parameters`, column step), the 15 largest; InputError for a characteristic that is not there."""
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.style import PALETTE
+        from doe_kc.reports.drawing.style import PALETTE
 
         ids = [c.id for c in self.characteristics]
         name = characteristic or ids[0]

@@ -17,7 +17,7 @@ from doe_kc.axle import Axle, axle_warnings
 from doe_kc.axle.kinematics import as_mechanism
 from doe_kc.axle.model import with_roll
 from doe_kc.curves import CurveSet
-from doe_kc.reports.simulation_tables import characteristics_frame, curves_frame, write_simulation
+from doe_kc.reports.simulation.tables import characteristics_frame, curves_frame, write_simulation
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.newton import RIGID_SETTINGS
 from doe_kc.solver.result import Solution

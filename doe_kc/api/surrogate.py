@@ -12,7 +12,7 @@ from sklearn.exceptions import NotFittedError
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
-from doe_kc.reports.style import PALETTE
+from doe_kc.reports.drawing.style import PALETTE
 from doe_kc.surrogate_models.models import make
 from doe_kc.surrogate_models.study import SurrogateStudy, fit_study
 from doe_kc.variables import Space

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from doe_kc.api.frame_result import FrameResult
 from doe_kc.api.studies import Progress, as_study, step_counter
 from doe_kc.api.surrogate import Surrogate, fitted_surrogate
-from doe_kc.reports import surrogate_tables as tables
 from doe_kc.reports.render.csv import table_frame
+from doe_kc.reports.surrogates import tables
 from doe_kc.study import Study
 from doe_kc.surrogate_models.report import SurrogateReport
 from doe_kc.workflow.surrogates import (

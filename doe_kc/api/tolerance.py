@@ -13,9 +13,9 @@ from doe_kc.ground.errors import InputError, nearest
 from doe_kc.production_scatter.options import FEWEST_CARS
 from doe_kc.production_scatter.result import Tolerance
 from doe_kc.reports.render.csv import table_frame
-from doe_kc.reports.tolerance_scatter import band_table, scatter_table
-from doe_kc.reports.tolerance_tables import car_columns, tightening_table, tolerance_table
-from doe_kc.reports.tolerance_words import conclusions
+from doe_kc.reports.tolerance.scatter import band_table, scatter_table
+from doe_kc.reports.tolerance.tables import car_columns, tightening_table, tolerance_table
+from doe_kc.reports.tolerance.words import conclusions
 from doe_kc.study import Study
 from doe_kc.workflow.tolerance import study_tolerance, write_tolerance
 
@@ -88,7 +88,7 @@ class ToleranceResult(FrameResult):
         import numpy as np
 
         from doe_kc.api.axes import axes_or_new
-        from doe_kc.reports.style import PALETTE
+        from doe_kc.reports.drawing.style import PALETTE
 
         rows = {s.entry.id: k for k, s in enumerate(self.tolerance.scatters)}
         if characteristic is not None and characteristic not in rows:

@@ -14,7 +14,7 @@ from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.effects.words import effect_label, hypothesis_label
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.files import read_toml
-from doe_kc.reports.effect_words import size_name
+from doe_kc.reports.discovery.effect_words import size_name
 from doe_kc.study import Study
 
 EffectSizes = Mapping[str, Mapping[str, float] | None]

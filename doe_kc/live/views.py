@@ -23,7 +23,7 @@ from doe_kc.live.model import LiveModel
 from doe_kc.live.session import Session
 from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
-from doe_kc.reports.axle_views import MEMBER_COLOURS, OTHER_COLOURS
+from doe_kc.reports.axle.views import MEMBER_COLOURS, OTHER_COLOURS
 from doe_kc.reports.names import input_label
 from doe_kc.solver.curve_set import rising
 from doe_kc.solver.elements._base import mirror

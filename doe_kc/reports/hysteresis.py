@@ -24,11 +24,11 @@ from doe_kc.ground.numbers import number, sd_format
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
-from doe_kc.reports import style
-from doe_kc.reports.correlation_curves import BAND_SDS, CaseView, case_views, has_loop
-from doe_kc.reports.panel import Panel
-from doe_kc.reports.panel_axis import ticks
-from doe_kc.reports.sheet import Sheet, sheet
+from doe_kc.reports.correlation.curves import BAND_SDS, CaseView, case_views, has_loop
+from doe_kc.reports.drawing import style
+from doe_kc.reports.drawing.panel import Panel
+from doe_kc.reports.drawing.panel_axis import ticks
+from doe_kc.reports.drawing.sheet import Sheet, sheet
 from doe_kc.reports.table import Column, SheetLayout, Table
 
 INNER = 0.5

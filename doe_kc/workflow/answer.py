@@ -19,16 +19,16 @@ from doe_kc.effects.words import effect_label
 from doe_kc.ground.output import write_json
 from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
-from doe_kc.reports.correlation_characteristics import characteristic_table
-from doe_kc.reports.discovery_words import size_words
-from doe_kc.reports.effect_words import effect_words
-from doe_kc.reports.overview import Overview
-from doe_kc.reports.overview_sheet import write_overview
+from doe_kc.reports.answer.overview import Overview
+from doe_kc.reports.answer.overview_sheet import write_overview
+from doe_kc.reports.correlation.characteristics import characteristic_table
+from doe_kc.reports.correlation.twin_tables import twin_entry
+from doe_kc.reports.discovery.effect_words import effect_words
+from doe_kc.reports.discovery.words import size_words
 from doe_kc.reports.page.answer import files_there, write_answer_page
 from doe_kc.reports.page.links import link_pages
 from doe_kc.reports.page.simulation import write_simulation_page
 from doe_kc.reports.render.json import table_records
-from doe_kc.reports.twin_tables import twin_entry
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import AdoptedEffect, Adoption
 from doe_kc.workflow.discovery_document import effect_entry

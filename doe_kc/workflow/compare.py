@@ -11,8 +11,8 @@ from doe_kc.curves import CurveSet
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.measurement import Measurement
-from doe_kc.reports.car_table import cars_entry, write_cars
-from doe_kc.reports.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.reports.comparison.car_table import cars_entry, write_cars
+from doe_kc.reports.comparison.tables import compared_characteristic_table, compared_curve_table
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
@@ -46,7 +46,7 @@ def write_comparison(
     link_pages(folder.parent)
     if pictures == "none":
         return written
-    from doe_kc.reports.comparison_figures import write_comparison_figures
+    from doe_kc.reports.comparison.figures import write_comparison_figures
 
     return written + write_comparison_figures(comparison, folder, workers=workers, pictures=pictures)
 

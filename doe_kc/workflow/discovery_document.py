@@ -14,7 +14,7 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus, exclusion_limit
 from doe_kc.discovery.verdict.sentences import adequacy_words, odds_words
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
-from doe_kc.reports.discovery_words import HEADLINES, contrast_words, size_words
+from doe_kc.reports.discovery.words import HEADLINES, contrast_words, size_words
 
 HIDDEN = ("not testable", "no solution")
 

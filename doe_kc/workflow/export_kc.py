@@ -6,7 +6,7 @@ from pathlib import Path
 
 from doe_kc.axle.model import Axle
 from doe_kc.ground.output import write_columns, write_json
-from doe_kc.reports.vehicle_tables import (
+from doe_kc.reports.simulation.vehicle_tables import (
     ComplianceCoefficient,
     compliance_coefficients,
     kinematic_columns,

@@ -144,7 +144,7 @@ def draw_identification(ax: Axes, result: Identification, view: MatrixView, *, s
     the difference cells that were not fitted are grey."""
     import numpy as np
 
-    from doe_kc.reports.matrix_plot import draw_matrix_plot
+    from doe_kc.reports.drawing.matrix_plot import draw_matrix_plot
 
     m, own = result.measured, result.in_measured_units
     fitted = np.where(m.counted, np.abs(np.nan_to_num(m.values)), 0.0).max(axis=0)
@@ -164,7 +164,7 @@ def identification_figure(result: Identification) -> Figure:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    from doe_kc.reports.matrix_plot import matrix_size
+    from doe_kc.reports.drawing.matrix_plot import matrix_size
 
     m = result.measured
     width, height = matrix_size(m.frame(m.values))
@@ -192,7 +192,7 @@ def write_identification(
         note = "identified from an influence matrix"
         written.append(write_axle(result.axle, axle_path, folder / "axle.toml", note=note))
     if pictures != "none":
-        from doe_kc.reports.style import save
+        from doe_kc.reports.drawing.style import save
 
         written.append(save(identification_figure(result), folder / "identification", pictures))
     return written

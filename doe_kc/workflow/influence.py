@@ -20,9 +20,9 @@ from doe_kc.parameter_influence.relations import relations
 from doe_kc.parameter_influence.selection import select_variables
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.parameter_influence.study import NONLINEAR_PERCENT, Influence, influence_study
-from doe_kc.reports.global_tables import global_document, global_table
-from doe_kc.reports.influence_tables import strongest_table
-from doe_kc.reports.influence_workbook import InfluenceBook
+from doe_kc.reports.influence.global_tables import global_document, global_table
+from doe_kc.reports.influence.tables import strongest_table
+from doe_kc.reports.influence.workbook import InfluenceBook
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.terminal import table_lines
 from doe_kc.study import STORES, Study
@@ -188,7 +188,7 @@ def write_influence(
     link_pages(folder.parent)
     if study.pictures == "none":
         return [book, page, *csv]
-    from doe_kc.reports.influence_figures import write_influence_figures
+    from doe_kc.reports.influence.figures import write_influence_figures
 
     pictures = write_influence_figures(
         matrix,

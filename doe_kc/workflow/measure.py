@@ -16,8 +16,8 @@ from doe_kc.ground.output import write_columns
 from doe_kc.ground.picture_format import PNG, PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement, RideHeight, infer_ride_height, reduce_cars
-from doe_kc.reports.car_table import cars_entry, write_cars
-from doe_kc.reports.measurement_tables import (
+from doe_kc.reports.comparison.car_table import cars_entry, write_cars
+from doe_kc.reports.measurement.tables import (
     gradient_table,
     measured_characteristic_table,
     measured_curve_columns,
@@ -128,7 +128,7 @@ def write_reduced(
     link_pages(folder.parent)
     if pictures == "none":
         return written
-    from doe_kc.reports.rig_figures import write_rig_figures
+    from doe_kc.reports.measurement.figures import write_rig_figures
 
     return written + write_rig_figures(measurement, folder, workers=workers, pictures=pictures)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from doe_kc.correlation.answer_record import AnswerRecord
 from doe_kc.discovery.result import Discovery
 from doe_kc.measurement import Measurement
-from doe_kc.reports.simulation_tables import write_simulation
+from doe_kc.reports.simulation.tables import write_simulation
 from doe_kc.solver.result import Solution
 from doe_kc.study import Study
 from doe_kc.targets.comparison import Comparison

@@ -22,7 +22,7 @@ from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
-from doe_kc.reports.sample_tables import CharacteristicSpan, span_table
+from doe_kc.reports.surrogates.sample_tables import CharacteristicSpan, span_table
 from doe_kc.reports.table import Table
 from doe_kc.sampling import Design, find_sampler, sample
 from doe_kc.study import Study

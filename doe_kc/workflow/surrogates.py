@@ -20,13 +20,13 @@ from doe_kc.ground.threads import one_thread
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import reduce_cars
 from doe_kc.parameter_influence.study import influence_study
-from doe_kc.reports import surrogate_tables as tables
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.reports.render.terminal import table_lines
-from doe_kc.reports.surrogate_evaluator import write_evaluator
-from doe_kc.reports.surrogate_figures import write_surrogate_figures
-from doe_kc.reports.surrogate_learning import learning_document, learning_lines, learning_table
-from doe_kc.reports.surrogate_workbook import write_surrogate_workbook
+from doe_kc.reports.surrogates import tables
+from doe_kc.reports.surrogates.evaluator import write_evaluator
+from doe_kc.reports.surrogates.figures import write_surrogate_figures
+from doe_kc.reports.surrogates.learning import learning_document, learning_lines, learning_table
+from doe_kc.reports.surrogates.workbook import write_surrogate_workbook
 from doe_kc.study import Study
 from doe_kc.surrogate_models.designs import Designs, designs_in_space
 from doe_kc.surrogate_models.influence import agreement, free_variables, surrogate_changes

@@ -21,10 +21,10 @@ from doe_kc.production_scatter.study import tolerance_study
 from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
-from doe_kc.reports.tolerance_contributions import contribution_table
-from doe_kc.reports.tolerance_scatter import band_table, scatter_table
-from doe_kc.reports.tolerance_tables import car_columns, tightening_table, tolerance_table
-from doe_kc.reports.tolerance_words import conclusions
+from doe_kc.reports.tolerance.contributions import contribution_table
+from doe_kc.reports.tolerance.scatter import band_table, scatter_table
+from doe_kc.reports.tolerance.tables import car_columns, tightening_table, tolerance_table
+from doe_kc.reports.tolerance.words import conclusions
 from doe_kc.study import STORES, Study
 from doe_kc.targets import Targets, build_targets
 from doe_kc.true_solver.make import solver_for
@@ -108,7 +108,7 @@ def write_tolerance(
     written.append(write_table(folder / "cars.csv", car_columns(tolerance)))
     from doe_kc.reports.page.links import link_pages
     from doe_kc.reports.page.tolerance import write_tolerance_page
-    from doe_kc.reports.tolerance_workbook import write_tolerance_workbook
+    from doe_kc.reports.tolerance.workbook import write_tolerance_workbook
 
     today = date.today().isoformat()
     written.append(
@@ -122,7 +122,7 @@ def write_tolerance(
     link_pages(folder.parent)
     if study.pictures == "none":
         return written
-    from doe_kc.reports.tolerance_figures import write_tolerance_figures
+    from doe_kc.reports.tolerance.figures import write_tolerance_figures
 
     return written + write_tolerance_figures(
         tolerance, folder, study=study.name, workers=workers, pictures=study.pictures

@@ -13,13 +13,14 @@ from doe_kc.correlation.front import front_of
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
-from doe_kc.reports.car_table import cars_beside, write_cars
-from doe_kc.reports.correlation_characteristics import characteristic_table
-from doe_kc.reports.correlation_evaluations import evaluation_table
-from doe_kc.reports.correlation_parameters import parameter_table, remark_sentences
-from doe_kc.reports.correlation_summary import summary
-from doe_kc.reports.correlation_terms import curve_table, term_columns
-from doe_kc.reports.correlation_workbook import write_correlation_workbook
+from doe_kc.reports.comparison.car_table import cars_beside, write_cars
+from doe_kc.reports.correlation.characteristics import characteristic_table
+from doe_kc.reports.correlation.evaluations import evaluation_table
+from doe_kc.reports.correlation.parameters import parameter_table, remark_sentences
+from doe_kc.reports.correlation.summary import summary
+from doe_kc.reports.correlation.terms import curve_table, term_columns
+from doe_kc.reports.correlation.twin_tables import twin_entry, twin_table
+from doe_kc.reports.correlation.workbook import write_correlation_workbook
 from doe_kc.reports.hysteresis import hysteresis_table, loop_widths
 from doe_kc.reports.page.correlation import write_correlation_page
 from doe_kc.reports.page.links import link_pages
@@ -27,7 +28,6 @@ from doe_kc.reports.render.csv import table_columns
 from doe_kc.reports.render.json import table_records
 from doe_kc.reports.render.terminal import table_lines
 from doe_kc.reports.table import Table
-from doe_kc.reports.twin_tables import twin_entry, twin_table
 from doe_kc.study import Study
 
 CORRELATION_TABLES: Mapping[str, Callable[[Correlation], Table[Any]]] = {
@@ -110,7 +110,7 @@ def _write_figures(
 ) -> list[Path]:
     if study.pictures == "none":
         return []
-    from doe_kc.reports.correlation_figures import write_correlation_figures
+    from doe_kc.reports.correlation.figures import write_correlation_figures
 
     return write_correlation_figures(
         correlation, measurement, folder, study=study.name, workers=workers, pictures=study.pictures
@@ -136,7 +136,7 @@ def _write_front(correlation: Correlation, folder: Path, study: Study) -> list[P
     table = write_columns(folder / "pareto_front.csv", front.columns())
     if study.pictures == "none":
         return [table]
-    from doe_kc.reports.pareto_figure import write_pareto_figure
+    from doe_kc.reports.correlation.pareto_figure import write_pareto_figure
 
     return [table, *write_pareto_figure(front, folder, study=study.name, pictures=study.pictures)]
 

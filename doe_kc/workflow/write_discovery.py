@@ -12,14 +12,14 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.effects.words import hypothesis_words
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
-from doe_kc.reports.discovery_effects import effect_table
-from doe_kc.reports.discovery_figures import write_discovery_figures
-from doe_kc.reports.discovery_isolability import isolability_table
-from doe_kc.reports.discovery_library import library_table
-from doe_kc.reports.discovery_parameters import tuned_table
-from doe_kc.reports.discovery_tables import disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery_words import HEADLINES
-from doe_kc.reports.discovery_workbook import write_discovery_workbook
+from doe_kc.reports.discovery.effects import effect_table
+from doe_kc.reports.discovery.figures import write_discovery_figures
+from doe_kc.reports.discovery.isolability import isolability_table
+from doe_kc.reports.discovery.library import library_table
+from doe_kc.reports.discovery.parameters import tuned_table
+from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
+from doe_kc.reports.discovery.words import HEADLINES
+from doe_kc.reports.discovery.workbook import write_discovery_workbook
 from doe_kc.reports.page.discovery import write_discovery_page
 from doe_kc.reports.page.links import link_pages
 from doe_kc.reports.render.csv import table_columns

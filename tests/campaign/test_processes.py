@@ -18,7 +18,7 @@ from functools import partial
 from pathlib import Path
 import numpy as np
 from doe_kc.campaign.executors import processes
-from doe_kc.reports.series import draw_series
+from doe_kc.reports.drawing.series import draw_series
 from doe_kc.surrogate_models.models import gp
 from doe_kc.surrogate_models.study import fit_study
 

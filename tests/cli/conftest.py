@@ -4,7 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from doe_kc.reports import comparison_figures, correlation_figures, influence_figures, rig_figures
+from doe_kc.reports.comparison import figures as comparison_figures
+from doe_kc.reports.correlation import figures as correlation_figures
+from doe_kc.reports.influence import figures as influence_figures
+from doe_kc.reports.measurement import figures as rig_figures
 from doe_kc.workflow import write_discovery
 
 

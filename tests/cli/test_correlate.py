@@ -20,7 +20,7 @@ import pytest
 
 from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import reduce_all
-from doe_kc.reports import correlation_figures
+from doe_kc.reports.correlation import figures as correlation_figures
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study

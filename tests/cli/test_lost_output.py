@@ -14,7 +14,7 @@ import pytest
 
 from doe_kc.ground import output
 from doe_kc.ground.errors import RunError
-from doe_kc.reports import style
+from doe_kc.reports.drawing import style
 from doe_kc.reports.render import workbook
 from tests.cli.runner import (
     AXLE,

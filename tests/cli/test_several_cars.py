@@ -12,7 +12,7 @@ import pytest
 
 import doe_kc as kc
 from doe_kc.ground.errors import InputError
-from doe_kc.reports.correlation_workbook import car_table
+from doe_kc.reports.correlation.workbook import car_table
 from doe_kc.workflow.measure import study_records
 from tests.cli.runner import fails, succeeds, write_study
 

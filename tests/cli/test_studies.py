@@ -14,7 +14,8 @@ import pytest
 
 from doe_kc.examples import EXAMPLE_TYPES
 from doe_kc.load_cases import CASE_ORDER
-from doe_kc.reports import comparison_figures, rig_figures
+from doe_kc.reports.comparison import figures as comparison_figures
+from doe_kc.reports.measurement import figures as rig_figures
 from doe_kc.workflow.discover import effect_library
 from tests.cli.runner import FEW, SHORT, Outcome, fails, invoke, leftovers, succeeds, write_study
 from tests.reference import EXAMPLE, nominal

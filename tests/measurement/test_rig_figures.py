@@ -10,9 +10,9 @@ from doe_kc.curves import RESPONSE_UNITS, RIG_RESPONSES
 from doe_kc.ground.errors import RunError
 from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.measurement import Measurement
-from doe_kc.reports.rig_figures import rig_figure
-from doe_kc.reports.sheet import sheet
-from doe_kc.reports.style import PALETTE, save
+from doe_kc.reports.drawing.sheet import sheet
+from doe_kc.reports.drawing.style import PALETTE, save
+from doe_kc.reports.measurement.figures import rig_figure
 
 
 def test_every_panel_has_its_unit(car_a: Measurement) -> None:

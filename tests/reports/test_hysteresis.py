@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.curves import RIG_RESPONSES, CaseCurves
-from doe_kc.reports.correlation_curves import CaseView, case_views, curve_figure, has_loop
+from doe_kc.reports.correlation.curves import CaseView, case_views, curve_figure, has_loop
 from doe_kc.reports.hysteresis import hysteresis_figure, hysteresis_table, inner_mean, loop_widths
 from doe_kc.reports.render.csv import table_frame
 from tests.correlation.cases import measured

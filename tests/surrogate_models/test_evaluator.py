@@ -15,7 +15,7 @@ import pytest
 from openpyxl import load_workbook
 
 from doe_kc.ground.errors import InputError
-from doe_kc.reports.surrogate_evaluator import FIRST, write_evaluator
+from doe_kc.reports.surrogates.evaluator import FIRST, write_evaluator
 from doe_kc.surrogate_models.formula import mean_formulas
 from doe_kc.surrogate_models.models import make
 from doe_kc.surrogate_models.saved import SavedSurrogate

@@ -10,14 +10,14 @@ import numpy as np
 from openpyxl import load_workbook
 
 from doe_kc.characteristics import CHARACTERISTICS
-from doe_kc.reports.surrogate_figures import (
+from doe_kc.reports.surrogates.figures import (
     model_quality,
     predicted_against_true,
     residuals,
     write_surrogate_figures,
 )
-from doe_kc.reports.surrogate_responses import response_surfaces, slices
-from doe_kc.reports.surrogate_workbook import write_surrogate_workbook
+from doe_kc.reports.surrogates.responses import response_surfaces, slices
+from doe_kc.reports.surrogates.workbook import write_surrogate_workbook
 from doe_kc.surrogate_models.designs import Designs
 from doe_kc.surrogate_models.influence import Agreement
 from doe_kc.surrogate_models.learning_curve import learning_curve

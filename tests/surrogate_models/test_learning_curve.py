@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from doe_kc.reports.surrogate_learning import learning_curves, learning_document, learning_lines
+from doe_kc.reports.surrogates.learning import learning_curves, learning_document, learning_lines
 from doe_kc.surrogate_models.learning_curve import LearningCurve, learning_curve
 from doe_kc.surrogate_models.models import make
 from tests.surrogate_models.problems import outputs, points, problem

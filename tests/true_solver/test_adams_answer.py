@@ -72,7 +72,7 @@ def test_the_curves_are_those_that_were_written(radians: bool, tmp_path: Path) -
 
 
 def test_a_curves_file_counts_before_it(tmp_path: Path) -> None:
-    from doe_kc.reports.simulation_tables import write_simulation
+    from doe_kc.reports.simulation.tables import write_simulation
 
     write_simulation(solve(nominal(), ["vertical", "roll"]), tmp_path)
     (tmp_path / "x_parallel_travel.res").write_text("not even XML")
@@ -81,7 +81,7 @@ def test_a_curves_file_counts_before_it(tmp_path: Path) -> None:
 
 
 def test_it_completes_a_curves_file_of_other_load_cases(tmp_path: Path) -> None:
-    from doe_kc.reports.simulation_tables import write_simulation
+    from doe_kc.reports.simulation.tables import write_simulation
 
     write_simulation(solve(nominal(), ["roll"]), tmp_path)
     (tmp_path / "x_parallel_travel.res").write_text(result_text(own_curves()))

@@ -21,7 +21,7 @@ from doe_kc.axle_file import read_axle
 from doe_kc.characteristics import CHARACTERISTICS
 from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError
-from doe_kc.reports.simulation_tables import curves_frame
+from doe_kc.reports.simulation.tables import curves_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from doe_kc.true_solver.answer import Unreadable, curves_from_frame, read_characteristics

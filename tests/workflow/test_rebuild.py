@@ -17,9 +17,9 @@ from doe_kc.correlation.record import run_document
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_json
-from doe_kc.reports.correlation_characteristics import characteristic_table
-from doe_kc.reports.correlation_evaluations import evaluation_table
-from doe_kc.reports.correlation_terms import term_columns
+from doe_kc.reports.correlation.characteristics import characteristic_table
+from doe_kc.reports.correlation.evaluations import evaluation_table
+from doe_kc.reports.correlation.terms import term_columns
 from doe_kc.study import Study, read_study
 from doe_kc.targets import CharacteristicOptions
 from doe_kc.true_solver.make import solver_for

@@ -17,7 +17,7 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.sentences import odds_words
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.errors import RunError
-from doe_kc.reports.discovery_effects import effect_table
+from doe_kc.reports.discovery.effects import effect_table
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve

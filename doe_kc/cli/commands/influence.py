@@ -13,7 +13,7 @@ from doe_kc.cli.progress import progress_bar
 from doe_kc.ground.output import write_json
 from doe_kc.measurement import Measurement
 from doe_kc.parameter_influence.global_sensitivity import global_runs
-from doe_kc.reports.global_words import global_sentences
+from doe_kc.reports.influence.global_words import global_sentences
 from doe_kc.study import Study
 from doe_kc.workflow.influence import (
     StudyInfluence,

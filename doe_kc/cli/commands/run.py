@@ -16,7 +16,7 @@ from doe_kc.cli.options import SchedulerOption, StudyOptions, takes_study
 from doe_kc.correlation.result import Correlation
 from doe_kc.ground.output import write_json
 from doe_kc.parameter_influence.selection_result import Selection
-from doe_kc.reports.simulation_tables import characteristics_document
+from doe_kc.reports.simulation.tables import characteristics_document
 from doe_kc.study import Study
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.answer import PAGE, answer_lines, summary_document

@@ -24,7 +24,7 @@ from doe_kc.effects import apply_effect
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_json
 from doe_kc.ground.picture_format import PictureFormat
-from doe_kc.reports.simulation_tables import characteristics_document, write_simulation
+from doe_kc.reports.simulation.tables import characteristics_document, write_simulation
 from doe_kc.solver.newton import RIGID_SETTINGS
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
@@ -155,7 +155,7 @@ def simulate(
 def _shapes(axle: Axle, solution: Solution, folder: Path, pictures: PictureFormat) -> list[Path]:
     if pictures == "none":
         return []
-    from doe_kc.reports.axle_shapes import write_shape_figures
+    from doe_kc.reports.axle.shapes import write_shape_figures
 
     return write_shape_figures(axle, solution, folder, pictures=pictures)
 

@@ -44,7 +44,7 @@ def _draw(out: Path, pictures: PictureChoice) -> None:
     from doe_kc.axle_file import read_axle
     from doe_kc.examples import example_folder
     from doe_kc.ground.output import make_folder
-    from doe_kc.reports.axle_type_figures import TypeExample, write_type_figures
+    from doe_kc.reports.axle.type_figures import TypeExample, write_type_figures
 
     examples = []
     for name in BUILT_IN:

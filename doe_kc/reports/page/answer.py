@@ -9,7 +9,7 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from doe_kc.reports.overview import AGREEMENT_LEAD, Overview, agreement_table, change_table
+from doe_kc.reports.answer.overview import AGREEMENT_LEAD, Overview, agreement_table, change_table
 from doe_kc.reports.page.axle import strip_section
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, render, significant, table_html, write_page

@@ -10,13 +10,13 @@ from markupsafe import Markup
 from doe_kc.axle.members import drawn_points
 from doe_kc.axle.model import HARDPOINTS, Axle
 from doe_kc.correlation.result import Correlation
-from doe_kc.reports.axle_strip import strip_figure
-from doe_kc.reports.axle_views import axle_figure
-from doe_kc.reports.png import png_bytes
-from doe_kc.reports.point_moves import AxleView, correlation_view
+from doe_kc.reports.axle.point_moves import AxleView, correlation_view
+from doe_kc.reports.axle.strip import strip_figure
+from doe_kc.reports.axle.views import axle_figure
+from doe_kc.reports.drawing.png import png_bytes
+from doe_kc.reports.drawing.sheet import Sheet
+from doe_kc.reports.drawing.style import DPI, write_svg
 from doe_kc.reports.render.page import Section, render
-from doe_kc.reports.sheet import Sheet
-from doe_kc.reports.style import DPI, write_svg
 
 AXLE_LEAD = (
     "Arrows show how far each hardpoint of the left side moved, drawn longer by the factor in the key; the "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from doe_kc.reports.car_table import CAR_REMARK, car_table
+from doe_kc.reports.comparison.car_table import CAR_REMARK, car_table
 from doe_kc.reports.render.page import Section, table_html
 from doe_kc.targets.comparison import CarComparison
 

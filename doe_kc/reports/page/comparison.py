@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from doe_kc.reports.characteristic_columns import by_load_case
-from doe_kc.reports.comparison_tables import compared_characteristic_table, compared_curve_table
+from doe_kc.reports.comparison.tables import compared_characteristic_table, compared_curve_table
 from doe_kc.reports.page.cars import cars_section
 from doe_kc.reports.page.curves import curve_set_section
 from doe_kc.reports.page.glossary import glossary_section

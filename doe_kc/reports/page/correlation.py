@@ -14,21 +14,21 @@ from doe_kc.correlation.assessment import Assessment, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.status import STATUS_LABELS
 from doe_kc.measurement import Measurement
-from doe_kc.reports import style
-from doe_kc.reports.car_table import cars_beside
-from doe_kc.reports.correlation_characteristics import CharacteristicRow, characteristic_table
-from doe_kc.reports.correlation_convergence import threshold
-from doe_kc.reports.correlation_dna import DNA_REACH
-from doe_kc.reports.correlation_evaluations import history
-from doe_kc.reports.correlation_parameters import ParameterRow, parameter_table, remark_sentences
-from doe_kc.reports.correlation_summary import summary
+from doe_kc.reports.comparison.car_table import cars_beside
+from doe_kc.reports.correlation.characteristics import CharacteristicRow, characteristic_table
+from doe_kc.reports.correlation.convergence import threshold
+from doe_kc.reports.correlation.dna import DNA_REACH
+from doe_kc.reports.correlation.evaluations import history
+from doe_kc.reports.correlation.parameters import ParameterRow, parameter_table, remark_sentences
+from doe_kc.reports.correlation.summary import summary
+from doe_kc.reports.correlation.twin_tables import TWIN_REMARK, twin_table
+from doe_kc.reports.drawing import style
 from doe_kc.reports.page.axle import axle_section
 from doe_kc.reports.page.cars import cars_section
 from doe_kc.reports.page.curves import curves_section
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, embedded, render, significant, table_html, write_page
 from doe_kc.reports.table import Column, PageCell
-from doe_kc.reports.twin_tables import TWIN_REMARK, twin_table
 
 BAR_WIDTH = 230
 """Units across a bar's drawing."""

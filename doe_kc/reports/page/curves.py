@@ -14,7 +14,7 @@ from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, CaseCu
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
-from doe_kc.reports.correlation_curves import BAND_SDS, CaseView, case_views
+from doe_kc.reports.correlation.curves import BAND_SDS, CaseView, case_views
 from doe_kc.reports.names import input_label, response_axis
 from doe_kc.reports.render.page import Section, embedded, render
 from doe_kc.targets.comparison import rms_deviation

@@ -17,8 +17,10 @@ from doe_kc.effects.words import effect_label
 from doe_kc.ground.numbers import with_sd
 from doe_kc.load_cases import case_label
 from doe_kc.measurement import Measurement
-from doe_kc.reports.discovery_gaps import MODEL_COLOURS
-from doe_kc.reports.discovery_heat_map import (
+from doe_kc.reports.discovery.effect_words import effect_words, effect_words_table
+from doe_kc.reports.discovery.gap_steps import gap_steps, gap_steps_figure
+from doe_kc.reports.discovery.gaps import MODEL_COLOURS
+from doe_kc.reports.discovery.heat_map import (
     DISAGREEMENT_MAP,
     QUIET_COLOUR,
     GridCell,
@@ -28,13 +30,11 @@ from doe_kc.reports.discovery_heat_map import (
     shape_words,
     signed,
 )
-from doe_kc.reports.discovery_library import library_table
-from doe_kc.reports.discovery_loops import LOOPS_DRAWN, loop_figure, loop_pairs, loop_table
-from doe_kc.reports.discovery_parameter_figure import arrow_colour
-from doe_kc.reports.discovery_parameters import TunedParameter, tuned_table
-from doe_kc.reports.discovery_words import HEADLINES, contrast_words, own_sentences
-from doe_kc.reports.effect_words import effect_words, effect_words_table
-from doe_kc.reports.gap_steps import gap_steps, gap_steps_figure
+from doe_kc.reports.discovery.library import library_table
+from doe_kc.reports.discovery.loops import LOOPS_DRAWN, loop_figure, loop_pairs, loop_table
+from doe_kc.reports.discovery.parameter_figure import arrow_colour
+from doe_kc.reports.discovery.parameters import TunedParameter, tuned_table
+from doe_kc.reports.discovery.words import HEADLINES, contrast_words, own_sentences
 from doe_kc.reports.page.axle import svg_data
 from doe_kc.reports.page.discovery_candidates import (
     candidates_section,

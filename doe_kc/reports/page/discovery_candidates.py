@@ -9,8 +9,8 @@ from markupsafe import Markup
 
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.screening.scan import Place
-from doe_kc.reports.discovery_evidence import EvidenceBar, EvidenceStep, evidence_steps
-from doe_kc.reports.discovery_tables import gain_words, held_out_table
+from doe_kc.reports.discovery.evidence import EvidenceBar, EvidenceStep, evidence_steps
+from doe_kc.reports.discovery.tables import gain_words, held_out_table
 from doe_kc.reports.render.page import Section, render, table_html
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 

@@ -11,9 +11,9 @@ from doe_kc.curves import RESPONSE_LABELS, RESPONSE_UNITS, RIG_RESPONSES, respon
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
-from doe_kc.reports.discovery_curves import ModelView, model_names, model_views, worst_views
-from doe_kc.reports.discovery_gaps import MODEL_COLOURS
-from doe_kc.reports.discovery_tables import gap_table
+from doe_kc.reports.discovery.curves import ModelView, model_names, model_views, worst_views
+from doe_kc.reports.discovery.gaps import MODEL_COLOURS
+from doe_kc.reports.discovery.tables import gap_table
 from doe_kc.reports.names import response_axis
 from doe_kc.reports.page.curves import ShownModel, curves_html
 from doe_kc.reports.render.page import Section, table_html

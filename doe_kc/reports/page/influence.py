@@ -13,9 +13,9 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
 from doe_kc.parameter_influence.global_sensitivity import GlobalSensitivity
 from doe_kc.parameter_influence.study import Influence
-from doe_kc.reports.global_figures import global_bars
-from doe_kc.reports.global_tables import convergence_table, global_table
-from doe_kc.reports.global_words import GLOBAL_LEAD, METHODS_LEAD, global_sentences
+from doe_kc.reports.influence.global_figures import global_bars
+from doe_kc.reports.influence.global_tables import convergence_table, global_table
+from doe_kc.reports.influence.global_words import GLOBAL_LEAD, METHODS_LEAD, global_sentences
 from doe_kc.reports.names import within_sentence
 from doe_kc.reports.page.axle import png_data
 from doe_kc.reports.render.page import Section, render, table_html, write_page

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from doe_kc.measurement import Measurement
 from doe_kc.reports.characteristic_columns import by_load_case
-from doe_kc.reports.measurement_tables import measured_characteristic_table
+from doe_kc.reports.measurement.tables import measured_characteristic_table
 from doe_kc.reports.page.cars import cars_section
 from doe_kc.reports.page.curves import curve_set_section
 from doe_kc.reports.page.glossary import glossary_section

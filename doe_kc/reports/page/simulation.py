@@ -11,7 +11,7 @@ from doe_kc.curves import CurveSet
 from doe_kc.reports.characteristic_columns import by_load_case
 from doe_kc.reports.page.curves import curve_set_section
 from doe_kc.reports.render.page import Section, table_html, write_page
-from doe_kc.reports.simulation_tables import SimulatedCharacteristic, simulated_table
+from doe_kc.reports.simulation.tables import SimulatedCharacteristic, simulated_table
 
 SIMULATED_LEAD = "Figures read off the curves of the left wheel."
 

@@ -8,15 +8,15 @@ from pathlib import Path
 from markupsafe import Markup
 
 from doe_kc.production_scatter.result import Tolerance
+from doe_kc.reports.drawing.sheet import Sheet
 from doe_kc.reports.page.axle import png_data
 from doe_kc.reports.page.glossary import glossary_section
 from doe_kc.reports.render.page import Section, render, table_html, write_page
-from doe_kc.reports.sheet import Sheet
-from doe_kc.reports.tolerance_bands import band_sheet
-from doe_kc.reports.tolerance_figures import contributions, distributions, measured_handles, tightening_bars
-from doe_kc.reports.tolerance_scatter import band_table, scatter_table
-from doe_kc.reports.tolerance_tables import tightening_table, tolerance_table
-from doe_kc.reports.tolerance_words import conclusions
+from doe_kc.reports.tolerance.bands import band_sheet
+from doe_kc.reports.tolerance.figures import contributions, distributions, measured_handles, tightening_bars
+from doe_kc.reports.tolerance.scatter import band_table, scatter_table
+from doe_kc.reports.tolerance.tables import tightening_table, tolerance_table
+from doe_kc.reports.tolerance.words import conclusions
 
 DISTRIBUTION_LEAD = (
     "Each car is a draw of all scattering parameters, solved by the true solver. Dashed: what slopes alone "

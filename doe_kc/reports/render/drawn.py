@@ -7,12 +7,12 @@ from typing import Any
 
 from matplotlib.patches import Rectangle
 
-from doe_kc.reports.panel import PageBox, Panel
+from doe_kc.reports.drawing.panel import PageBox, Panel
+from doe_kc.reports.drawing.sheet import Sheet
+from doe_kc.reports.drawing.words import text_width
 from doe_kc.reports.render.page import NUMBER_STYLE, cell_text, column_head
 from doe_kc.reports.render.typeset import signs
-from doe_kc.reports.sheet import Sheet
 from doe_kc.reports.table import Column, PageCell, Row, Table, ink_on
-from doe_kc.reports.words import text_width
 
 LINE = 1.32
 """Heights of the text from one line to the next."""

@@ -1,0 +1,53 @@
+"""The gap step by step: falls to what the axle handed over leaves."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import pytest
+
+from doe_kc.reports.discovery.effect_words import effect_words, effect_words_table, size_name
+from doe_kc.reports.discovery.gap_steps import gap_steps, gap_steps_figure
+from tests.discovery.cases import discovery
+
+
+@pytest.mark.parametrize("car", ["none", "named", "two", "unexplained"])
+def test_steps_begin_with_the_axle_handed_in_and_end_with_the_one_handed_over(car: str) -> None:
+    found = discovery(car)
+    steps = gap_steps(found)
+    assert [s.gap for s in steps[:2]] == [found.gap.nominal, found.gap.tuned]
+    assert steps[-1].gap == (found.gap.with_effect if found.fitted.model.members else found.gap.tuned)
+    assert len(steps) >= 2 + bool(found.fitted.model.members)
+
+
+def test_two_effects_are_two_steps_each_closer_to_the_records() -> None:
+    found = discovery("two")
+    steps = gap_steps(found)
+    assert sum(s.label.startswith("+ ") for s in steps) >= 2
+    assert all(later.gap < earlier.gap for earlier, later in pairwise(steps))
+
+
+@pytest.mark.parametrize("car", ["none", "two"])
+def test_the_picture_holds_every_step(car: str) -> None:
+    found = discovery(car)
+    steps = gap_steps(found)
+    page = gap_steps_figure(steps, found.gap.noise_floor)
+    said = [w.text for w in page.words]
+    assert page.outside == [] and "noise of the rig" in said
+    assert {f"{s.gap:.2f} ×" for s in steps} <= set(said)
+
+
+def test_an_effect_in_one_line() -> None:
+    found = discovery("named")
+    words = effect_words(found, found.findings[0])
+    assert words.kind == "found" and words.sure.startswith("sure (")
+    assert words.sizes[0].startswith("stiffness in camber ") and "±" in words.sizes[0]
+    assert words.confirm and words.physics and words.adopted is None
+    assert len(effect_words_table([words]).page_columns) == 6
+
+
+def test_sizes_have_names_without_units() -> None:
+    sizes = {
+        size_name(s) for car in ("named", "two") for f in discovery(car).findings for s in f.hypothesis.sizes
+    }
+    assert not [name for name in sizes if "_" in name]

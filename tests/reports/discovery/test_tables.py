@@ -1,0 +1,206 @@
+"""The numbers of a discovery as rows and words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis, Size
+from doe_kc.effects.words import hypothesis_label, place_words
+from doe_kc.reports.discovery.curves import model_values, model_views, view_gaps
+from doe_kc.reports.discovery.effects import effect_rows, effect_table
+from doe_kc.reports.discovery.evidence import evidence_steps
+from doe_kc.reports.discovery.heat_map import discovery_grids
+from doe_kc.reports.discovery.isolability import (
+    Isolability,
+    common_name,
+    isolability,
+    isolability_rows,
+)
+from doe_kc.reports.discovery.library import library_table
+from doe_kc.reports.discovery.parameters import tuned_parameters, tuned_table
+from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
+from doe_kc.reports.discovery.words import HEADLINES, found_sizes, limit_words, size_words
+from doe_kc.reports.render.csv import table_frame
+from tests.discovery.cases import LOAD_CASES, discovery, records
+
+
+def test_disagreement_has_every_contrast_and_every_map() -> None:
+    found = discovery("named")
+    frame = table_frame(disagreement_table(found))
+    assert len(frame) == len(found.nominal_map.names)
+    np.testing.assert_array_equal(frame["z_tuned"], found.tuned_map.z)
+    np.testing.assert_array_equal(frame["z_with_effect"], found.residual_map.z)
+    assert table_frame(disagreement_table(discovery("none")))["z_with_effect"].isna().all()
+
+
+def test_a_grid_holds_the_largest_of_each_load_case_and_response() -> None:
+    found = discovery("named")
+    nominal, tuned, final = discovery_grids(found)
+    frame = table_frame(disagreement_table(found))
+    largest = frame.assign(size=frame["z_tuned"].abs()).groupby(["load_case", "response"])["size"].max()
+    assert {key: abs(cell.z) for key, cell in tuned.cells.items()} == pytest.approx(largest.to_dict())
+    assert nominal.cases == ["static", *LOAD_CASES]
+    assert tuned.beyond > 0 and final.beyond == 0
+    assert len(discovery_grids(discovery("none"))) == 2
+
+
+def test_gaps_of_views_are_those_of_the_engine() -> None:
+    found = discovery("named")
+    frame = table_frame(gap_table(found)).set_index(["load_case", "response"])
+    assert frame.loc[("all", "all"), "with_effect"] == pytest.approx(found.gap.with_effect)
+    key = ("lateral", "camber")
+    parts = [view_gaps(found)[(*key, branches)] for branches in ("mean", "half_width")]
+    sizes = [model_views(found)[(*key, branches)].input.size for branches in ("mean", "half_width")]
+    for model in ("nominal", "tuned", "with_effect", "best_decoy"):
+        squares = sum(n * p[model] ** 2 for n, p in zip(sizes, parts, strict=True))
+        assert np.sqrt(squares / sum(sizes)) == pytest.approx(frame.loc[key, model], rel=1e-6)
+    assert table_frame(gap_table(discovery("none")))["with_effect"].isna().all()
+
+
+def test_views_hold_the_measured_curves_and_the_models_own() -> None:
+    found = discovery("named")
+    view = model_views(found)[("lateral", "camber", "mean")]
+    rig = records("named").curves.cases["lateral"]
+    np.testing.assert_array_equal(view.measured[1], np.interp(view.input, rig.input, rig.mean["camber"][1]))
+    axle = found.search.tuned.model.curves(found.search.tuned.model.centre).cases["lateral"]
+    expected = np.interp(view.input, axle.input, axle.mean["camber"][0])
+    np.testing.assert_allclose(view.models["nominal"][0], expected, atol=1e-9)
+    assert np.abs(view.deviation("tuned")).max() > 5.0 > np.abs(view.deviation("with_effect")).max()
+    assert set(model_values(discovery("none"))) == {"nominal", "tuned"}
+
+
+def test_library_names_every_hypothesis_once() -> None:
+    found = discovery("named")
+    frame = table_frame(library_table(found))
+    assert len(frame) == len(found.statuses)
+    first = frame.iloc[0]
+    assert (first["effect"], first["status"]) == ("hub_compliance", "found")
+    excluded = frame[frame["status"] == "excluded"]
+    assert (excluded["detectable_times_typical"] <= 1.0).all()
+    assert excluded["detectable"].str.len().min() > 3
+    assert frame["physics"].str.endswith(".").all()
+
+
+def test_parameters_are_absolute_with_their_distances() -> None:
+    found = discovery("named")
+    rows = {p.path: p for p in tuned_parameters(found)}
+    values = found.fitted.model.space.values(found.fitted.z[: found.fitted.model.parameters])
+    assert rows["LLF.z"].with_effect == pytest.approx(values["LLF.z"])
+    assert all(p.sd > 0 for p in rows.values())
+    assert list(table_frame(tuned_table(found))["path"]) == list(found.fitted.model.space.paths)
+    assert table_frame(tuned_table(discovery("none")))["with_effect"].isna().all()
+
+
+def test_held_out_has_a_row_a_load_case() -> None:
+    assert list(table_frame(held_out_table(discovery("named")))["load_case"]) == list(LOAD_CASES)
+    assert table_frame(held_out_table(discovery("none"))).empty
+
+
+@pytest.mark.parametrize(
+    ("car", "kinds"),
+    [
+        ("none", []),
+        ("named", ["found"]),
+        ("lead", ["lead only"]),
+        ("class", ["most likely"]),
+        ("two", ["found"]),
+    ],
+)
+def test_effects_have_a_row_for_each_number(car: str, kinds: list[str]) -> None:
+    found = discovery(car)
+    rows = effect_rows(found)
+    assert sorted({r.kind for r in rows if r.finding.relevant}) == kinds
+    sizes = sum(max(1, len(f.estimates)) for f in (*found.findings, *found.traces))
+    assert len(table_frame(effect_table(found))) == len(rows) == sizes
+    assert found.verdict in HEADLINES
+
+
+def test_a_size_that_cannot_be_told_from_none_is_a_limit() -> None:
+    found = discovery("named")  # its car's hub is rigid in toe for these load cases
+    camber, toe = found_sizes(found, found.findings[0])
+    assert camber.seen and "±" in camber.words
+    assert toe.seen or "not told from rigid (above" in toe.words
+    assert size_words(found, found.findings[0]).startswith("camber_Nm_deg = ")
+
+
+def test_steps_are_ranked_and_the_last_takes_nothing() -> None:
+    steps = evidence_steps(discovery("two"))
+    assert [sum(c.accepted for c in s.candidates) for s in steps][-1] == 0
+    for step in steps:
+        gains = [c.gain for c in step.candidates if c.refitted]
+        assert gains == sorted(gains, reverse=True)
+    assert steps[0].candidates[0].label == "Strut friction"
+
+
+def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
+    found = discovery("two")
+    table = isolability(found)
+    assert len(table.labels) == len(found.statuses) == table.correlation.shape[0]
+    seen = ~np.isnan(np.diag(table.correlation))
+    np.testing.assert_allclose(np.diag(table.correlation)[seen], 1.0)
+    np.testing.assert_array_equal(table.correlation, table.correlation.T)
+    assert "found" in table.statuses
+
+
+def test_effects_of_which_every_pair_is_alike_are_one_group() -> None:
+    r = np.eye(6)
+    for i, j, value in ((0, 1, 0.95), (1, 2, 0.9), (0, 2, 0.3), (3, 4, 0.99)):
+        r[i, j] = r[j, i] = value
+    r[5, :] = r[:, 5] = np.nan
+    labels = ("Gain, toe", "Gain, camber", "c", "d", "e", "f")
+    statuses: tuple[Status, ...] = ("excluded", "excluded", "excluded", "found", "excluded", "not testable")
+    table = Isolability(labels, statuses, np.array([0.1, 0.1, 2.0, 0.1, 0.1, np.inf]), r, tuple("uvwxyz"))
+    assert table.groups == ((3, 4), (0, 1))
+    assert (table.alone, table.hidden) == ((2,), (5,))
+    assert table.least_correlation((0, 1)) == 0.95
+    rows = isolability_rows(table)
+    assert [row.group for row in rows] == ["A", "A", "B", "B", "told apart", "hidden"]
+    assert [row.test for row in rows] == ["x", "y", "u", "v", "w", "z"]
+    assert (rows[4].nearest, rows[4].nearest_label) == (0.9, "Gain, camber")
+    assert np.isnan(rows[5].nearest)
+    assert common_name(labels[:2]) == "Gain, toe or camber"
+    assert common_name(labels[2:4]) == "c or d"
+    mixed = ["Preload, SFF", "Preload, SFR", "Offset of the alignment, caster"]
+    assert common_name(mixed) == "Preload, SFF or SFR or Offset of the alignment, caster"
+
+
+@pytest.mark.parametrize(
+    ("size", "words"),
+    [
+        (Size("force_N", 100.0, "N"), "force_N above 50.0 N"),
+        (Size("offset_mm", 4.0, "mm", signed=True), "|offset_mm| above 2.00 mm"),
+        (Size("k_N_mm", 100.0, "N/mm", "compliance"), "k_N_mm below 200 N/mm"),
+        (Size("toe", 1.21, "-", "factor", signed=True), "toe below 0.9091 or above 1.100"),
+        (Size("x_mm", 1.0, "mm", "shape"), ""),
+    ],
+)
+def test_limits_say_which_way(size: Size, words: str) -> None:
+    known = Hypothesis("hub_compliance", None, (size,))
+    standing = HypothesisStatus(known, "excluded", 0.5, 0.0, (), (), (0.5,))
+    assert limit_words(standing) == words
+    assert limit_words(replace(standing, detectable=np.inf)) == "–"
+
+
+def test_a_component_that_the_records_do_not_show_has_no_limit() -> None:
+    sizes = tuple(Size("LLR", 600.0, "N", index=i, signed=True) for i in range(3))
+    preload = Hypothesis("bushing_preload", "LLR", sizes)
+    standing = HypothesisStatus(preload, "excluded", 0.5, 0.0, (), (), (0.5, 1.5, 40.0))
+    assert limit_words(standing) == "|LLR| above 300, 900, – N"
+    hub = Hypothesis("hub_compliance", None, tuple(Size(k, 6000.0, "Nm/deg", "compliance") for k in "ab"))
+    assert limit_words(HypothesisStatus(hub, "excluded", 0.5, 0.0, (), (), (0.5, 4.0))) == (
+        "a below 12000 Nm/deg; b not shown"
+    )
+
+
+def test_places_read_well() -> None:
+    labels = {h.name: hypothesis_label(h) for e in EFFECTS.values() for h in e.hypotheses()}
+    assert labels["bushing_progression LLR"] == "Bushing progression, LLR"
+    assert labels["left_right_asymmetry LLF_L"] == "Left/right asymmetry, LLF left"
+    assert labels["hub_compliance"] == EFFECTS["hub_compliance"].label
+    assert place_words("wc_x") == "wheel centre x"
+    assert len(set(labels.values())) == len(labels)
