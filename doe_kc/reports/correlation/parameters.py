@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Literal
 
@@ -16,6 +16,8 @@ from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Tabl
 from doe_kc.variables import Tie
 
 Role = Literal["variable", "tied", "fixed"]
+UNSEEN_LISTED = 12
+"""Variables that a sentence names; a five-link axle has 95 that a rig does not see."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -222,8 +224,16 @@ def remark_sentences(correlation: Correlation) -> list[str]:
     if unseen:
         out.append(
             f"{len(unseen)} of {len(rows)} variables are not visible in these measurements: "
-            f"{', '.join(unseen)}. Their final values say nothing about the car."
+            f"{_listed(unseen)}. Their final values say nothing about the car."
         )
     if correlation.posterior is None:
         out.append("No standard deviations: the solver gives no sensitivities or no records were given.")
     return out
+
+
+def _listed(paths: Sequence[str]) -> str:
+    """Of many the first ones, and where the others stand."""
+    if len(paths) <= UNSEEN_LISTED:
+        return ", ".join(paths)
+    first = ", ".join(paths[:UNSEEN_LISTED])
+    return f"{first} and {len(paths) - UNSEEN_LISTED} more (not_visible in parameters.csv)"

@@ -62,6 +62,15 @@ def test_bounds_ties_and_fixed_ones_are_marked() -> None:
     assert "LLF.x" in text.split("not visible")[1]
 
 
+def test_of_many_variables_that_are_not_visible_the_first_are_named() -> None:
+    unseen = [r.path for r in parameter_rows(real()) if r.visible is False]
+    assert len(unseen) > 20
+    (text,) = (t for t in remark_sentences(real()) if "not visible" in t)
+    named, more = text.split(": ")[1].split(" and ")
+    assert named.split(", ") == unseen[:12]
+    assert more.startswith(f"{len(unseen) - 12} more (not_visible in parameters.csv).")
+
+
 def test_without_posterior_nothing_is_said_of_visibility() -> None:
     frame = table_frame(parameter_table(typed()))
     assert frame["sd"].isna().all() and (frame["not_visible"] == "").all()
