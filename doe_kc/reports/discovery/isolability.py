@@ -117,22 +117,6 @@ def group_name(place: int) -> str:
     return ascii_uppercase[place % 26] * (1 + place // 26)
 
 
-def common_name(labels: Sequence[str]) -> str:
-    """The members, the words that they share said once: `Left/right asymmetry, LLF left or right`."""
-    words = [label.split(" ") for label in labels]
-    shared = 0
-    while shared < min(map(len, words)) - 1 and len({w[shared] for w in words}) == 1:
-        shared += 1
-    if not shared or not " ".join(words[0][:shared]).count(","):
-        kinds: dict[str, list[str]] = {}
-        for label in labels:
-            kinds.setdefault(label.partition(",")[0], []).append(label)
-        return " or ".join(
-            common_name(own) if len(own) < len(labels) else " or ".join(own) for own in kinds.values()
-        )
-    return f"{' '.join(words[0][:shared])} {' or '.join(' '.join(w[shared:]) for w in words)}"
-
-
 @dataclass(frozen=True)
 class IsolabilityRow:
     """One hypothesis. group: letter, `ALONE` or `HIDDEN`. nearest: |correlation| with the hypothesis that is

@@ -12,7 +12,6 @@ from doe_kc.reports.discovery.isolability import (
     HIDDEN,
     Isolability,
     IsolabilityRow,
-    common_name,
     group_name,
     isolability_rows,
 )
@@ -78,10 +77,9 @@ def isolability_figure(table: Isolability, study: str) -> Sheet:
 
 
 def _lines(table: Isolability) -> list[IsolabilityRow | str]:
-    """Rows below the names of their groups."""
+    """Rows below the heads of their groups."""
     named = {
-        group_name(k): f"{group_name(k)}  {common_name([table.labels[i] for i in group])}"
-        f"  (|r| {_floor(table.least_correlation(group))} and above)"
+        group_name(k): f"{group_name(k)}  alike: |r| {_floor(table.least_correlation(group))} and above"
         for k, group in enumerate(table.groups)
     }
     heads = {**named, HIDDEN: "Hidden: re-tuning takes the place of each"}

@@ -27,6 +27,7 @@ from doe_kc.reports.discovery.parameters import tuned_parameters
 from doe_kc.reports.discovery.tables import gap_rows
 from doe_kc.reports.drawing.sheet import Sheet
 from doe_kc.reports.drawing.style import A4
+from doe_kc.reports.drawing.words import text_width
 from tests.discovery.cases import LOAD_CASES, discovery
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
@@ -120,6 +121,8 @@ def test_isolability_has_a_bar_a_hypothesis_under_the_name_of_its_group() -> Non
     words = [t.text for t in panel.texts]
     assert set(table.labels) <= set(words)
     assert sum(w.startswith(("A  ", "B  ")) for w in words) == min(2, len(table.groups))
+    heads = [t for t in panel.texts if t.look.get("weight") == "bold" and t.text not in table.labels]
+    assert heads and all(text_width(t.text, t.look["size"]) < panel.box.left - 14.0 for t in heads)
     assert (page.width, page.height) <= (A4[0] * 72.0 + 1e-6, A4[1] * 72.0 + 1e-6)
 
 

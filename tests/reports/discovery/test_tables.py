@@ -17,7 +17,6 @@ from doe_kc.reports.discovery.evidence import evidence_steps
 from doe_kc.reports.discovery.heat_map import discovery_grids
 from doe_kc.reports.discovery.isolability import (
     Isolability,
-    common_name,
     isolability,
     isolability_rows,
 )
@@ -163,10 +162,6 @@ def test_effects_of_which_every_pair_is_alike_are_one_group() -> None:
     assert [row.test for row in rows] == ["x", "y", "u", "v", "w", "z"]
     assert (rows[4].nearest, rows[4].nearest_label) == (0.9, "Gain, camber")
     assert np.isnan(rows[5].nearest)
-    assert common_name(labels[:2]) == "Gain, toe or camber"
-    assert common_name(labels[2:4]) == "c or d"
-    mixed = ["Preload, SFF", "Preload, SFR", "Offset of the alignment, caster"]
-    assert common_name(mixed) == "Preload, SFF or SFR or Offset of the alignment, caster"
 
 
 @pytest.mark.parametrize(
