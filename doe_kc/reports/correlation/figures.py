@@ -41,8 +41,8 @@ def parameter_figure(correlation: Correlation, study: str) -> Sheet:
     height = BAR_ROW * deep + 1.6
     margins = {
         "left": 0.105 if columns == 2 else 0.2,
-        "right": 0.86 if columns == 2 else 0.82,
-        "wspace": 0.98,
+        "right": 0.845 if columns == 2 else 0.82,
+        "wspace": 1.1,
     }
     margins |= {"top": 1 - 0.72 / height, "bottom": 0.85 / height}
     page, panels = sheet(1, columns, size=(8.27, height), margins=margins)
