@@ -25,6 +25,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     without_own_discrepancy,
 )
 from doe_kc.discovery.search.laws import (
+    free_laws_instead,
     may_open,
     with_best_laws,
     with_free_laws,
@@ -164,7 +165,13 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         if full or len(steps) >= MOST_STEPS:
             break
         before = current.model.likelihood
+        instead = None
         if decision.accepted:
+            instead = free_laws_instead(current, decision.trials[0], model.likelihood, workers)
+        if instead is not None:
+            steps.pop()
+            current = instead
+        elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
             laws_tried = False

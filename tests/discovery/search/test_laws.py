@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.laws import (
+    free_laws_instead,
     open_laws,
     other_laws,
     with_best_laws,
@@ -20,6 +21,7 @@ from doe_kc.discovery.search.laws import (
     with_law,
     with_open_laws,
 )
+from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
@@ -34,7 +36,9 @@ class Answers(DiscoveryWorkers):
         super().__init__()
         self.cost, self.best, self.laws = cost, best, [""] * 0
 
-    def fits(self, starts: Sequence[FitStart], what: str, *, derivatives: bool = True) -> list[Fit | None]:
+    def fits(
+        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+    ) -> list[Fit | None]:
         laws = [next(h.law for h in s.model.members if EFFECTS[h.effect].laws) for s in starts]
         self.laws += laws
         return [
@@ -97,6 +101,27 @@ def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> N
     (friction,) = agreeing().model.members
     assert asked.laws == [open_laws(friction)[-1].law]
     assert bool(found.model.members[0].law) is opened
+
+
+@pytest.mark.parametrize(("best", "freed"), [("backbone", True), ("", False)])
+def test_where_noise_explains_what_remains_a_free_law_comes_before_an_effect(best: str, freed: bool) -> None:
+    """A steering friction of two stages was answered by a mount of the rack beside it, and 978 N for 383."""
+    (hub,) = library("hub_compliance")
+    further = HypothesisFit(hub, beside_a_hub(), 12.0, 3.0)
+    asked, own = Answers(0.0, best), agreeing().model.likelihood
+    found = free_laws_instead(agreeing(), further, own, asked)
+    assert asked.laws == ["backbone", ""], "both are refitted, the effect beside the law that it came in with"
+    assert (found is not None and found.model.members[0].law == "backbone") is freed
+
+
+def test_a_free_law_does_not_replace_an_effect_where_more_is_missing_or_no_friction_is_there() -> None:
+    (hub,) = library("hub_compliance")
+    further, asked = HypothesisFit(hub, beside_a_hub(), 12.0), Answers(-100.0)
+    own = agreeing().model.likelihood
+    assert free_laws_instead(disagreeing(), further, own, asked) is None
+    alone = discovery("named").search.with_law_discrepancy
+    assert free_laws_instead(alone, further, own, asked) is None
+    assert not asked.laws
 
 
 def beside_a_hub() -> Fit:
