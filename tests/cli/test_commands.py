@@ -47,3 +47,9 @@ def test_a_check_needs_no_tables_and_no_pictures(tmp_path_factory: pytest.TempPa
     out, code, names = run("check", str(study))
     assert code == "0" and "all sound" in out
     assert not names & {"matplotlib", "openpyxl", "pandas", "sklearn", "smt"}
+
+
+def test_a_search_for_effects_begins_without_what_writes_its_results() -> None:
+    out, code, names = run("discover", "--help")
+    assert code == "0" and "missing effect" in out
+    assert not names & {"matplotlib", "openpyxl"}, "40 MB beside the derivatives"

@@ -14,6 +14,8 @@ as numbers of the fit.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
@@ -91,11 +93,7 @@ def free_laws_instead(
     if current.residual_map.chance < NOISE_CHANCE or not any(open_laws(h) for h in current.model.members):
         return None
     exact, rival = refit_to_errors(current, own), refit_to_errors(further.fit, own)
-    model, z = exact.model, exact.z
-    for member in exact.model.members:
-        for law in open_laws(member)[-1:]:
-            model, z = _replaced(model, z, member, law)
-    starts = [FitStart(model, z, exact), FitStart(rival.model, rival.z, rival)]
+    starts = [_with_most_numbers(exact, exact.model.members), FitStart(rival.model, rival.z, rival)]
     free, added = workers.fits(starts, "opening laws")
     if free is None or (added is not None and free.evidence <= added.evidence + further.prior):
         return None
@@ -123,16 +121,22 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
     as a law with drifting loops could make it, the fit stays as it is.
     """
-    model, z = current.model, current.z
-    for member in _frictions_beside_others(current):
-        for law in open_laws(member)[-1:]:
-            model, z = _replaced(model, z, member, law)
-    if model is current.model:
+    start = _with_most_numbers(current, _frictions_beside_others(current))
+    if start.model is current.model:
         return current
-    (refit,) = workers.fits([FitStart(model, z, current)], "opening laws")
+    (refit,) = workers.fits([start], "opening laws")
     if refit is None or refit.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
         return current
     return refit
+
+
+def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
+    """Where a fit with the law of most numbers for some members begins."""
+    model, z = current.model, current.z
+    for member in members:
+        for law in open_laws(member)[-1:]:
+            model, z = _replaced(model, z, member, law)
+    return FitStart(model, z, current)
 
 
 def _frictions_beside_others(current: Fit) -> list[Hypothesis]:

@@ -47,8 +47,8 @@ def refits_from_nominal(
     not show; a fault of the rig may be all that it sees of an effect of the car. opening: as they were
     screened before any effect. trials: other refits of the same step, which count among all.
     """
-    bent = many_held(current)
-    if current.residual_map.chance >= NOISE_CHANCE or not (bent or _rig_fault_leads(trials)):
+    bent, first = many_held(current), leading_at_first(opening, current.model)
+    if current.residual_map.chance >= NOISE_CHANCE or not (bent or (first and _rig_fault_leads(trials))):
         return []
     try:
         nominal = nominal_fit(current)
@@ -59,7 +59,7 @@ def refits_from_nominal(
     known = {one.screened.hypothesis.effect for one in leading}
     starts += [
         _from_nominal(nominal, [s.hypothesis], [s.amplitudes])
-        for s in leading_at_first(opening, current.model)
+        for s in first
         if s.hypothesis.effect not in known
     ]
     fits = workers.fits(starts, "refitting from the nominal axle")
