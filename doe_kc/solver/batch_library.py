@@ -170,7 +170,7 @@ def _march_by(
     given = (problem.c, start.s, start.x, start.u, problem.s, problem.u)
     numbers = [np.ascontiguousarray(a, dtype=float) for a in given]
     c_in, s_known, x_known, u_start, s_in, u_in = (a.ctypes.data for a in numbers)
-    rows, _, tail, scale, slips = kernel.addresses
+    rows, _, _, tail, scale, slips = kernel.addresses
     code = function(
         *(nx, len(order.row_of), nu, nz, kernel.ny, numbers[0].shape[1], len(kernel.rows), tail, scale),
         *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),

@@ -33,7 +33,7 @@ SUBSTEPS = 4
 """Equilibria a step, inside it and at its end, that a march with friction has room for at first."""
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
-    *(INT,) * 6, *(ADDRESS,) * 5, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
+    *(INT,) * 6, *(ADDRESS,) * 6, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
     INT, *(ADDRESS,) * 4, INT, *(ADDRESS,) * 9, INT, ADDRESS, ADDRESS,
 )  # fmt: skip
 """Of `march` in driver.c, in its order."""
@@ -120,11 +120,11 @@ def _march_with(
     known, (s_known, x_known, u_start, z_start, s_in, u_in, c_in) = _joined(
         start.s, start.x, start.u, start.z, problem.s, problem.u, problem.c
     )
-    jacobian_rows, jacobian_cols, tail, scale, slips = kernel.addresses
+    rows_in, cols_in, order, tail, scale, slips = kernel.addresses
     iterations_out = whole.ctypes.data
     code = function(
         *(kernel.nx, problem.active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
-        *(jacobian_rows, jacobian_cols, tail, scale, c_in),
+        *(rows_in, cols_in, order, tail, scale, c_in),
         *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
         *(start.guess, kernel.coordinates, len(kernel.slips), slips),
         *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
@@ -155,7 +155,7 @@ def _zeros(*shapes: tuple[int, ...]) -> tuple[list[FloatArray], list[int]]:
 
 def _joined(*arrays: FloatArray) -> tuple[FloatArray, list[int]]:
     """A copy of the arrays, one after the other, and where in memory each begins."""
-    room = np.concatenate([np.ravel(array) for array in arrays], dtype=float)
+    room = np.concatenate([array.ravel() for array in arrays], dtype=float)
     first, ends = room.ctypes.data, accumulate(array.size for array in arrays)
     return room, [first + room.itemsize * (e - a.size) for a, e in zip(arrays, ends, strict=True)]
 

@@ -31,7 +31,7 @@ DERIVATIVE_LIBRARY = "derivatives"
 """Kind of the library of a topology's derivatives."""
 _INT, _ADDRESS = ctypes.c_int, ctypes.c_void_p
 _ARGUMENTS = (
-    *(_INT,) * 4, *(_ADDRESS,) * 2, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 6,
+    *(_INT,) * 4, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 6,
 )  # fmt: skip
 """Of `sensitivity` in sensitivity.c, in its order."""
 

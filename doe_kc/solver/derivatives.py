@@ -172,7 +172,7 @@ class CompiledDerivatives:
         start, column, value = (a.ctypes.data for a in self._sparse)
         code = self.library.sensitivity(
             n,
-            *(k.nx, k.nu, k.nz, k.ny, k.scale.ctypes.data, self.c.ctypes.data),
+            *(k.nx, k.nu, k.nz, k.ny, k.scale.ctypes.data, k.layout.order.ctypes.data, self.c.ctypes.data),
             *(n, x.ctypes.data, u.ctypes.data, z.ctypes.data, columns, start, column, value),
             *(len(way), way.ctypes.data, gradient.ctypes.data, place.ctypes.data),
             *(outputs.ctypes.data, dx.ctypes.data if unknowns else None, after.ctypes.data),

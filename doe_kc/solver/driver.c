@@ -1,5 +1,6 @@
 /* Marches an axle along a load case: predictor, Newton with a kept factorization, step bisection.
-   The same algorithm as newton.py and march.py, statement by statement; `residual`, `jacobian`, `outputs`, `state_update` are generated. */
+   The same algorithm as newton.py and march.py, statement by statement but for the elimination, which is LAPACK's
+   there. `residual`, `jacobian`, `outputs`, `state_update` are generated. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,16 +12,20 @@ int outputs(const double **, double **, integer *, double *, int);
 int state_update(const double **, double **, integer *, double *, int);
 
 
+#define PIVOT_THRESHOLD 0.1     /* least diagonal over the largest number of its column that stays the pivot */
+
 typedef struct {
     int n, active, nu, nz, ny;          /* unknowns, solved ones, controls, states, outputs */
     const int *row, *col;               /* of the Jacobian's nonzeros */
     int nnz;
+    const int *order;                   /* equation and unknown of each pivot; the tail's come last */
     const int *tail_control;            /* control that prescribes each tail unknown */
     const double *scale, *c;
     double tol, refresh;                /* force residual in N; contraction that asks for a new Jacobian */
     int max_iterations, max_halvings;
-    double *r, *trial_r, *x_trial, *d, *nz_jac, *lu;
-    int *pivot;
+    double *r, *trial_r, *x_trial, *d, *e, *nz_jac, *lu, *inverse_scale;
+    int *pivot, *from, *to, *top;       /* of the factorization */
+    int *place;                         /* of the Jacobian's nonzeros in it, -1 for those of the tail */
     int have_lu;
     long long counts[4];                /* residuals, Jacobians, factorizations, Newton steps */
 } problem;
@@ -35,42 +40,56 @@ static void evaluate(problem *p, const double *x, const double *u, const double 
 static double norm(const problem *p, const double *r) {
     double worst = 0.0;
     for (int i = 0; i < p->active; i++) {
-        double v = fabs(r[i]) / p->scale[i];
+        double v = fabs(r[i]) * p->inverse_scale[i];
         if (!(v <= worst)) worst = v;
         if (v != v) return INFINITY;
     }
     return worst;
 }
 
-/* LU of a (m, m), column by column, rows swapped; 0, or 1 where it is singular. */
+/* LU of a (m, m), column by column. Rows are swapped only where the diagonal is small in its column, so that the
+   order of elimination keeps the fill small. from, to: by column, rows below the diagonal between which L is not
+   zero; top: the first row of U that is not. 0, or 1 where it is singular. */
 FOR_THIS_PROCESSOR
-static int eliminate(int m, double *a, int *pivot) {
+static int eliminate(int m, double *a, int *pivot, int *from, int *to, int *top) {
     for (int k = 0; k < m; k++) {
-        int best = k;
-        double *restrict ck = a + m * k;
-        for (int i = k + 1; i < m; i++)
-            if (fabs(ck[i]) > fabs(ck[best])) best = i;
+        int best = k, first = k + 1, end = m, larger = 0;
+        double *restrict ck = a + m * k, enough = fabs(ck[k]) / PIVOT_THRESHOLD;
+        while (end > first && ck[end - 1] == 0.0) end--;
+        while (first < end && ck[first] == 0.0) first++;
+        for (int i = first; i < end; i++) larger += fabs(ck[i]) > enough;
+        if (larger)
+            for (int i = first; i < end; i++)
+                if (fabs(ck[i]) > fabs(ck[best])) best = i;
         pivot[k] = best;
         if (!(fabs(ck[best]) > 0.0)) return 1;
-        if (best != k)
+        if (best != k) {
             for (int j = 0; j < m; j++) {
                 double t = a[k + m * j];
                 a[k + m * j] = a[best + m * j];
                 a[best + m * j] = t;
             }
+        }
         double inverse = 1.0 / ck[k];
-        for (int i = k + 1; i < m; i++) ck[i] *= inverse;
+        for (int i = first; i < end; i++) ck[i] *= inverse;
         for (int j = k + 1; j < m; j++) {
             double *restrict cj = a + m * j, f = cj[k];
             if (f != 0.0)
-                for (int i = k + 1; i < m; i++) cj[i] -= f * ck[i];
+                for (int i = first; i < end; i++) cj[i] -= f * ck[i];
         }
+    }
+    for (int k = 0; k < m; k++) {
+        const double *ck = a + m * k;
+        for (to[k] = m; to[k] > k + 1 && ck[to[k] - 1] == 0.0; to[k]--) {}
+        for (from[k] = k + 1; from[k] < to[k] && ck[from[k]] == 0.0; from[k]++) {}
+        for (top[k] = 0; top[k] < k && ck[top[k]] == 0.0; top[k]++) {}
     }
     return 0;
 }
 
 FOR_THIS_PROCESSOR
-static void substitute(int m, const double *restrict a, const int *pivot, double *restrict d) {
+static void substitute(int m, const double *restrict a, const int *pivot, const int *from, const int *to,
+                       const int *top, double *restrict d) {
     for (int k = 0; k < m; k++) {
         double t = d[pivot[k]];
         d[pivot[k]] = d[k];
@@ -78,12 +97,23 @@ static void substitute(int m, const double *restrict a, const int *pivot, double
     }
     for (int k = 0; k < m; k++) {
         double f = d[k];
-        for (int i = k + 1; i < m; i++) d[i] -= a[i + m * k] * f;
+        for (int i = from[k]; i < to[k]; i++) d[i] -= a[i + m * k] * f;
     }
     for (int k = m - 1; k >= 0; k--) {
         double f = d[k] /= a[k + m * k];
-        for (int i = 0; i < k; i++) d[i] -= a[i + m * k] * f;
+        for (int i = top[k]; i < k; i++) d[i] -= a[i + m * k] * f;
     }
+}
+
+/* Where the nonzeros stand in the order of elimination. */
+static void set_places(problem *p) {
+    int *at = p->pivot;
+    for (int k = 0; k < p->n; k++) at[p->order[k]] = k;
+    for (int k = 0; k < p->nnz; k++) {
+        int i = at[p->row[k]], j = at[p->col[k]];
+        p->place[k] = i < p->active && j < p->active ? i + p->active * j : -1;
+    }
+    for (int i = 0; i < p->n; i++) p->inverse_scale[i] = 1.0 / p->scale[i];
 }
 
 static int factor(problem *p, const double *x, const double *u, const double *z) {
@@ -96,14 +126,16 @@ static int factor(problem *p, const double *x, const double *u, const double *z)
     p->counts[2]++;
     memset(a, 0, sizeof(double) * m * m);
     for (int k = 0; k < p->nnz; k++)
-        if (p->row[k] < m && p->col[k] < m) a[p->row[k] + m * p->col[k]] = p->nz_jac[k] / p->scale[p->row[k]];
-    p->have_lu = !eliminate(m, a, p->pivot);
+        if (p->place[k] >= 0) a[p->place[k]] = p->nz_jac[k] * p->inverse_scale[p->row[k]];
+    p->have_lu = !eliminate(m, a, p->pivot, p->from, p->to, p->top);
     return !p->have_lu;
 }
 
-static void solve(const problem *p, const double *r, double *d) {
-    for (int i = 0; i < p->active; i++) d[i] = r[i] / p->scale[i];
-    substitute(p->active, p->lu, p->pivot, d);
+static void solve(problem *p, const double *r, double *d) {
+    int m = p->active;
+    for (int k = 0; k < m; k++) p->e[k] = r[p->order[k]] * p->inverse_scale[p->order[k]];
+    substitute(m, p->lu, p->pivot, p->from, p->to, p->top, p->e);
+    for (int k = 0; k < m; k++) d[p->order[k]] = p->e[k];
 }
 
 /* Whether a fresh Newton step neither moves the axle nor improves a residual that is small already. */
@@ -228,26 +260,32 @@ static int slips_back(problem *p, int slips, const int *slip, const double *x, c
    only point is no equilibrium. end: the last equilibrium's s, u, z and x, and how far off a solution was.
    between: with friction, `passed` rows of step, share, u, x, z of every equilibrium, at most `capacity`. */
 int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, const int *col,
-          const int *tail_control, const double *scale, const double *c, double tol, double refresh,
+          const int *order, const int *tail_control, const double *scale, const double *c, double tol, double refresh,
           int max_iterations, int max_halvings, int guess, int coordinates, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
           int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
           int *iterations_out, double *level_out, double *end, long long *counts,
           int capacity, double *between, int *passed) {
-    problem p = {n, active, nu, nz, ny, row, col, nnz, tail_control, scale, c, tol, refresh,
+    problem p = {n, active, nu, nz, ny, row, col, nnz, order, tail_control, scale, c, tol, refresh,
                  max_iterations, max_halvings};
     double hs[HISTORY + 1], *memory, *hx, *x, *z, *u_now, *u_next, *guessed, *back, *u_on, snap = 0.0, wish = 1.0;
     int points = known < HISTORY ? known : HISTORY, failed = 0;
     double finest = ldexp(1.0, -max_halvings) * (1.0 + 1e-9);
-    size_t doubles = 4 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
+    size_t doubles = 6 * n + nnz + (size_t)n * n + (HISTORY + 1) * n + 3 * n + (nz + 1) + 3 * nu;
     memory = malloc(sizeof(double) * doubles);
-    p.pivot = malloc(sizeof(int) * n);
+    p.pivot = malloc(sizeof(int) * (4 * (size_t)n + nnz));
     if (!memory || !p.pivot) { free(memory); free(p.pivot); return -1; }
+    p.from = p.pivot + n;
+    p.to = p.from + n;
+    p.top = p.to + n;
+    p.place = p.top + n;
     double *m = memory;
     p.r = m; m += n;
     p.trial_r = m; m += n;
     p.x_trial = m; m += n;
     p.d = m; m += n;
+    p.e = m; m += n;
+    p.inverse_scale = m; m += n;
     p.nz_jac = m; m += nnz;
     p.lu = m; m += (size_t)n * n;
     hx = m; m += (HISTORY + 1) * n;
@@ -258,6 +296,7 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     guessed = m; m += n;
     back = m; m += n;
     u_on = m;
+    set_places(&p);
     for (int i = 0; i < points; i++) {
         hs[i] = s_known[known - points + i];
         memcpy(hx + i * n, x_known + (size_t)(known - points + i) * n, sizeof(double) * n);

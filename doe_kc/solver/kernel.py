@@ -108,12 +108,13 @@ class Kernel:
         return np.array([self.layout.control_names.index(names[t.name]) for t in tail], dtype=np.int32)
 
     @cached_property
-    def addresses(self) -> tuple[int, int, int, int, int]:
-        """In memory: rows, cols, tail_controls, scale, slips, for compiled code."""
-        rows, cols, tail, scale, slips = (
-            a.ctypes.data for a in (self.rows, self.cols, self.tail_controls, self.scale, self.slips)
+    def addresses(self) -> tuple[int, int, int, int, int, int]:
+        """In memory: rows, cols, order, tail_controls, scale, slips, for compiled code."""
+        order = self.layout.order
+        rows, cols, at, tail, scale, slips = (
+            a.ctypes.data for a in (self.rows, self.cols, order, self.tail_controls, self.scale, self.slips)
         )
-        return rows, cols, tail, scale, slips
+        return rows, cols, at, tail, scale, slips
 
     def constant_values(self, values: dict[str, float]) -> FloatArray:
         """(nc,) constants from the axle's internal values."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from doe_kc.solver.builder import Unknown
 from doe_kc.solver.equations import Equations
+from doe_kc.solver.minimum_degree import minimum_degree_order
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,7 @@ class EquationLayout:
     """As in `Equations`, without its expressions.
 
     states: number of friction states z. rows, cols: (nnz,) places of the Jacobian's nonzeros.
+    order: (nx,) of its elimination, see `minimum_degree_order`.
     """
 
     unknowns: tuple[Unknown, ...]
@@ -27,6 +29,7 @@ class EquationLayout:
     states: int
     rows: np.ndarray
     cols: np.ndarray
+    order: np.ndarray
 
 
 def layout_of(equations: Equations, rows: np.ndarray, cols: np.ndarray) -> EquationLayout:
@@ -41,6 +44,7 @@ def layout_of(equations: Equations, rows: np.ndarray, cols: np.ndarray) -> Equat
         states=int(equations.z.numel()),
         rows=np.asarray(rows, dtype=np.int32),
         cols=np.asarray(cols, dtype=np.int32),
+        order=minimum_degree_order(rows, cols, len(equations.unknowns), equations.tail),
     )
 
 
@@ -57,6 +61,7 @@ def layout_text(layout: EquationLayout) -> str:
             "states": layout.states,
             "rows": layout.rows.tolist(),
             "cols": layout.cols.tolist(),
+            "order": layout.order.tolist(),
         }
     )
 
@@ -71,5 +76,6 @@ def read_layout(text: str) -> EquationLayout:
         states=int(entries["states"]),
         rows=np.array(entries["rows"], dtype=np.int32),
         cols=np.array(entries["cols"], dtype=np.int32),
+        order=np.array(entries["order"], dtype=np.int32),
         **{name: tuple(entries[name]) for name in names},
     )

@@ -184,13 +184,16 @@ INLINE tile add_row(int width, tile s, const by_rows *m, int i, const double *ro
     return s;
 }
 
-/* LU of a (n, n), row by row; order: the row that came to each place. 0, or 1 where it is singular. */
+#define PIVOT_THRESHOLD 0.1     /* as in driver.c */
+
+/* LU of a (n, n), row by row; order: the row that stands in each place, and then the one that came to it. Rows are
+   swapped only where the diagonal is small in its column. 0, or 1 where it is singular. */
 INLINE int factor(int n, double *a, int *order) {
-    for (int i = 0; i < n; i++) order[i] = i;
     for (int k = 0; k < n; k++) {
-        int best = k;
+        int best = k, first = k + 1, end = n;
         for (int i = k + 1; i < n; i++)
             if (fabs(a[i * n + k]) > fabs(a[best * n + k])) best = i;
+        if (fabs(a[k * n + k]) >= PIVOT_THRESHOLD * fabs(a[best * n + k])) best = k;
         if (!(fabs(a[best * n + k]) > 0.0)) return 1;
         if (best != k) {
             int other = order[k];
@@ -203,23 +206,26 @@ INLINE int factor(int n, double *a, int *order) {
             }
         }
         double inverse = 1.0 / a[k * n + k];
+        while (end > first && a[k * n + end - 1] == 0.0) end--;
+        while (first < end && a[k * n + first] == 0.0) first++;
         for (int i = k + 1; i < n; i++) {
             if (a[i * n + k] == 0.0) continue;
             double f = a[i * n + k] *= inverse;
-            for (int j = k + 1; j < n; j++) a[i * n + j] -= f * a[k * n + j];
+            for (int j = first; j < end; j++) a[i * n + j] -= f * a[k * n + j];
         }
     }
     return 0;
 }
 
-/* Minus what is not zero of rows below, then above the diagonal of a (n, n): rows 0 to n - 1, and n to 2 n - 1. */
-INLINE void compress(int n, const double *a, by_rows *out) {
+/* Minus what is not zero of rows below, then above the diagonal of a (n, n): rows 0 to n - 1, and n to 2 n - 1.
+   pair: the unknown of each column. */
+INLINE void compress(int n, const double *a, const int *pair, by_rows *out) {
     int at = 0;
     for (int half = 0; half < 2; half++)
         for (int i = 0; i < n; i++) {
             for (int j = half ? i + 1 : 0; j < (half ? n : i); j++)
                 if (a[i * n + j] != 0.0) {
-                    out->column[at] = j;
+                    out->column[at] = pair[j];
                     out->value[at++] = -a[i * n + j];
                 }
             out->start[half * n + i + 1] = at;
@@ -229,9 +235,10 @@ INLINE void compress(int n, const double *a, by_rows *out) {
 typedef struct {
     int nx, ny, nz;
     const double *scale;
+    const int *pair;                    /* (nx) equation and unknown that are eliminated together */
     block *of;                          /* BLOCKS of them, with their numbers at the point */
     double *matrix;                     /* (nx, nx), factorized */
-    int *order;
+    int *order, *at;                    /* equation that came to each place; place of each pair */
     by_rows factors;                    /* of `matrix`, see `compress` */
     double *right, *dx, *dy, *dz_next;  /* (., TILE) of one tile */
     double *dz;                         /* (nz, padded), tile after tile */
@@ -249,12 +256,13 @@ INLINE void differentiate_tile(int width, point *e, right_side *p, const double 
         tile s = load(width, e->right + from * width);
         if (e->nz) s = add_row(width, s, &of[R_Z].ordered, from, dz);
         s = times(width, -1.0 / e->scale[from], s);
-        store(width, e->dx + i * width, add_row(width, s, &e->factors, i, e->dx));
+        store(width, e->dx + e->pair[i] * width, add_row(width, s, &e->factors, i, e->dx));
     }
     for (int i = n - 1; i >= 0; i--) {
-        tile s = add_row(width, load(width, e->dx + i * width), &e->factors, n + i, e->dx);
-        store(width, e->dx + i * width, times(width, 1.0 / e->matrix[i * n + i], s));
-        if (dx) memcpy(dx + (size_t)i * p->columns + first, e->dx + i * width, sizeof(double) * count);
+        double *row = e->dx + e->pair[i] * width;
+        tile s = add_row(width, load(width, row), &e->factors, n + i, e->dx);
+        store(width, row, times(width, 1.0 / e->matrix[i * n + i], s));
+        if (dx) memcpy(dx + (size_t)e->pair[i] * p->columns + first, row, sizeof(double) * count);
     }
     if (dy) {
         explicit_part(width, of + Y_C, of + Y_U, gradient, p, number, first, e->dy);
@@ -281,9 +289,10 @@ static int differentiate(point *e, right_side *p, const double *gradient, double
     memset(e->matrix, 0, sizeof(double) * n * n);
     for (int j = 0; j < n; j++)
         for (integer k = r_x->start[j]; k < r_x->start[j + 1]; k++)
-            e->matrix[r_x->row[k] * n + j] = r_x->value[k] / e->scale[r_x->row[k]];
+            e->matrix[e->at[r_x->row[k]] * n + e->at[j]] = r_x->value[k] / e->scale[r_x->row[k]];
+    memcpy(e->order, e->pair, sizeof(int) * n);
     if (factor(n, e->matrix, e->order)) return 1;
-    compress(n, e->matrix, &e->factors);
+    compress(n, e->matrix, e->pair, &e->factors);
     static const int used[] = {Y_X, R_Z, Y_Z, Z_X, Z_Z};
     for (int index = 0; index < (e->nz ? 5 : 1); index++) {
         block *b = e->of + used[index];
@@ -308,12 +317,13 @@ static void copy_states(const right_side *p, int nz, double *rows, double *tiles
     }
 }
 
-/* n equilibria x, u, after the friction states z, at constants c; they move with `columns` parameters by dc
+/* pair: (nx) equation and unknown that are eliminated together, in this order.
+   n equilibria x, u, after the friction states z, at constants c; they move with `columns` parameters by dc
    (rows of c, sparse) and du = gradient (n, nu, directions) direction (directions, columns).
    dy: (., ny, columns); place: the row there that each equilibrium goes to, below 0 for none.
    dx: (n, nx, columns), or NULL. dz: (nz, columns), before the first and then after the last.
    Returns 0, 1 + index of a singular equilibrium, or -1 without memory. */
-int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const double *c, int n, const double *x,
+int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const int *pair, const double *c, int n, const double *x,
                 const double *u, const double *z, int columns, const int *dc_start, const int *dc_column,
                 const double *dc_value, int directions, const double *direction, const double *gradient,
                 const int *place, double *dy, double *dx, double *dz) {
@@ -321,7 +331,7 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const doubl
     block of[BLOCKS];
     double *value[BLOCKS];
     right_side p;
-    point e = {nx, ny, nz, scale, of};
+    point e = {nx, ny, nz, scale, pair, of};
     memset(of, 0, sizeof(of));
     for (int b = 0; b < count; b++) {
         closed |= open_block(of + b, b);
@@ -330,9 +340,11 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const doubl
     closed |= open_right_side(&p, columns, of[R_C].columns, dc_start, dc_column, dc_value, directions, direction);
     closed |= open_rows(&e.factors, 2 * nx, nx * nx);
     double *memory = calloc((size_t)nx * nx + (size_t)TILE * (2 * nx + ny + nz) + (size_t)nz * p.padded + 1, sizeof(double));
-    e.order = malloc(sizeof(int) * (nx + 1));
+    e.order = malloc(sizeof(int) * 2 * (nx + 1));
     if (closed || !memory || !e.order) failed = -1;
     if (!failed) {
+        e.at = e.order + nx;
+        for (int k = 0; k < nx; k++) e.at[pair[k]] = k;
         e.matrix = memory;
         e.right = e.matrix + (size_t)nx * nx;
         e.dx = e.right + TILE * nx;
