@@ -103,8 +103,8 @@ def add_hub(conversion: Conversion) -> None:
     table, path = bushing_laws(c, ("Tx", "Tz"), subsystem, element, "hub", order)
     options = {}
     for key, path_of, axis in (("camber_Nm_deg", "hub.camber", "Tx"), ("toe_Nm_deg", "hub.toe", "Tz")):
-        slope = centre_slope(c, table, axis, path) / table.get("factor", {}).get(axis, 1.0)
-        options[key] = tidy(slope * table.get("factor", {}).get(axis, 1.0), PRODUCT_DIGITS)
+        stiffness = centre_slope(c, table, axis, path)
+        options[key] = tidy(stiffness, PRODUCT_DIGITS)
         number = f"{adams_axis(axis, order).upper()}_SCALING_FACTOR"
         if number in element.block.entries:
             entries = element.block.entries
@@ -115,7 +115,7 @@ def add_hub(conversion: Conversion) -> None:
                     entries[number],
                     element.side,
                     entries["SYMMETRY"],
-                    gain=slope,
+                    gain=stiffness / table.get("factor", {}).get(axis, 1.0),
                     block=element.block,
                 )
             )

@@ -10,6 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from doe_kc.ground.errors import DoeKcError, InputError, RunError
+from doe_kc.ground.listing import first_of
 
 
 def lock(path: Path) -> sqlite3.Connection:
@@ -144,9 +145,8 @@ def check_solver(
 def _difference(meta: Mapping[str, str], description: Mapping[str, str]) -> str:
     stored: dict[str, str] = json.loads(meta.get("description", "{}"))
     names = [n for n in {**description, **stored} if stored.get(n) != description.get(n)]
-    parts = [_change(n, stored.get(n, "none"), description.get(n, "none")) for n in names[:DIFFERENCES]]
-    rest = f", and {len(names) - DIFFERENCES} more" if len(names) > DIFFERENCES else ""
-    return "; ".join(parts) + rest if parts else "its fingerprint differs"
+    parts = [_change(n, stored.get(n, "none"), description.get(n, "none")) for n in names]
+    return first_of(parts, DIFFERENCES, separator="; ") or "its fingerprint differs"
 
 
 def _change(name: str, then: str, now: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from doe_kc.ground.listing import first_of
 from doe_kc.study import Study
 
 SAME = 1e-6
@@ -26,10 +27,12 @@ def twin_differences(study: Study) -> Iterator[str]:
     other = [n for n in ours if n in twin and abs(twin[n] - ours[n]) > SAME * max(abs(twin[n]), abs(ours[n]))]
     place = f"{study.source}: solver.twin {study.twin_path.name}"
     if lacking:
-        yield f"{place}: lacks {_listed(lacking)}, which the study's axle has; expected the same axle."
+        names = first_of(lacking, TWIN_NAMES)
+        yield f"{place}: lacks {names}, which the study's axle has; expected the same axle."
     if other:
         pairs = {_plain(n): f"{_plain(n)} {twin[n]:g} for {ours[n]:g}" for n in other}
-        yield f"{place}: {_listed(list(pairs.values()))} in the study's axle; mend the file that is wrong."
+        values = first_of(list(pairs.values()), TWIN_NAMES)
+        yield f"{place}: {values} in the study's axle; mend the file that is wrong."
 
 
 def _plain(name: str) -> str:
@@ -39,8 +42,3 @@ def _plain(name: str) -> str:
 
 def _named(names: list[str]) -> list[str]:
     return list(dict.fromkeys(_plain(n) for n in names))
-
-
-def _listed(words: list[str]) -> str:
-    more = f" and {len(words) - TWIN_NAMES} more" if len(words) > TWIN_NAMES else ""
-    return ", ".join(words[:TWIN_NAMES]) + more

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from doe_kc.ground.listing import first_of
 from doe_kc.measurement.channels import RIG_NAMES
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, rig_check
 from doe_kc.measurement.records import RigRecord
@@ -25,8 +26,7 @@ def outliers(test: RigTest) -> Iterator[RecordFinding]:
 
 def _finding(case: str, record: RigRecord, role: str) -> RecordFinding:
     own = [o for o in record.outliers if o.role == role]
-    listed = ", ".join(f"{o.value:g} at sample {o.sample + 1}" for o in own[:LISTED_OUTLIERS])
-    more = f" and {len(own) - LISTED_OUTLIERS} more" if len(own) > LISTED_OUTLIERS else ""
+    listed = first_of([f"{o.value:g} at sample {o.sample + 1}" for o in own], LISTED_OUTLIERS)
     many = len(own) > MOST * record.input.size
     response, _, side = role.rpartition("_")
     channel = record.case.channel if role == "input" else f"{RIG_NAMES.get(response, role)}_{side}"
@@ -36,7 +36,7 @@ def _finding(case: str, record: RigRecord, role: str) -> RecordFinding:
         case=case,
         channel=channel if role != "time" else role,
         where=record.label,
-        evidence=f"{channel} has {len(own)} outlying sample{'s' if len(own) > 1 else ''} ({listed}{more})",
+        evidence=f"{channel} has {len(own)} outlying sample{'s' if len(own) > 1 else ''} ({listed})",
         cure="too many for a sound sensor, so mend it and record the channel again"
         if many
         else "replaced by their neighbours, nothing to do",

@@ -11,6 +11,7 @@ import numpy as np
 from doe_kc.axle.parameter_kinds import kind_of
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.result import Correlation
+from doe_kc.ground.listing import first_of
 from doe_kc.ground.numbers import at_sd, number, signed, with_sd
 from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Table, row_digits
 from doe_kc.variables import Tie
@@ -233,7 +234,5 @@ def remark_sentences(correlation: Correlation) -> list[str]:
 
 def _listed(paths: Sequence[str]) -> str:
     """Of many the first ones, and where the others stand."""
-    if len(paths) <= UNSEEN_LISTED:
-        return ", ".join(paths)
-    first = ", ".join(paths[:UNSEEN_LISTED])
-    return f"{first} and {len(paths) - UNSEEN_LISTED} more (not_visible in parameters.csv)"
+    rest = " (not_visible in parameters.csv)" if len(paths) > UNSEEN_LISTED else ""
+    return first_of(paths, UNSEEN_LISTED) + rest

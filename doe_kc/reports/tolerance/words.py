@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from doe_kc.ground.listing import first_of
 from doe_kc.ground.numbers import number, unit_words
 from doe_kc.production_scatter.result import Tolerance
 from doe_kc.production_scatter.statistics import CarShare
@@ -76,10 +77,9 @@ def _requirement_words(tolerance: Tolerance) -> Iterator[str]:
         if s.requirement is not None and bool(s.requirement.outside(np.array([s.nominal]))[0])
     ]
     if centre:
-        more = f" and {len(centre) - MOST_NAMED} more" if len(centre) > MOST_NAMED else ""
         yield (
-            f"The unchanged axle is itself outside in {', '.join(centre[:MOST_NAMED])}{more}: there no "
-            "tolerance helps, the axle has to move."
+            f"The unchanged axle is itself outside in {first_of(centre, MOST_NAMED)}: there no tolerance "
+            "helps, the axle has to move."
         )
 
 
