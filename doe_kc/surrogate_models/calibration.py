@@ -100,6 +100,10 @@ class Calibrated(Fitted):
         """m."""
         return self.inner.outputs
 
+    def of(self, outputs: np.ndarray) -> Calibrated:
+        """See `Fitted.of`."""
+        return Calibrated(self.inner.of(outputs), self.factors[outputs])
+
     def cross_validate(self) -> LeftOut:
         """Of the inner model, variances scaled."""
         return scaled(self.inner.cross_validate(), self.factors)

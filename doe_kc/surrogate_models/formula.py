@@ -114,14 +114,15 @@ def _kriging(fitted: OrdinaryKriging) -> list[MeanFormula]:
 
 
 def _varying(fitted: Varying) -> list[MeanFormula]:
-    inner = dict(zip(map(int, fitted.places), mean_formulas(fitted.inner), strict=True))
+    own = mean_formulas(fitted.inner)[: fitted.places.size]
+    inner = dict(zip(map(int, fitted.places), own, strict=True))
     zero = np.zeros(fitted.variables)
     return [inner.get(j, _plane(value, zero, zero)) for j, value in enumerate(fitted.constant)]
 
 
 def _chosen(fitted: Chosen) -> list[MeanFormula]:
-    parts = [mean_formulas(part) for part in fitted.parts]
-    return [parts[int(k)][j] for j, k in enumerate(fitted.part)]
+    parts = [iter(mean_formulas(part)) for part in fitted.parts]
+    return [next(parts[int(k)]) for k in fitted.part]
 
 
 def _calibrated(fitted: Calibrated) -> list[MeanFormula]:

@@ -84,6 +84,11 @@ class Fitted(ABC):
             return self._everything(points)
 
     @abstractmethod
+    def of(self, outputs: np.ndarray) -> Fitted:
+        """The same predictions of some outputs alone, places (k,) with k > 0; what the others take is left
+        out."""
+
+    @abstractmethod
     def cross_validate(self) -> LeftOut:
         """Left-out residuals of the training rows: leave-one-out in closed form, or folds (see the model)."""
 

@@ -37,6 +37,17 @@ class CovarianceKernel:
     pinned: bool = False
     matern: bool = False
 
+    def of(self, outputs: np.ndarray) -> CovarianceKernel:
+        """Those of some outputs: places (k,)."""
+        return replace(
+            self,
+            relevance=self.relevance[outputs],
+            curvature=self.curvature[outputs],
+            bend=self.bend[outputs],
+            constant=self.constant[outputs],
+            nugget=self.nugget[outputs],
+        )
+
     def scaled(self, factor: FloatArray) -> CovarianceKernel:
         """The same functions, of outputs with variances times `factor` (m,); the nugget stays."""
         return replace(

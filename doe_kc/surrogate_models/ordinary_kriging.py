@@ -51,6 +51,11 @@ class OrdinaryKriging(Fitted):
         """As many points as make arrays of some 30 MB."""
         return 4_000_000 // self.weight.size
 
+    def of(self, outputs: np.ndarray) -> OrdinaryKriging:
+        """See `Fitted.of`."""
+        own = (self.theta, self.root, self.level, self.variance0, self.weight, self.ones)
+        return OrdinaryKriging(self.x, *(array[outputs] for array in own))
+
     def cross_validate(self) -> LeftOut:
         """Leave-one-out with the rates held, the mean estimated anew without the row."""
         total = self.ones.sum(axis=1)

@@ -39,6 +39,11 @@ class ProcessPosterior:
     slope: FloatArray
     evidence: FloatArray
 
+    def of(self, outputs: np.ndarray) -> ProcessPosterior:
+        """Those of some outputs: places (k,)."""
+        own = (a[outputs] for a in (self.root, self.alpha, self.slope, self.evidence))
+        return ProcessPosterior(self.kernel.of(outputs), self.z, *own)
+
 
 @dataclass(frozen=True)
 class Cross:

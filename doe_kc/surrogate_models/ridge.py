@@ -5,7 +5,7 @@ References: A. E. Hoerl, R. W. Kennard, Technometrics 12(1), 1970; D. M. Allen, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import final
 
 import numpy as np
@@ -76,6 +76,12 @@ class FittedLinear(Fitted):
     def noise(self) -> FloatArray:
         """(m,) variance of a single row: a left-out residual has this over 1 - leverage."""
         return np.asarray((self.left_out**2 * (1.0 - self.leverage)).mean(axis=0))
+
+    def of(self, outputs: np.ndarray) -> FittedLinear:
+        """See `Fitted.of`."""
+        rows = {n: getattr(self, n)[outputs] for n in ("level", "slope", "penalty")}
+        columns = {n: getattr(self, n)[:, outputs] for n in ("left_out", "leverage")}
+        return replace(self, **rows, **columns)
 
     def cross_validate(self) -> LeftOut:
         """Leave-one-out with the penalties held, closed form, with the variance that `variance` predicts."""

@@ -18,7 +18,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.codec import UnreadableModel, decode, encode
 from doe_kc.surrogate_models.interface import Fitted
 
-TAG = "doe-kc surrogate 1"
+TAG = "doe-kc surrogate 2"
 """Format and its version, the first entry of the header."""
 
 

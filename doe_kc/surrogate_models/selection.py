@@ -38,7 +38,7 @@ def choose(q2: Mapping[str, FloatArray], complexity: Mapping[str, int]) -> tuple
 @final
 @dataclass(frozen=True)
 class Chosen(Fitted):
-    """parts: fitted models of all m outputs. part: (m,) which of them predicts each output."""
+    """parts: fitted models, each of its own outputs. part: (m,) which of them predicts each output."""
 
     parts: tuple[Fitted, ...]
     part: np.ndarray
@@ -53,16 +53,26 @@ class Chosen(Fitted):
         """m."""
         return len(self.part)
 
+    def of(self, outputs: np.ndarray) -> Fitted:
+        """See `Fitted.of`."""
+        places = [np.flatnonzero(self.part == k) for k in range(len(self.parts))]
+        own = [np.searchsorted(places[k], outputs[self.part[outputs] == k]) for k in range(len(self.parts))]
+        used = [k for k, some in enumerate(own) if some.size]
+        if len(used) == 1:
+            return self.parts[used[0]].of(own[used[0]])
+        parts = tuple(self.parts[k].of(own[k]) for k in used)
+        return Chosen(parts, np.searchsorted(used, self.part[outputs]))
+
     def cross_validate(self) -> LeftOut:
         """Of each output's own model."""
         held = [p.cross_validate() for p in self.parts]
         return LeftOut(self._pick([h.residual for h in held]), self._pick([h.variance for h in held]))
 
     def _pick(self, values: Sequence[FloatArray]) -> FloatArray:
-        """(p, m, ...) each output from its own model."""
-        out = np.empty_like(values[0])
+        """(p, m, ...) of the outputs of every part."""
+        out = np.empty((len(values[0]), self.outputs, *values[0].shape[2:]))
         for k, value in enumerate(values):
-            out[:, self.part == k] = value[:, self.part == k]
+            out[:, self.part == k] = value
         return out
 
     def _mean(self, x: FloatArray) -> FloatArray:
@@ -79,8 +89,9 @@ class Chosen(Fitted):
 
 
 def join(models: Mapping[str, Fitted], names: Sequence[str]) -> Fitted:
-    """One surrogate of the model named for each output; only those in use are kept."""
+    """One surrogate of the model named for each output; only those in use are kept, each for its outputs."""
     used = list(dict.fromkeys(names))
     if len(used) == 1:
         return models[used[0]]
-    return Chosen(tuple(models[name] for name in used), np.array([used.index(name) for name in names]))
+    part = np.array([used.index(name) for name in names])
+    return Chosen(tuple(models[n].of(np.flatnonzero(part == k)) for k, n in enumerate(used)), part)

@@ -81,6 +81,10 @@ class Scaling:
         """Of training values (n, m) that change."""
         return cls(y.mean(axis=0), y.std(axis=0))
 
+    def chosen(self, outputs: np.ndarray) -> Scaling:
+        """Of some outputs: places (k,)."""
+        return Scaling(self.shift[outputs], self.scale[outputs])
+
     def standardise(self, y: FloatArray) -> FloatArray:
         """(n, m) standardised values."""
         return np.asarray((y - self.shift) / self.scale)

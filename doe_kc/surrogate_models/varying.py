@@ -32,7 +32,8 @@ def fit_varying(model: SurrogateModel, x: FloatArray, y: FloatArray, *, seed: in
 @final
 @dataclass(frozen=True)
 class Varying(Fitted):
-    """inner: model of the outputs `places` (k,); constant: (m,) values of all outputs, used of the others."""
+    """inner: model of the outputs `places` (k,), of one that none asks for where k is 0; constant: (m,)
+    values of all outputs, used of the others."""
 
     inner: Fitted
     places: np.ndarray
@@ -48,6 +49,13 @@ class Varying(Fitted):
         """m."""
         return len(self.constant)
 
+    def of(self, outputs: np.ndarray) -> Varying:
+        """See `Fitted.of`."""
+        where = {int(place): k for k, place in enumerate(self.places)}
+        kept = [where[int(j)] for j in outputs if int(j) in where]
+        places = np.array([i for i, j in enumerate(outputs) if int(j) in where], dtype=int)
+        return Varying(self.inner.of(np.array(kept or [0])), places, self.constant[outputs])
+
     def cross_validate(self) -> LeftOut:
         """Of the inner model; zero for the constants."""
         held = self.inner.cross_validate()
@@ -56,12 +64,12 @@ class Varying(Fitted):
     def _spread(self, values: FloatArray) -> FloatArray:
         """(p, m, ...) of (p, k, ...): zero for the constants."""
         out = np.zeros((len(values), self.outputs, *values.shape[2:]))
-        out[:, self.places] = values
+        out[:, self.places] = values[:, : self.places.size]
         return out
 
     def _mean(self, x: FloatArray) -> FloatArray:
         out = np.tile(self.constant, (len(x), 1))
-        out[:, self.places] = self.inner.predict(x)
+        out[:, self.places] = self.inner.predict(x)[:, : self.places.size]
         return out
 
     def _variance(self, x: FloatArray) -> FloatArray:

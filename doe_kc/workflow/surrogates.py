@@ -174,7 +174,7 @@ def run_surrogates(
         designs=plan.designs,
         fitted=fitted,
         changes=changes,
-        shares=total_shares(model, space, seed=study.seed),
+        shares=total_shares(model, space, seed=study.seed, workers=workers),
         reference=reference,
         agreement=agreement(changes, reference),
         targets=dict(targets or {}),

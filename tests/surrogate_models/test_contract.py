@@ -18,6 +18,8 @@ from tests.surrogate_models.problems import differences, outputs, problem
 ALL = sorted(SURROGATES)
 P = problem()
 SPREAD = Scaling.of(P.y).scale
+ROUNDING = 1e-8
+"""Of a variance: the small difference between the prior's and what the rows explain."""
 LEAST_Q2 = {"linear": 0.5, "quadratic": 0.9}
 """Of the wave; what passes through the rows does better than 0.95."""
 
@@ -54,6 +56,19 @@ def test_shapes_and_signs(name: str) -> None:
     assert done.gradient(P.test).shape == done.variance_gradient(P.test).shape == (6, 3, 5)
     assert (done.variance(P.test) >= 0.0).all()
     assert (done.variance(P.x) >= 0.0).all()
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_the_model_of_some_outputs_predicts_them_alike(name: str) -> None:
+    whole, some = fitted(name), np.array([2, 0])
+    part = whole.of(some)
+    assert (part.variables, part.outputs) == (5, 2)
+    for ask in ("predict", "variance", "gradient", "variance_gradient"):
+        ours, all_of_them = (getattr(m, ask)(P.test) for m in (part, whole))
+        np.testing.assert_allclose(ours, all_of_them[:, some], rtol=ROUNDING, atol=1e-12)
+    held, of_all = part.cross_validate(), whole.cross_validate()
+    np.testing.assert_allclose(held.residual, of_all.residual[:, some], rtol=1e-12, atol=1e-14)
+    np.testing.assert_allclose(held.variance, of_all.variance[:, some], rtol=1e-12, atol=1e-14)
 
 
 @pytest.mark.parametrize("name", ALL)

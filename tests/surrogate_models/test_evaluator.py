@@ -19,7 +19,7 @@ from doe_kc.reports.surrogates.evaluator import FIRST, write_evaluator
 from doe_kc.surrogate_models.formula import mean_formulas
 from doe_kc.surrogate_models.models import make
 from doe_kc.surrogate_models.saved import SavedSurrogate
-from doe_kc.surrogate_models.selection import Chosen
+from doe_kc.surrogate_models.selection import join
 from doe_kc.surrogate_models.varying import fit_varying
 from tests.surrogate_models.problems import problem
 from tests.surrogate_models.test_saved import P, saved, values
@@ -43,8 +43,8 @@ def mixed() -> SavedSurrogate:
     y = np.column_stack([p.y[:, :2], np.full(len(p.x), 3.0)])
     trend = saved("gp_slopes").model
     linear, process = fit_varying(make("linear"), p.x, y), fit_varying(make("gp"), p.x, y)
-    chosen = Chosen((trend, linear, process), np.array([0, 1, 2]))
-    return replace(saved(), model=chosen)
+    models = {"gp_slopes": trend, "linear": linear, "gp": process}
+    return replace(saved(), model=join(models, list(models)))
 
 
 def test_the_python_evaluator_needs_no_doe_kc(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from doe_kc.surrogate_models.models import make
 from doe_kc.surrogate_models.models.gp import FirstOrderTrend
 from doe_kc.surrogate_models.models.gp_slopes import SlopeProcess
 from doe_kc.surrogate_models.saved import Input, Output, SavedSurrogate, load_surrogate, save_surrogate
-from doe_kc.surrogate_models.selection import Chosen
+from doe_kc.surrogate_models.selection import join
 from doe_kc.surrogate_models.varying import fit_varying
 from doe_kc.workflow.predict import predict_table
 from tests.cli.runner import fails, succeeds
@@ -65,7 +65,8 @@ def test_every_model_comes_back_with_the_same_numbers(name: str, tmp_path: Path)
 
 def test_a_fresh_process_predicts_the_same(tmp_path: Path) -> None:
     model = fit_varying(make("gp"), P.x, np.column_stack([P.y[:, :2], np.full(len(P.x), 3.0)]))
-    chosen = Chosen((Calibrated(model, np.ones(3)), Calibrated(model, np.full(3, 2.0))), np.array([0, 1, 0]))
+    models = {"a": Calibrated(model, np.ones(3)), "b": Calibrated(model, np.full(3, 2.0))}
+    chosen = join(models, ["a", "b", "a"])
     before = SavedSurrogate("small", len(P.x), INPUTS, OUTPUTS, chosen)
     file = save_surrogate(tmp_path / "s.npz", before)
     np.save(tmp_path / "x.npy", values())
@@ -81,7 +82,7 @@ def test_what_is_no_surrogate_is_refused(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"is no surrogate; expected the file surrogate\.npz"):
             load_surrogate(tmp_path / "s.npz")
     np.savez(tmp_path / "other.npz", header=np.frombuffer(b'{"format": "else"}', dtype=np.uint8))
-    with pytest.raises(InputError, match="is a 'else', expected 'doe-kc surrogate 1'"):
+    with pytest.raises(InputError, match="is a 'else', expected 'doe-kc surrogate 2'"):
         load_surrogate(tmp_path / "other.npz")
 
 

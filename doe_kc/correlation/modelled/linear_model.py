@@ -32,6 +32,11 @@ class LinearModel(Fitted):
         """m."""
         return len(self.value)
 
+    def of(self, outputs: np.ndarray) -> LinearModel:
+        """See `Fitted.of`."""
+        own = (self.value[outputs], self.slope[outputs], self.spread[outputs], self.residual[:, outputs])
+        return LinearModel(self.centre, *own)
+
     def cross_validate(self) -> LeftOut:
         """Residuals of the fit itself: the model is no more than a guide for one step."""
         return LeftOut(self.residual, np.tile(self.spread, (len(self.residual), 1)))

@@ -142,6 +142,12 @@ class FittedGaussianProcess(Fitted):
         """Hyper-parameters, for a later fit."""
         return self.posterior.kernel
 
+    def of(self, outputs: np.ndarray) -> FittedGaussianProcess:
+        """See `Fitted.of`."""
+        trend = None if self.trend is None else self.trend.of(outputs)
+        scaling = self.scaling.chosen(outputs)
+        return FittedGaussianProcess(self.centre, scaling, self.posterior.of(outputs), trend)
+
     def cross_validate(self) -> LeftOut:
         """Leave-one-out with the hyper-parameters held, closed form."""
         residual, variance = gp.left_out(self.posterior)

@@ -127,6 +127,10 @@ class FittedQuadratic(Fitted):
         """m."""
         return len(self.parts)
 
+    def of(self, outputs: np.ndarray) -> FittedQuadratic:
+        """See `Fitted.of`."""
+        return FittedQuadratic(self.dimension, tuple(self.parts[int(j)] for j in outputs))
+
     def cross_validate(self) -> LeftOut:
         """Five folds, the terms chosen anew in each at the same penalty."""
         residual = np.column_stack([p.left_out for p in self.parts])

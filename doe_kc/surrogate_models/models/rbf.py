@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, final
 
 import numpy as np
@@ -81,6 +81,12 @@ class FittedRadialBasis(Fitted):
     def outputs(self) -> int:
         """m."""
         return len(self.scaling.scale)
+
+    def of(self, outputs: np.ndarray) -> FittedRadialBasis:
+        """See `Fitted.of`."""
+        fit = RadialFit(self.fit.matrix, self.fit.solution[:, outputs])
+        scaling = self.scaling.chosen(outputs)
+        return replace(self, scaling=scaling, fit=fit, left_out=self.left_out[:, outputs])
 
     def cross_validate(self) -> LeftOut:
         """Leave-one-out with the width held, closed form."""
