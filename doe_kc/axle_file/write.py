@@ -209,16 +209,20 @@ def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: s
 
 
 def _drivers(document: tomlkit.TOMLDocument) -> dict[str, list[Place]]:
-    """Internal value -> options of effects that it moves with, found by changing each a little."""
+    """Internal value -> options of effects that it moves with, found by changing each a little; first the one
+    that moves the fewest others."""
     axle = _read(document)
     base, effects = axle.values, document.unwrap().get("effects", {})
-    out: dict[str, list[Place]] = {}
+    moving: list[tuple[Place, list[str]]] = []
     for place, value in list(option_places(effects, places_of(axle))):
         trial = document.unwrap()
         put_entry(trial, place, value * 1.0001 if value else 1e-4)
-        for name, moved in axle_from_document(trial, source="axle").values.items():
-            if moved != base[name]:
-                out.setdefault(name, []).append(place)
+        now = axle_from_document(trial, source="axle").values
+        moving.append((place, [name for name, moved in now.items() if moved != base[name]]))
+    out: dict[str, list[Place]] = {}
+    for place, names in sorted(moving, key=lambda item: len(item[1])):
+        for name in names:
+            out.setdefault(name, []).append(place)
     return out
 
 
