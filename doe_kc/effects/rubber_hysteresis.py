@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -44,6 +44,12 @@ def dynamic_stiffness(
     return DynamicStiffness(ratio, float(np.degrees(np.arcsin(work / (np.pi * ratio * amplitude**2)))))
 
 
+SPREAD_LOG_SD = 0.5
+"""From an almost sharp yield (0.3) to one over two decades (1.9) within two standard deviations."""
+FACTORS = {"share_factors": "share", "yield_factors": "yield_mm"}
+"""Key of the factors of law each -> number that they multiply."""
+UNLIKE_LOG_SD = 0.4
+"""Of such a factor: bushings of one car are of like compounds in unlike shapes. A choice."""
 NUMBERS = {"share": "share", "yield_mm": "yield", "spread": "spread"}
 """Key of the table -> last part of the axle value, as in `llr.rubber.share`."""
 BENCH_TRAVELS = (0.05, 0.5, 2.0)
@@ -60,9 +66,11 @@ class RubberHysteresis(Effect):
     share k, and they hold at most the force share k yield_mm, k the axis's stiffness at zero.
 
     bushings: those that have it. share, yield_mm, spread: a number for all of them, or a table such as
-    { LLR = 0.3, UPB = 0.1 } that names each. Per axis: which two axes of a bushing are its radial plane, in
-    which one vector law would hold less on a diagonal path (by up to 1 - 1/sqrt(2)), no axle file says.
-    Rotations have none: they would add about a newton to the wheel load.
+    { LLR = 0.3, UPB = 0.1 } that names each. law: alike, or each, by which share and yield_mm are times
+    share_factors and yield_factors, lists of one for every bushing, in the order of the axle's. Per axis:
+    which two axes of a bushing are its radial plane, in which one vector law would hold less on a diagonal
+    path (by up to 1 - 1/sqrt(2)), no axle file says. Rotations have none: they would add about a newton to
+    the wheel load.
     """
 
     id: ClassVar[str] = "rubber_hysteresis"
@@ -73,6 +81,9 @@ class RubberHysteresis(Effect):
         "share": Option(0.2, "-"),
         "yield_mm": Option(0.2, "mm"),
         "spread": Option(SPREAD, "-"),
+        "law": Option("alike", choices=("alike", "each")),
+        "share_factors": Option(None, "-"),
+        "yield_factors": Option(None, "-"),
     }
 
     physics: ClassVar[str] = (
@@ -88,7 +99,11 @@ class RubberHysteresis(Effect):
     shown_by: ClassVar[str] = (
         "a slow force loop of the bushing on a test bench, at the rig's travel and at a tenth of it"
     )
-    sizes: ClassVar[tuple[Size, ...]] = (Size("share", 0.2, "-"), Size("yield_mm", 0.2, "mm", "shape"))
+    sizes: ClassVar[tuple[Size, ...]] = (
+        Size("share", 0.2, "-"),
+        Size("yield_mm", 0.2, "mm", "shape"),
+        Size("spread", SPREAD, "-", "shape", log_sd=SPREAD_LOG_SD),
+    )
 
     def hypotheses(self, places: Places = DEFAULT_PLACES) -> tuple[Hypothesis, ...]:
         """All bushings by one share, and the two groups whose loops a rig tells apart."""
@@ -103,6 +118,18 @@ class RubberHysteresis(Effect):
             Hypothesis(self.id, *REAR, self.sizes, {"bushings": list(REAR)}),
             Hypothesis(self.id, REST, self.sizes, {"bushings": rest}),
         )
+
+    def variants(self, hypothesis: Hypothesis) -> tuple[Hypothesis, ...]:
+        """The bushings alike, or each by factors of its own."""
+        bushings = hypothesis.fixed.get("bushings", self.options["bushings"].default)
+        if len(bushings) < 2:
+            return (hypothesis,)
+        factors = [
+            Size(key, 1.0, "-", "shape", index=i, log_sd=UNLIKE_LOG_SD)
+            for key in FACTORS
+            for i in range(len(bushings))
+        ]
+        return hypothesis, replace(hypothesis, law="each", sizes=(*hypothesis.sizes, *factors))
 
     def consequence(self, options: Mapping[str, Any]) -> str:
         """What it makes of a supplier's dynamic stiffness; of the first bushing where they differ."""
@@ -121,7 +148,7 @@ class RubberHysteresis(Effect):
     def combined(self, before: Mapping[str, Any], after: Mapping[str, Any], axle: Axle) -> dict[str, Any]:
         """What every bushing that either names has now."""
         del before, after
-        places = places_of(axle)
+        places = places_of(axle)  # law: alike, the numbers are those of each bushing
         own = {name: places.sides(name)[0] for name in axle.topology.rubber}
         return {
             "bushings": [name.upper() for name in own],
@@ -134,7 +161,7 @@ class RubberHysteresis(Effect):
     def read(
         self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
-        checked = super().read({k: v for k, v in options.items() if k not in NUMBERS}, source)
+        checked = super().read({k: v for k, v in options.items() if k not in NUMBERS}, source, places)
         where = f"{source}: effect {self.id}"
         names = checked["bushings"] if "bushings" in options else [n.upper() for n in places.all_bushings]
         bushings = _bushings(names, where, places)
@@ -142,15 +169,17 @@ class RubberHysteresis(Effect):
             key: _numbers(key, options.get(key, self.options[key].default), bushings, where)
             for key in NUMBERS
         }
-        return {"bushings": bushings, **numbers}
+        factors = {key: _factors(key, checked[key], bushings, where) for key in FACTORS}
+        return {"bushings": bushings, **numbers, "law": checked["law"], **factors}
 
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
         values: dict[str, float] = {}
         places = places_of(axle)
-        for bushing in options["bushings"]:
+        for i, bushing in enumerate(options["bushings"]):
+            factors = {n: options[k][i] for k, n in FACTORS.items()} if options["law"] == "each" else {}
             for key, value in NUMBERS.items():
                 number = options[key]
-                own = number[bushing] if isinstance(number, Mapping) else number
+                own = (number[bushing] if isinstance(number, Mapping) else number) * factors.get(key, 1.0)
                 name = bushing.lower()
                 values |= {of_side(f"{name}.rubber.{value}", s): own for s in places.sides(name)}
         there = {*axle.topology.rubber, *(name.lower() for name in options["bushings"])}
@@ -183,3 +212,12 @@ def _numbers(key: str, value: Any, bushings: Iterable[str], where: str) -> float
             f"{where}: {key} has no number for {', '.join(missing)}; add it, or give one for all."
         )
     return checked
+
+
+def _factors(key: str, value: Any, bushings: Sequence[str], where: str) -> list[float]:
+    """One for every bushing, 1 where none are given."""
+    name = f"{where}: {key} = {value!r}"
+    factors = [1.0] * len(bushings) if value is None else value
+    if not isinstance(factors, Sequence) or isinstance(factors, str) or len(factors) != len(bushings):
+        raise InputError(f"{name}, expected a list of {len(bushings)} numbers, for {', '.join(bushings)}.")
+    return [checked_number(v, name, positive=True) for v in factors]

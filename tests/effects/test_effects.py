@@ -96,6 +96,8 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "tie_rod_free_play": {"joints": ["ROB_R"], "gap_mm": 0.1},
     "tyre_horizontal_compliance": {"k_lat_N_mm": 200.0},
 }
+UNLIKE = {"share_factors": [0.5, 1.5, 1.0, 0.8, 1.2], "yield_factors": [1.0, 0.7, 1.4, 1.0, 1.0]}
+"""Of rubber by law each: LLF, LLR, SFF, SFR, UPB."""
 IN_FILES = [ident for ident, effect in EFFECTS.items() if not effect.on_rig]
 NUMBERS = [(i, k) for i, e in EFFECTS.items() for k, o in e.options.items() if isinstance(o.default, float)]
 
@@ -202,6 +204,10 @@ def test_the_near_key_is_suggested() -> None:
         ("rubber_hysteresis", {"share": {"LLR": 0.2}}),
         ("rubber_hysteresis", {"bushings": ["LLR"], "yield_mm": {"LLR": 0.2, "LLF": 0.2}}),
         ("rubber_hysteresis", {"bushings": ["LLR"], "yield_mm": {"LLR": 0.0}}),
+        ("rubber_hysteresis", {"law": "unlike"}),
+        ("rubber_hysteresis", {"law": "each", "share_factors": [1.0]}),
+        ("rubber_hysteresis", {"law": "each", "yield_factors": 1.5}),
+        ("rubber_hysteresis", {"law": "each", "yield_factors": [1.0, 1.0, -1.0, 1.0, 1.0]}),
         ("subframe_flexibility", {"mode": "soft"}),
         ("tie_rod_free_play", {"joints": ["ROB"]}),
         ("tie_rod_free_play", {"joints": []}),
@@ -330,6 +336,7 @@ def test_faults_of_several_channels_add_up() -> None:
         ("steering_friction", {"law": "lognormal", "spread": 0.4}),
         ("rubber_hysteresis", {"bushings": ["LLR", "UPB"], "share": {"LLR": 0.3, "UPB": 0.1}}),
         ("rubber_hysteresis", {}),
+        ("rubber_hysteresis", {"law": "each", **UNLIKE}),
     ],
     ids=str,
 )
@@ -344,6 +351,17 @@ def test_a_friction_is_written_and_read_back(ident: str, options: dict[str, Any]
         again = read_axle(written)
         assert again.topology == each.topology
         assert again.values == pytest.approx(dict(each.values), rel=1e-12)
+
+
+def test_bushings_each_by_factors_of_its_own_are_those_named_one_by_one() -> None:
+    names = [b.upper() for b in BUSHINGS]
+    each = applied("rubber_hysteresis", {"law": "each", "share": 0.3, "yield_mm": 0.1, **UNLIKE})
+    one_by_one = {
+        "share": {n: 0.3 * f for n, f in zip(names, UNLIKE["share_factors"], strict=True)},
+        "yield_mm": {n: 0.1 * f for n, f in zip(names, UNLIKE["yield_factors"], strict=True)},
+    }
+    assert each.values == pytest.approx(dict(applied("rubber_hysteresis", one_by_one).values), rel=1e-12)
+    assert applied("rubber_hysteresis", UNLIKE).values == applied("rubber_hysteresis").values
 
 
 def test_the_table_name_of_a_file_is_the_effect_too() -> None:

@@ -15,6 +15,7 @@ as numbers of the fit.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -46,8 +47,7 @@ def other_laws(member: Hypothesis) -> list[Hypothesis]:
 
 def _default(member: Hypothesis) -> Hypothesis:
     """The member by the default law of its effect."""
-    known = EFFECTS[member.effect].hypotheses()
-    return next((h for h in known if h.name == member.name), member)
+    return replace(member, law="", sizes=EFFECTS[member.effect].sizes) if member.law else member
 
 
 def may_open(current: Fit) -> bool:
@@ -140,9 +140,9 @@ def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
 
 
 def _frictions_beside_others(current: Fit) -> list[Hypothesis]:
-    """Frictions of the set, where it has other effects of the car too."""
+    """Frictions of the set, rubber's among them, where it has other effects of the car too."""
     members = current.model.members
-    frictions = [h for h in members if EFFECTS[h.effect].laws]
+    frictions = [h for h in members if len(EFFECTS[h.effect].variants(_default(h))) > 1]
     others = [h for h in members if h not in frictions and not EFFECTS[h.effect].on_rig]
     return frictions if others else []
 

@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from doe_kc.axle.places import places_of
+from doe_kc.axle_file import read_axle
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
@@ -24,6 +26,7 @@ from doe_kc.discovery.search.laws import (
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
+from doe_kc.examples import example_folder
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
@@ -80,6 +83,17 @@ def test_other_laws_are_those_of_one_number_more_at_most() -> None:
     assert [law.law for law in other_laws(friction)] == ["iwan", "duhem", "lognormal"]
     assert [law.law for law in other_laws(open_laws(friction)[0])] == ["", "iwan", "lognormal"]
     assert not other_laws(library("hub_compliance")[0])
+
+
+def test_rubber_is_opened_to_each_bushing_of_its_own_group() -> None:
+    axle = read_axle(example_folder("five_link_rear") / "axle.toml")
+    (rubber, *_) = EFFECTS["rubber_hysteresis"].hypotheses(places_of(axle))
+    (each,) = open_laws(rubber)
+    assert each.law == "each" and each.fixed == rubber.fixed
+    assert len(each.sizes) == len(rubber.sizes) + 2 * len(rubber.fixed["bushings"])
+    assert not open_laws(each) and not other_laws(rubber)
+    (alone,) = [h for h in library("rubber_hysteresis") if h.location == "LLR"]
+    assert not open_laws(alone)
 
 
 def test_where_noise_explains_what_remains_no_law_is_asked_for() -> None:
