@@ -105,7 +105,7 @@ def with_best_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 
     The free shape begins from it, and does not find back from a wrong one: its sliders make the cost rough.
     """
-    for member in _frictions_beside_others(current):
+    for member in _frictions_to_free(current):
         if not open_laws(member):
             continue
         most = current.cost + 2.0 * LAW_WINDOW  # widths of the sizes hardly make good as much
@@ -116,12 +116,12 @@ def with_best_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 
 
 def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
-    """The fit with every friction by the law of most numbers, where sizes of other effects may hang on it.
+    """The fit with every friction by the law of most numbers, where sizes may hang on it.
 
     Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
     as a law with drifting loops could make it, the fit stays as it is.
     """
-    start = _with_most_numbers(current, _frictions_beside_others(current))
+    start = _with_most_numbers(current, _frictions_to_free(current))
     if start.model is current.model:
         return current
     (refit,) = workers.fits([start], "opening laws")
@@ -139,12 +139,13 @@ def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
     return FitStart(model, z, current)
 
 
-def _frictions_beside_others(current: Fit) -> list[Hypothesis]:
-    """Frictions of the set, rubber's among them, where it has other effects of the car too."""
+def _frictions_to_free(current: Fit) -> list[Hypothesis]:
+    """Frictions of the set on whose law sizes hang: all where it has other effects of the car too, else
+    rubber alone, whose share is a mean of bushings that differ."""
     members = current.model.members
     frictions = [h for h in members if len(EFFECTS[h.effect].variants(_default(h))) > 1]
     others = [h for h in members if h not in frictions and not EFFECTS[h.effect].on_rig]
-    return frictions if others else []
+    return frictions if others else [h for h in frictions if not EFFECTS[h.effect].laws]
 
 
 def _opened(

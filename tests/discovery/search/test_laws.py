@@ -42,7 +42,9 @@ class Answers(DiscoveryWorkers):
     def fits(
         self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
     ) -> list[Fit | None]:
-        laws = [next(h.law for h in s.model.members if EFFECTS[h.effect].laws) for s in starts]
+        laws = [
+            next(h.law for h in s.model.members if len(EFFECTS[h.effect].variants(h)) > 1) for s in starts
+        ]
         self.laws += laws
         return [
             self._fit(s.model, s.z, s.near, self.cost - (100.0 if law == self.best != "" else 0.0))
@@ -172,6 +174,25 @@ def test_a_friction_alone_keeps_its_law() -> None:
     assert with_best_laws(agreeing(), asked).model.members == agreeing().model.members
     assert with_free_shapes(agreeing(), asked).model.members == agreeing().model.members
     assert asked.laws == []
+
+
+def rubber_alone() -> Fit:
+    """Rubber of no size, which moves nothing."""
+    rubber = EFFECTS["rubber_hysteresis"].hypotheses()[0]
+    found, count = agreeing(), len(rubber.sizes)
+    (friction,) = found.model.members
+    model = found.model.with_member(friction, rubber)
+    rest = found.z.size - len(friction.sizes)
+    own = np.hstack([found.jacobian.own[:, : -len(friction.sizes)], np.zeros((found.residual.size, count))])
+    z = np.append(found.z[:rest], np.zeros(count))
+    return replace(found, model=model, z=z, jacobian=model.jacobian(own))
+
+
+def test_rubber_alone_is_estimated_with_bushings_that_differ() -> None:
+    """Its share is a mean over them, less sure than if all were alike."""
+    asked = Answers(0.0)
+    (rubber,) = with_free_shapes(rubber_alone(), asked).model.members
+    assert rubber.law == "each" and asked.laws == ["each"]
 
 
 def test_a_law_of_free_shape_is_not_exchanged() -> None:
