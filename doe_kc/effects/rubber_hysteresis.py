@@ -45,7 +45,7 @@ def dynamic_stiffness(
 
 
 SPREAD_LOG_SD = 0.5
-"""From an almost sharp yield (0.3) to one over two decades (1.9) within two standard deviations."""
+"""From 0.3, an almost sharp yield, to 2.2 within two standard deviations."""
 FACTORS = {"share_factors": "share", "yield_factors": "yield_mm"}
 """Key of the factors of law each -> number that they multiply."""
 UNLIKE_LOG_SD = 0.4
