@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any
 
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+from doe_kc.ground.signals import SIGNALS, of_this_process
 
 
 class Interrupts:
@@ -25,7 +25,8 @@ class Interrupts:
 
     def __enter__(self) -> Interrupts:
         if threading.current_thread() is threading.main_thread():
-            self._before = {number: signal.signal(number, self._handle) for number in SIGNALS}
+            handle = of_this_process(self._handle)
+            self._before = {number: signal.signal(number, handle) for number in SIGNALS}
         return self
 
     def __exit__(

@@ -7,7 +7,6 @@ import logging
 import os
 import signal
 import sys
-from collections.abc import Callable
 from types import FrameType
 from typing import Annotated, NoReturn
 
@@ -15,6 +14,7 @@ import typer
 
 from doe_kc import __version__
 from doe_kc.ground.errors import DoeKcError, RunError
+from doe_kc.ground.signals import SIGNALS, Handler, of_this_process
 from doe_kc.ground.threads import set_thread_variables
 
 INTERRUPTED = "interrupted; results written so far are kept, the same command starts again."
@@ -73,17 +73,9 @@ def main() -> NoReturn:
     sys.exit(0)
 
 
-def _on_interrupt(handler: Callable[[int, FrameType | None], None]) -> None:
-    own = os.getpid()
-
-    def mine(number: int, frame: FrameType | None) -> None:
-        if os.getpid() == own:
-            handler(number, frame)
-        elif number == signal.SIGTERM:  # a worker so new that it has no handlers of its own yet
-            os._exit(RunError.exit_code)
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, mine)
+def _on_interrupt(handler: Handler) -> None:
+    for number in SIGNALS:
+        signal.signal(number, of_this_process(handler))
 
 
 def _leave(_signal: int, _frame: FrameType | None) -> None:

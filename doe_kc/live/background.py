@@ -26,6 +26,7 @@ from doe_kc.correlation.result import Correlation
 from doe_kc.effects.words import effect_label
 from doe_kc.ground.errors import DoeKcError, RunError
 from doe_kc.ground.numbers import number
+from doe_kc.ground.signals import SIGNALS, of_this_process
 from doe_kc.live.effect_switches import EffectSizes, EffectSwitch, effect_switches, effective_axle
 from doe_kc.live.tasks import CANCELLED, SavedSizes, TaskFailure, TaskProgress, TaskRequest, TaskResult
 from doe_kc.study import Study
@@ -180,8 +181,8 @@ class NewsWriter:
 def main() -> int:
     """Do what the first line of the input asks; exit code 0 when there is a result."""
     writer = NewsWriter(_own_output())
-    for interrupt in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(interrupt, _interrupted)
+    for interrupt in SIGNALS:
+        signal.signal(interrupt, of_this_process(_interrupted))
     if hasattr(os, "nice"):
         os.nice(NICE)
     request = TaskRequest.model_validate_json(_first_line())

@@ -17,6 +17,7 @@ from types import FrameType
 import uvicorn
 
 from doe_kc.ground.errors import RunError
+from doe_kc.ground.signals import SIGNALS, of_this_process
 from doe_kc.live.guard import Guard
 from doe_kc.live.messages import LONGEST_MESSAGE
 from doe_kc.live.server import LiveServer
@@ -108,7 +109,7 @@ async def _serve(live: LiveServer, guard: Guard, place: socket.socket, idle: flo
     def end(_number: int, _frame: FrameType | None) -> None:
         server.should_exit = True
 
-    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    before = {number: signal.signal(number, of_this_process(end)) for number in SIGNALS}
     watch = asyncio.create_task(_watch(live, server, idle))
     try:
         await server.serve(sockets=[place])

@@ -149,30 +149,6 @@ main()
 """
 
 
-NEW_WORKER = """
-import os, signal, sys, time
-from doe_kc.cli import _app
-_app._on_interrupt(_app._interrupted)
-here, there = os.pipe()
-child = os.fork()
-if not child:
-    os.write(there, b"1")
-    time.sleep(30.0)
-    os._exit(0)
-os.read(here, 1)
-os.kill(child, signal.SIGINT)
-os.kill(child, signal.SIGTERM)
-sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
-"""
-
-
-def test_a_worker_ended_before_it_has_begun_says_nothing() -> None:
-    ended = subprocess.run(
-        [sys.executable, "-c", NEW_WORKER], capture_output=True, text=True, timeout=60, check=False
-    )
-    assert (ended.returncode, ended.stdout, ended.stderr) == (1, "", "")
-
-
 def test_a_killed_worker(tmp_path: Path) -> None:
     """As the kernel does when memory runs out."""
     study = write_study(tmp_path / "study", parameters=["LL?.*", "spring.rate", "arb.radius", "tyre.rate"])
