@@ -9,7 +9,7 @@ that stays in presliding is a spring by the law's shape, and a compliance beside
 lacks. Closed forms that noise does not tell apart, or nearly so, then give sizes that differ by more than any
 of them allows, and their evidence measures which is the least wrong one. So sizes are estimated beside
 frictions of free shape, of which closed forms are special cases: the discrepancy of the law at its source,
-as numbers of the fit.
+as numbers of the fit. A friction that is a trace keeps its closed form.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.search.refits import HypothesisFit, more_than_trace
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
@@ -140,12 +140,20 @@ def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
 
 
 def _frictions_to_free(current: Fit) -> list[Hypothesis]:
-    """Frictions of the set on whose law sizes hang: all where it has other effects of the car too, else
-    rubber alone, whose share is a mean of bushings that differ."""
+    """Frictions of the set on whose law sizes hang: all that are more than traces where it has other effects
+    of the car too, else rubber alone, whose share is a mean of bushings that differ."""
     members = current.model.members
     frictions = [h for h in members if len(EFFECTS[h.effect].variants(_default(h))) > 1]
     others = [h for h in members if h not in frictions and not EFFECTS[h.effect].on_rig]
-    return frictions if others else [h for h in frictions if not EFFECTS[h.effect].laws]
+    if not others:
+        return [h for h in frictions if not EFFECTS[h.effect].laws]
+    return [h for h in frictions if _more_than_trace(current, h)]
+
+
+def _more_than_trace(current: Fit, member: Hypothesis) -> bool:
+    amplitudes, sds = amplitude_estimates(current, member)
+    numbers = zip(member.sizes, np.abs(amplitudes).tolist(), sds.tolist(), strict=True)
+    return more_than_trace([(size, a, sd) for size, a, sd in numbers if not size.shape])
 
 
 def _opened(
