@@ -14,6 +14,7 @@ from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
 from doe_kc.discovery.search.nominal_refits import (
     leading_at_first,
     leading_from_nominal,
+    leading_pairs,
     refit_anew,
     refits_from_nominal,
 )
@@ -68,6 +69,26 @@ def test_from_the_nominal_axle_effects_that_lead_between_bounds_or_by_screening_
         bounded(bending, 50.0, 200.0), bounded(ride, 300.0, 100.0), bounded(other, 200.0, 1.0),
     ]  # fmt: skip
     assert [g.screened.hypothesis for g in leading_from_nominal(gains)] == [friction, gain, hub, ride]
+
+
+def test_where_a_fault_of_the_rig_leads_the_first_effect_of_the_car_is_paired_too(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    """A gain of the tyre load stood for a ride height 5 mm off, until each of the library had been tried."""
+    gain, offset, ride, hub = (
+        library(effect)[0]
+        for effect in ("rig_channel_gain", "rig_channel_offset", "ride_height_offset", "hub_compliance")
+    )
+
+    def pairs(*hypotheses: Hypothesis) -> list[tuple[Hypothesis, Hypothesis]]:
+        trials = [HypothesisFit(h, bent[0], 10.0) for h in hypotheses]
+        return [(one.hypothesis, other.hypothesis) for one, other in leading_pairs(trials)]
+
+    assert pairs(gain, ride, hub) == [(gain, ride), (gain, hub), (ride, hub)]
+    assert pairs(gain, offset, ride) == [(gain, offset), (gain, ride), (ride, offset)]
+    assert pairs(ride, gain, hub) == [(ride, gain), (ride, hub)]
+    assert pairs(gain, offset) == [(gain, offset)]
+    assert pairs(ride) == []
 
 
 def test_what_led_before_any_effect_is_refitted_from_the_nominal_axle_too() -> None:
