@@ -72,14 +72,18 @@ def fit(
         step = bounded_step(hessian, gradient, low, high)
         predicted = float(-(2.0 * gradient @ step + step @ hessian @ step))
         if predicted < LAST_STEP_DECREASE and aged > FRESH_DECREASE:
-            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
+            if (anew := _renewed(current)) is None:
+                return current
+            current, aged = anew, 0.0
             continue
         if predicted < FIT_DECREASE:
             return replace(current, converged=True)
         if taken and _hopeless(current, ceiling):
             if aged <= FRESH_DECREASE or _hopeless(current, ceiling + 2.0 * BEYOND_DOUBT):
                 return current
-            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
+            if (anew := _renewed(current)) is None:
+                return current
+            current, aged = anew, 0.0
             continue
         trial, residual = current.z + step, None
         try:
@@ -101,15 +105,20 @@ def fit(
             if predicted < LAST_STEP_DECREASE:
                 return replace(current, z=trial, residual=residual, cost=cost, converged=True)
             gained = current.cost - cost
-            aged = aged + gained if gained < REUSE_DECREASE else 0.0
-            if aged and abs(ratio - 1.0) < 1.0 - FIT_GOOD_RATIO:
+            if gained < REUSE_DECREASE and abs(ratio - 1.0) < 1.0 - FIT_GOOD_RATIO:
                 missed = residual - current.residual - current.jacobian.moved(step)
                 jacobian = current.jacobian.secant(missed, step)
                 current = replace(current, z=trial, residual=residual, jacobian=jacobian, cost=cost)
+                aged += gained
                 continue
-            current, aged = _expanded(model, trial, residual, current.evaluations), 0.0
+            if (there := _renewed(replace(current, z=trial, residual=residual))) is not None:
+                current, aged = there, 0.0
+            else:  # at the edge of what the axle can do: less far
+                radius = min(radius, float(np.abs(step).max())) / 4.0
         elif aged > FRESH_DECREASE:
-            current, aged = _expanded(model, current.z, current.residual, current.evaluations), 0.0
+            if (anew := _renewed(current)) is None:
+                return current
+            current, aged = anew, 0.0
         if radius < LEAST_STEP:
             return current
     return current
@@ -148,6 +157,15 @@ def known_columns(fit: Fit, model: EffectModel) -> FloatArray:
         none = np.full((fit.residual.size, len(member.sizes)), np.nan)
         columns.append(known if known.shape[1] == len(member.sizes) else none)
     return np.hstack(columns)
+
+
+def _renewed(fit: Fit) -> Fit | None:
+    """With derivatives at its point, all anew; None where one of them asks for an axle without an
+    equilibrium."""
+    try:
+        return _expanded(fit.model, fit.z, fit.residual, fit.evaluations)
+    except NotConverged:
+        return None
 
 
 def _expanded(

@@ -33,6 +33,7 @@ from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_gradient import scaled_gradients
 from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.result import NotConverged
 from doe_kc.variables import Space
 
 NO_CHARACTERISTICS = np.zeros(0)
@@ -264,9 +265,9 @@ class EffectModel(FieldsOnly):
 
     def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""
-        moved = z.copy()
-        moved[self.calibrations] += CALIBRATION_STEP
-        change = (self.residual(moved) - residual) / CALIBRATION_STEP
+        direction = np.zeros(z.size)
+        direction[self.calibrations] = 1.0
+        change = self._difference(z, residual, direction, CALIBRATION_STEP)
         out = np.zeros((residual.size, len(self.cases)))
         for curve, place in self.likelihood.slices():
             out[place, self.cases.index(curve.load_case)] = change[place]
@@ -275,12 +276,23 @@ class EffectModel(FieldsOnly):
     def amplitude_columns(
         self, z: FloatArray, residual: FloatArray, places: Iterable[int] | None = None
     ) -> FloatArray:
-        """(M, k) derivative to amplitudes by forward differences. residual: at z. places: (k,) in z, default
-        all."""
+        """(M, k) derivative to amplitudes by differences. residual: at z. places: (k,) in z, default all."""
         columns = []
         for i in range(self.dimension, z.size) if places is None else places:
             step = AMPLITUDE_STEP if z[i] + AMPLITUDE_STEP <= self.upper[i] else -AMPLITUDE_STEP
-            moved = z.copy()
-            moved[i] += step
-            columns.append((self.residual(moved) - residual) / step)
+            columns.append(self._difference(z, residual, np.eye(z.size)[i], step))
         return np.array(columns).T.reshape(residual.size, -1)
+
+    def _difference(
+        self, z: FloatArray, residual: FloatArray, direction: FloatArray, step: float
+    ) -> FloatArray:
+        """(M,) derivative along a direction, from one step; from one the other way where the axle has no
+        equilibrium there, as at the end of its steering lock. NotConverged where it has none on that side
+        either, or may not go there."""
+        try:
+            return np.asarray((self.residual(z + step * direction) - residual) / step)
+        except NotConverged:
+            back = z - step * direction
+            if np.any((back < self.lower) | (back > self.upper)):
+                raise
+        return np.asarray((residual - self.residual(back)) / step)

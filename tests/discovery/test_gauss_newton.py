@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
-from doe_kc.discovery.thresholds import FIT_DECREASE
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.thresholds import CALIBRATION_STEP, FIT_DECREASE
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.result import Failure, NotConverged
 from tests.discovery.cases import library
 
 
@@ -60,3 +63,63 @@ def test_a_fit_near_its_ceiling_is_not_given_up_on_derivatives_of_another(with_h
     reached = fit(model, z, known=flat)
     again = fit(model, z, known=flat, ceiling=reached.cost + 1.0)
     assert again.converged and again.cost == pytest.approx(reached.cost, abs=0.1)
+
+
+class Locked(EffectModel):
+    """A model whose axle has no equilibrium where the first calibration is beyond LOCK."""
+
+    def residual(self, z: FloatArray) -> FloatArray:
+        if z[self.calibrations.start] > LOCK:
+            failure = Failure("steer", "load", 1, 415.0, "deg", 412.0, "rack moved by 60 mm", "it locks")
+            raise NotConverged(failure)
+        return super().residual(z)
+
+
+LOCK = 0.05
+"""Between the point of the tests below and a step of the differences from it."""
+
+
+def locked(found: Fit) -> Locked:
+    shown = {f.name: getattr(found.model, f.name) for f in fields(found.model)}
+    return Locked(**shown)
+
+
+def test_at_the_edge_of_what_the_axle_can_do_a_derivative_is_taken_from_the_other_side(with_hub: Fit) -> None:
+    """A steering case that was held out ended 0.4 deg before full lock, and the discovery with it."""
+    model, z = locked(with_hub), with_hub.z.copy()
+    z[model.calibrations] = LOCK - 0.5 * CALIBRATION_STEP
+    residual = with_hub.model.residual(z)
+    with pytest.raises(NotConverged):
+        model.residual(z + np.where(np.arange(z.size) == model.calibrations.start, CALIBRATION_STEP, 0.0))
+    inside, whole = model.own_columns(z, residual), with_hub.model.own_columns(z, residual)
+    assert np.linalg.norm(inside - whole) < 1e-3 * np.linalg.norm(whole)
+
+
+def test_a_size_that_cannot_be_less_has_no_derivative_where_it_cannot_be_more(with_hub: Fit) -> None:
+    z = with_hub.z.copy()
+    z[with_hub.model.calibrations.start] = LOCK - 0.5 * CALIBRATION_STEP
+    model = locked(with_hub)
+    at, direction = np.where(z > model.lower, z, model.lower), np.zeros(z.size)
+    direction[[model.calibrations.start, z.size - 1]] = 1.0
+    at[-1] = model.lower[-1]
+    with pytest.raises(NotConverged):
+        model._difference(at, model.residual(at), direction, CALIBRATION_STEP)
+
+
+def test_a_fit_ends_inside_what_the_axle_can_do(with_hub: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where derivatives cannot be taken on either side, a step is shortened and the fit still ends."""
+    start = with_hub.z.copy()
+    start[: with_hub.model.parameters] += 0.2 * with_hub.model.prior_sd[: with_hub.model.parameters]
+    calls = [0]
+
+    def refuse(model: EffectModel, *rest: object) -> FloatArray:
+        calls[0] += 1
+        if calls[0] > 1:
+            raise NotConverged(Failure("steer", "load", 1, 1.0, "deg", 0.0, "", "it locks"))
+        return own(model, *rest)  # type: ignore[arg-type]
+
+    own = EffectModel.own_columns
+    monkeypatch.setattr(EffectModel, "own_columns", refuse)
+    found = fit(with_hub.model, start)
+    assert calls[0] > 1 and np.isfinite(found.cost)
+    assert found.cost <= cost_of(with_hub.model, start, with_hub.model.residual(start))
