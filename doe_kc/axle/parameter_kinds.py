@@ -160,7 +160,7 @@ POSITIVE_PARAMETERS = {
     *("stiffness", "rate", "lat_rate", "long_rate", "factor", "column"),
     *("kx", "ky", "kz", "krx", "kry", "krz"),
     *("radius", "nominal_radius", "rack_mm_per_rev", "static_load", "force", "presliding"),
-    *("gap", "contact", "reference", "spread", "exponent"),
+    *("gap", "contact", "reference", "loaded_factor", "spread", "exponent"),
     *(f"share{i}" for i in range(len(BACKBONE_YIELDS))),
 }
 NOT_BELOW_ZERO = {

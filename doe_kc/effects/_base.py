@@ -54,6 +54,8 @@ class Effect(ABC):
     laws: ClassVar[Mapping[str, tuple[Size, ...]]] = {}
     """Values of the option `law`, the default first, each with the sizes that it has beside `sizes`: numbers
     of its shape. Empty for an effect of one law."""
+    frictional: ClassVar[bool] = False
+    """Whether it makes loops, so that the path of a load case matters."""
     replaces: ClassVar[tuple[str, ...]] = ()
     """Parameter paths that are this effect in other words: held while it is looked for."""
     part: ClassVar[Part] = "axle"

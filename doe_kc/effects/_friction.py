@@ -34,6 +34,7 @@ class DryFriction(Effect):
     only; spread: of law lognormal only; shares: of law backbone only, of each slider in the limit, in
     proportion."""
 
+    frictional: ClassVar[bool] = True
     laws: ClassVar[Mapping[str, tuple[Size, ...]]] = {
         "dahl": (),
         "iwan": (),

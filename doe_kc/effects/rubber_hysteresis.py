@@ -76,6 +76,7 @@ class RubberHysteresis(Effect):
     id: ClassVar[str] = "rubber_hysteresis"
     label: ClassVar[str] = "Rubber hysteresis"
     part: ClassVar[Part] = "axle"
+    frictional: ClassVar[bool] = True
     options: ClassVar[Mapping[str, Option]] = {
         "bushings": Option([b.upper() for b in BUSHINGS]),
         "share": Option(0.2, "-"),

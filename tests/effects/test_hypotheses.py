@@ -180,4 +180,15 @@ def test_variants_of_a_friction_are_its_laws() -> None:
         assert axle.topology.strut_friction == (variant.law or "dahl")
         assert axle.effects[own.effect].get("law", "dahl") == axle.topology.strut_friction
         assert axle.values["strut_friction.share2@L"] == pytest.approx(0.10)
-    assert EFFECTS["hub_compliance"].variants(EFFECTS["hub_compliance"].hypotheses()[0])[1:] == ()
+    (bending,) = EFFECTS["strut_bending"].hypotheses()
+    assert EFFECTS["strut_bending"].variants(bending) == (bending,)
+
+
+def test_a_hub_is_linear_or_stiffens() -> None:
+    (own,) = EFFECTS["hub_compliance"].hypotheses()
+    linear, stiffening = EFFECTS["hub_compliance"].variants(own)
+    assert linear == own and [s.name for s in stiffening.sizes[len(own.sizes) :]] == ["loaded_factor"]
+    at_typical = {s.name: 1.0 for s in own.sizes} | {"loaded_factor": 0.0}
+    axle = apply_effect(nominal(), own.effect, stiffening.options(at_typical), source="test")
+    assert axle.topology.hub_stiffens and axle.values["hub.loaded_factor@R"] == 1.0
+    assert not apply_effect(nominal(), own.effect, {}, source="test").topology.hub_stiffens

@@ -32,6 +32,10 @@ DESIGNS = 5
 CLOSE = 1e-9
 PATHS = ("WLC.z", "WLC.y", "spring.rate", "tyre.static_load")
 NOMINAL = "mcpherson_front"
+OPTIONS: dict[str, dict[str, object]] = {
+    "hub_compliance": {"law": "stiffening", "loaded_factor": 1.4, "reference_Nm": 100.0}
+}
+"""Of effects whose default leaves a law out."""
 FRICTION = ("strut_friction", "steering_friction", "rubber_hysteresis", "damper_friction")
 
 
@@ -46,7 +50,7 @@ def with_effects(name: str, *, friction: bool) -> Axle:
     for ident, effect in EFFECTS.items():
         here = effect.possible(places_of(axle)) and (name == NOMINAL or not effect.possible(known))
         if here and (ident in FRICTION) == friction:
-            axle = apply_effect(axle, ident, {}, source="test")
+            axle = apply_effect(axle, ident, OPTIONS.get(ident, {}), source="test")
     return axle
 
 

@@ -24,7 +24,7 @@ from tests.reference import MCPHERSON_EFFECTS as EFFECTS
 
 HERE = Path(__file__).parent
 PACKAGE = Path(elements.__file__).parent
-UNITS = {"mm", "N", "deg", "Nm/deg", "N/mm", "-", ""}
+UNITS = {"mm", "N", "Nm", "deg", "Nm/deg", "N/mm", "-", ""}
 WITHOUT_REFERENCE_DATA = {
     *("steer_arm_compliance", "tie_rod_compliance", "ball_joint_compliance", "anti_roll_bar_link_compliance"),
     *("power_assist", "rubber_hysteresis", "steering_ratio", "roll_technique"),
@@ -132,7 +132,7 @@ def test_every_effect_is_a_datasheet_with_reference_data_or_a_stated_reason(iden
     for key, option in effect.options.items():
         assert option.unit in UNITS
         if isinstance(option.default, float) and option.unit not in {"", "-"}:
-            suffix = {"Nm/deg": "_Nm_deg", "N/mm": "_N_mm", "mm": "_mm", "N": "_N"}[option.unit]
+            suffix = {"Nm/deg": "_Nm_deg", "N/mm": "_N_mm", "mm": "_mm", "N": "_N", "Nm": "_Nm"}[option.unit]
             assert key.endswith(suffix), f"{key} does not carry its unit {option.unit}"
     assert (DATA / f"effect_{ident}.csv").exists() != (ident in WITHOUT_REFERENCE_DATA)
 

@@ -45,6 +45,9 @@ AXLES = {
     "variant_3": lambda: variant(3),
     "asymmetric": lambda: with_values(nominal(), {"right.LLR.y": 374.0, "left.llf.Fx": 0.5}),
     "hub_compliance": lambda: with_effect("hub_compliance"),
+    "hub_that_stiffens": lambda: apply_effect(
+        nominal(), "hub_compliance", {"law": "stiffening", "loaded_factor": 1.6}, source="test"
+    ),
     "strut_bending": lambda: with_effect("strut_bending"),
     "subframe_flexibility": lambda: with_effect("subframe_flexibility"),
     "everything": everything,

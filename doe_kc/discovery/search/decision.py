@@ -232,5 +232,5 @@ def _proposed(current: Fit, screened: Sequence[Screened], prior: SetPrior) -> li
     added = [h for h in best.members if h.name not in before]
     removed = len(before) - (len(best.members) - len(added))
     sure = all(sets.loss(best, h) >= PROPOSAL_GAIN for h in added)
-    friction = any(EFFECTS[h.effect].laws for h in added)
+    friction = any(EFFECTS[h.effect].frictional and EFFECTS[h.effect].laws for h in added)
     return [best] if removed or (len(added) > 1 and sure and not friction) else []

@@ -1,8 +1,9 @@
-"""The law of an effect is part of the set: a friction by the default law, or by one of open shape.
+"""The law of an effect is part of the set: a friction by the default law, or by one of open shape; a
+compliance linear or stiffening.
 
 What a wrong law leaves behind looks like another effect, and hides others. So where noise does not explain
 what remains, the law of every friction in the set is opened: by one number at once, wholly where nothing else
-explains it.
+explains it, as a compliance's is then.
 
 Which effects are there, laws of few numbers tell as well as any; how large they are, they do not. A motion
 that stays in presliding is a spring by the law's shape, and a compliance beside it takes up what that shape
@@ -65,7 +66,7 @@ def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 
     They go on even with a little less evidence: an effect that is still missing may ask for them.
     """
-    for member in current.model.members:
+    for member in _frictions(current):
         for law in open_laws(member)[:1] if not member.law else ():
             if len(law.sizes) == len(_default(member).sizes) + 1:
                 current = _opened(current, member, law, LAW_WINDOW, workers)
@@ -83,17 +84,19 @@ def with_free_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 def free_laws_instead(
     current: Fit, further: HypothesisFit, own: Likelihood, workers: DiscoveryWorkers
 ) -> Fit | None:
-    """The fit with the laws of most numbers, where noise explains what remains and they say more of the
-    records than a further effect would; else None. own: the records' own errors.
+    """The fit with the laws of most numbers of its frictions, where they say more of the records than a
+    further effect would; else None. own: the records' own errors.
 
-    What remains is explained once the discrepancy of a friction's law is among the errors. An effect that
-    comes in then may be what that law lacks: a rack mount of 18 000 N/mm beside a steering friction of two
-    stages, whose force became 978 N for 383.
+    Asked where noise explains what remains, but for single contrasts, as it does once the discrepancy of a
+    friction's law is among the errors. An effect that comes in then may be what that law lacks: a steering
+    friction of two stages, 383 N, became one of 978 N beside a rack mount of 18 000 N/mm.
     """
-    if current.residual_map.chance < NOISE_CHANCE or not any(open_laws(h) for h in current.model.members):
+    frictions = _frictions(current)
+    left = current.residual_map
+    if (left.chance < NOISE_CHANCE and left.mean_square > 1.0) or not any(map(open_laws, frictions)):
         return None
     exact, rival = refit_to_errors(current, own), refit_to_errors(further.fit, own)
-    starts = [_with_most_numbers(exact, exact.model.members), FitStart(rival.model, rival.z, rival)]
+    starts = [_with_most_numbers(exact, frictions), FitStart(rival.model, rival.z, rival)]
     free, added = workers.fits(starts, "opening laws")
     if free is None or (added is not None and free.evidence <= added.evidence + further.prior):
         return None
@@ -142,12 +145,15 @@ def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
 def _frictions_to_free(current: Fit) -> list[Hypothesis]:
     """Frictions of the set on whose law sizes hang: all that are more than traces where it has other effects
     of the car too, else rubber alone, whose share is a mean of bushings that differ."""
-    members = current.model.members
-    frictions = [h for h in members if len(EFFECTS[h.effect].variants(_default(h))) > 1]
-    others = [h for h in members if h not in frictions and not EFFECTS[h.effect].on_rig]
+    frictions = [h for h in _frictions(current) if len(EFFECTS[h.effect].variants(_default(h))) > 1]
+    others = [h for h in current.model.members if h not in frictions and not EFFECTS[h.effect].on_rig]
     if not others:
         return [h for h in frictions if not EFFECTS[h.effect].laws]
     return [h for h in frictions if _more_than_trace(current, h)]
+
+
+def _frictions(current: Fit) -> list[Hypothesis]:
+    return [h for h in current.model.members if EFFECTS[h.effect].frictional]
 
 
 def _more_than_trace(current: Fit, member: Hypothesis) -> bool:

@@ -29,6 +29,7 @@ SIZE_WORDS: Mapping[str, str] = {
     "reference_N": "force at which it grows",
     "scale": "stiffness factor",
     "shares": "share of slider",
+    "loaded_factor": "stiffness under load over that at rest",
     "exponent": "exponent of the law",
     "spread": "spread of the law",
 }

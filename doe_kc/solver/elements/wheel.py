@@ -13,6 +13,7 @@ from doe_kc.solver.freedoms import rotations
 
 SPIN_STIFFNESS = 1e11
 """N mm/rad about the carrier's Y: the reference's brake lock, stiff but not ideal."""
+NMM_PER_NM = 1000.0
 
 
 def add_wheel(b: Builder, carrier: Body, side: str, carrier_noun: str) -> None:
@@ -48,7 +49,16 @@ def _sprung_wheel(b: Builder, carrier: Body, side: str) -> Body:
     toe = b.constant(b.parameter(f"hub.toe@{side}") * NM_PER_DEG)
     kappa, slope = rotation.angle_ratio(ca.dot(turn, turn))
     torque = ca.vertcat(camber, SPIN_STIFFNESS, toe) * (kappa * turn)
+    if b.topology.hub_stiffens:
+        torque *= ca.vertcat(_stiffer(b, side, torque[0]), 1, _stiffer(b, side, torque[2]))
     moment = rotation.spring_moment(turn, torque, kappa, slope)
     for i, freedom in enumerate(turns):
         b.resist(freedom.name, moment[i])
     return b.join(f"hub {side}", wheel, carrier, turns)
+
+
+def _stiffer(b: Builder, side: str, moment: ca.SX) -> ca.SX:
+    """Stiffness under a moment over that at rest: 1 + (f - 1) q / (1 + q), q = (moment / M0)^2. moment: its
+    linear part."""
+    square = (moment / b.constant(b.parameter(f"hub.reference@{side}") * NMM_PER_NM)) ** 2
+    return 1 + b.constant(b.parameter(f"hub.loaded_factor@{side}") - 1) * square / (1 + square)

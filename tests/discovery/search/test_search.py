@@ -13,8 +13,12 @@ from tests.discovery.cases import library, model
 
 @pytest.mark.parametrize(
     ("known", "order"),
-    [("hub_compliance", ["others"]), ("steering_friction", ["laws", "others"])],
-    ids=["beside a compliance", "beside a friction"],
+    [
+        ("strut_bending", ["others"]),
+        ("hub_compliance", ["laws", "others"]),
+        ("steering_friction", ["laws", "others"]),
+    ],
+    ids=["beside an effect of one law", "beside a compliance", "beside a friction"],
 )
 def test_where_nothing_is_accepted_laws_are_tried_and_then_all_others(
     known: str, order: list[str], monkeypatch: pytest.MonkeyPatch

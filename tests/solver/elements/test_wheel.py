@@ -54,6 +54,27 @@ def test_hub_springs(side: str, axis: int, stiffness: float) -> None:
     np.testing.assert_allclose(moment, stiffness * phi, rtol=1e-9, atol=1e-4)
 
 
+@pytest.mark.parametrize("side", SIDES)
+@pytest.mark.parametrize("factor", [0.5, 1.0, 1.6])
+def test_a_hub_that_stiffens(side: str, factor: float) -> None:
+    """k phi (1 + (f - 1) q / (1 + q)) about either axis: half of the way at 300 Nm, all of it far beyond."""
+    law = {f"hub.{n}@{s}": v for n, v in (("loaded_factor", factor), ("reference", 300.0)) for s in SIDES}
+    b = assembled(hub=True, hub_stiffens=True)
+
+    def moment(phi: np.ndarray) -> np.ndarray:
+        at = {f"wheel {side}.{a}": v for a, v in zip(("rx", "ry", "rz"), gibbs(phi), strict=True)}
+        return np.array(
+            [number(b, b.resistances[f"wheel {side}.{a}"], HUB | law | at) for a in ("rx", "ry", "rz")]
+        )
+
+    for axis, stiffness in ((0, 6000.0), (2, 9000.0)):
+        unit = np.eye(3)[axis]
+        for loads, share in ((1e-3, 0.0), (1.0, 0.5), (-1.0, 0.5), (100.0, 1.0)):
+            phi = np.radians(loads * 300.0 / stiffness)
+            expected = stiffness * NM_PER_DEG * phi * (1.0 + share * (factor - 1.0))
+            np.testing.assert_allclose(moment(phi * unit)[axis], expected, rtol=2e-4)
+
+
 def test_the_sprung_wheel_turns_about_its_centre_in_the_knuckle_s_axes() -> None:
     phi = [0.02, 0.1, -0.3]
     b = assembled(phi, hub=True)
