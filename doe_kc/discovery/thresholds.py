@@ -217,6 +217,9 @@ and ln likelihood, with priors, behind which a refit by another closed law is gi
 FREE_SHAPE_LOSS = 10.0
 """ln likelihood, with priors, that frictions of free shape may cost before sizes are estimated beside the
 laws that were chosen. As `LAW_WINDOW`: on a car with five effects they cost 1."""
+FREE_TRAVELS = (0.5, 0.7, 1.4)
+"""times the travel before the law was opened, other starts of a friction of free shape. Its sliders stand in
+ratios of 1.4 to 2.3, so that shares and travel move from one of them to the next."""
 EFFECTS_MOST = 10
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six; rubber in two
 groups of bushings and a roll technique make them eight, and beside them come traces. With 6, two of 18 cars

@@ -25,6 +25,10 @@ BACKBONE_SHARES = (0.04, 0.07, 0.10, 0.13, 0.19, 0.32, 0.15)
 """Shares of the sliders of a free backbone whose virgin curve is nearly exponential: 1 - (1 + y) exp(-y)
 between the geometric means of neighbouring yield displacements."""
 
+TRAVEL, SHARES = "presliding_mm", "shares"
+"""Options of a friction: how far it moves before it slides, and of the free backbone, the shares of its
+sliders."""
+
 SHARE_LOG_SD = 1.5
 """So wide that one slider may hold nearly all: a factor of 4.5 each."""
 

@@ -25,9 +25,10 @@ from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.refits import HypothesisFit, more_than_trace
-from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, LAW_WINDOW, NOISE_CHANCE
+from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, FREE_TRAVELS, LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
+from doe_kc.effects._friction import SHARES, TRAVEL
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 
@@ -167,11 +168,42 @@ def _opened(
 ) -> Fit:
     if current.residual_map.chance >= NOISE_CHANCE:
         return current
-    model, z = with_law(current, member, law)
-    (refit,) = workers.fits([FitStart(model, z, current)], "opening laws")
+    refit = _best_fit(FitStart(*with_law(current, member, law), current), workers)
     if refit is None or refit.evidence < current.evidence - window:
         return current
     return refit
+
+
+def _best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:
+    """The fit with an opened law; where noise does not explain what it leaves, the best of several starts.
+
+    The sliders of a free backbone make the cost rough. From Duhem's law, 235 N over 0.81 mm, a friction of
+    two stages ended 160 of ln evidence behind the fit from 0.7 of that travel: 224.7 N over 0.38 mm, the
+    car's.
+    """
+    (refit,) = workers.fits([start], "opening laws")
+    if refit is not None and refit.residual_map.chance >= NOISE_CHANCE:
+        return refit
+    fits = [refit, *workers.fits(_other_travels(start), "opening laws")]
+    return max((f for f in fits if f is not None), key=lambda f: f.evidence, default=None)
+
+
+def _other_travels(start: FitStart) -> list[FitStart]:
+    """The same start with other travels of the frictions of free shape; none without one."""
+    places = [
+        (place.start + i, size.log_sd)
+        for h, place in start.model.places()
+        if any(size.key == SHARES for size in h.sizes)
+        for i, size in enumerate(h.sizes)
+        if size.key == TRAVEL
+    ]
+    out = []
+    for factor in FREE_TRAVELS if places else ():
+        z = start.z.copy()
+        for place, log_sd in places:
+            z[place] += np.log(factor) / log_sd
+        out.append(replace(start, z=z))
+    return out
 
 
 def with_law(current: Fit, member: Hypothesis, law: Hypothesis) -> tuple[EffectModel, FloatArray]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ from doe_kc.discovery.search.laws import (
     with_open_laws,
 )
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.thresholds import NOISE_CHANCE
+from doe_kc.discovery.thresholds import FREE_TRAVELS, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.examples import example_folder
@@ -117,8 +118,33 @@ def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> N
     asked = Answers(cost)
     found = with_free_laws(disagreeing(), asked)
     (friction,) = agreeing().model.members
-    assert asked.laws == [open_laws(friction)[-1].law]
+    assert asked.laws == [open_laws(friction)[-1].law] * (1 + len(FREE_TRAVELS))
     assert bool(found.model.members[0].law) is opened
+
+
+@pytest.mark.parametrize("best", [1.0, *FREE_TRAVELS])
+def test_a_free_backbone_that_leaves_something_begins_from_other_travels(best: float) -> None:
+    """A friction of two stages, 225 N, stayed 160 of ln evidence behind by the travel of the closed law."""
+    (friction,) = agreeing().model.members
+    size = next(i for i, s in enumerate(friction.sizes) if s.key == "presliding_mm")
+
+    class Travels(Answers):
+        tried: ClassVar[list[float]] = []
+
+        def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
+            (place,) = [p for _, p in model.places()]
+            was = next(p for _, p in found.model.places()).start + size
+            factor = float(np.exp(friction.sizes[size].log_sd * (z[place.start + size] - found.z[was])))
+            self.tried.append(factor)
+            return super()._fit(model, z, found, cost - (100.0 if abs(factor - best) < 1e-9 else 0.0))
+
+    asked = Travels(-50.0)
+    found = with_free_laws(disagreeing(), asked)
+    assert asked.laws == ["backbone"] * (1 + len(FREE_TRAVELS))
+    np.testing.assert_allclose(asked.tried, [1.0, *FREE_TRAVELS])
+    assert found.cost == pytest.approx(disagreeing().cost - 150.0)
+    asked.laws.clear()
+    assert with_free_laws(agreeing(), asked) is not None and not asked.laws
 
 
 @pytest.mark.parametrize(("best", "freed"), [("backbone", True), ("", False)])
