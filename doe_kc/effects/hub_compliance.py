@@ -58,7 +58,10 @@ class HubCompliance(Effect):
     )
     laws: ClassVar[Mapping[str, tuple[Size, ...]]] = {
         LINEAR: (),
-        STIFFENING: (Size("loaded_factor", 1.0, "-", "shape", log_sd=LOG_SD),),
+        STIFFENING: (
+            Size("loaded_factor", 1.0, "-", "shape", log_sd=LOG_SD),
+            Size("reference_Nm", HALF_MOMENT, "Nm", "shape"),
+        ),
     }
 
     def read(

@@ -187,8 +187,11 @@ def test_variants_of_a_friction_are_its_laws() -> None:
 def test_a_hub_is_linear_or_stiffens() -> None:
     (own,) = EFFECTS["hub_compliance"].hypotheses()
     linear, stiffening = EFFECTS["hub_compliance"].variants(own)
-    assert linear == own and [s.name for s in stiffening.sizes[len(own.sizes) :]] == ["loaded_factor"]
-    at_typical = {s.name: 1.0 for s in own.sizes} | {"loaded_factor": 0.0}
+    assert linear == own and [s.name for s in stiffening.sizes] == [
+        *(s.name for s in own.sizes), "loaded_factor", "reference_Nm",
+    ]  # fmt: skip
+    at_typical = {s.name: 0.0 if s.shape else 1.0 for s in stiffening.sizes}
     axle = apply_effect(nominal(), own.effect, stiffening.options(at_typical), source="test")
-    assert axle.topology.hub_stiffens and axle.values["hub.loaded_factor@R"] == 1.0
+    assert axle.topology.hub_stiffens
+    assert (axle.values["hub.loaded_factor@R"], axle.values["hub.reference@R"]) == (1.0, 300.0)
     assert not apply_effect(nominal(), own.effect, {}, source="test").topology.hub_stiffens

@@ -27,6 +27,7 @@ SIZE_WORDS: Mapping[str, str] = {
     "gap_mm": "free play",
     "offset_mm": "offset",
     "reference_N": "force at which it grows",
+    "reference_Nm": "moment half way between the two",
     "scale": "stiffness factor",
     "shares": "share of slider",
     "loaded_factor": "stiffness under load over that at rest",

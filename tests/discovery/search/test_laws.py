@@ -86,8 +86,7 @@ def test_other_laws_are_those_of_one_number_more_at_most() -> None:
     (friction,) = agreeing().model.members
     assert [law.law for law in other_laws(friction)] == ["iwan", "duhem", "lognormal"]
     assert [law.law for law in other_laws(open_laws(friction)[0])] == ["", "iwan", "lognormal"]
-    assert [law.law for law in other_laws(library("hub_compliance")[0])] == ["stiffening"]
-    assert not other_laws(library("strut_bending")[0])
+    assert not other_laws(library("hub_compliance")[0]), "of two numbers more"
 
 
 def test_rubber_is_opened_to_each_bushing_of_its_own_group() -> None:
