@@ -84,6 +84,8 @@ def unwritten_sentences(axle: Axle, wanted: Axle, result: AdamsImport) -> Iterat
             yield f"effect {ident} ({EFFECTS[ident].label}): there is no place for it in the files"
     if wanted.topology.hub and not now.topology.hub:
         yield "effect hub_compliance: the files have no bushing of the hub"
+    elif wanted.topology.hub_stiffens and not now.topology.hub_stiffens:
+        yield "effect hub_compliance: its law stiffening; the files' bushing has the stiffness at rest alone"
     if wanted.topology.rack_mount and not now.topology.rack_mount:
         yield "effect rack_mount_compliance: the files have no bushing of the rack's housing"
     own = set(_effect_names(axle))

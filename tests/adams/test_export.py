@@ -113,6 +113,15 @@ def test_a_tuned_double_wishbone_makes_the_round_trip(tmp_path: Path) -> None:
     assert "TX_SCALING_FACTOR       =  0.8333333333333334" in text
 
 
+def test_a_hub_that_stiffens_is_written_with_its_stiffness_at_rest_and_said(tmp_path: Path) -> None:
+    options = {"camber_Nm_deg": 5000.0, "law": "stiffening", "loaded_factor": 1.5}
+    axle = apply_effect(imported(wishbone_source()), "hub_compliance", options, source="test")
+    result = export_adams(axle, wishbone_source(), tmp_path)
+    (told,) = result.unwritten
+    assert told.startswith("effect hub_compliance: its law stiffening")
+    assert result.axle.values["hub.camber@L"] == 5000.0
+
+
 def test_what_has_no_place_is_listed(tmp_path: Path) -> None:
     axle = with_values(imported(mcpherson_source()), {"ride_height": 3.0, "strut.flexibility": 0.5})
     for ident in ("strut_friction", "hub_compliance"):
