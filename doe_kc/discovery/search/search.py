@@ -179,7 +179,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             current = anew
             del anew
         elif laws_open:
-            opened, laws_tried = with_free_laws(current, workers), True
+            opened, laws_tried = with_free_laws(current, model.likelihood, workers), True
             if opened is current:  # the same step again, now with every other effect
                 steps.pop()
                 continue

@@ -9,8 +9,10 @@ from typing import ClassVar
 import numpy as np
 import pytest
 
+import doe_kc.discovery.search.laws as laws_module
 from doe_kc.axle.places import places_of
 from doe_kc.axle_file import read_axle
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
@@ -61,6 +63,11 @@ class Answers(DiscoveryWorkers):
 
 def agreeing() -> Fit:
     return discovery("friction").search.with_law_discrepancy
+
+
+def records() -> Likelihood:
+    """The records' own errors."""
+    return discovery("friction").search.tuned.model.likelihood
 
 
 def disagreeing() -> Fit:
@@ -115,10 +122,19 @@ def test_the_open_law_goes_on_unless_its_evidence_is_clearly_less(cost: float, o
 @pytest.mark.parametrize(("cost", "opened"), [(-50.0, True), (10.0, False)])
 def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> None:
     asked = Answers(cost)
-    found = with_free_laws(disagreeing(), asked)
+    found = with_free_laws(disagreeing(), records(), asked)
     (friction,) = agreeing().model.members
     assert asked.laws == [open_laws(friction)[-1].law] * (1 + len(FREE_TRAVELS))
     assert bool(found.model.members[0].law) is opened
+
+
+def test_a_free_law_is_fitted_to_the_errors_of_the_records_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors that hold the discrepancy of the law before it took another friction for explained."""
+    explained, own = agreeing(), records()
+    monkeypatch.setattr(laws_module, "refit_to_errors", lambda f, e: disagreeing() if e is own else f)
+    freed = with_free_laws(explained, own, Answers(-50.0))
+    assert freed.model.members[0].law == "backbone"
+    assert with_free_laws(explained, own, Answers(10.0)) is explained
 
 
 @pytest.mark.parametrize("best", [1.0, *FREE_TRAVELS])
@@ -138,12 +154,13 @@ def test_a_free_backbone_that_leaves_something_begins_from_other_travels(best: f
             return super()._fit(model, z, found, cost - (100.0 if abs(factor - best) < 1e-9 else 0.0))
 
     asked = Travels(-50.0)
-    found = with_free_laws(disagreeing(), asked)
+    found = with_free_laws(disagreeing(), records(), asked)
     assert asked.laws == ["backbone"] * (1 + len(FREE_TRAVELS))
     np.testing.assert_allclose(asked.tried, [1.0, *FREE_TRAVELS])
     assert found.cost == pytest.approx(disagreeing().cost - 150.0)
     asked.laws.clear()
-    assert with_free_laws(agreeing(), asked) is not None and not asked.laws
+    explained = agreeing()
+    assert with_free_laws(explained, records(), asked) is explained and not asked.laws
 
 
 @pytest.mark.parametrize(("best", "freed"), [("backbone", True), ("", False)])
