@@ -20,7 +20,7 @@ class Topology:
     """One set of equations and one compiled kernel per topology; an absent effect costs nothing.
 
     bump_points, rebound_points: number of points of the stop curves.
-    hub_stiffens: whether the hub follows the law that is stiffer under load.
+    hub_stiffens, strut_stiffens: whether hub and strut clamp follow the law that is stiffer under load.
     tables: (bushing, axis, points) of every tabulated bushing axis, e.g. ("llr", "Fx", 7).
     rubber: bushings whose translational axes have friction beside their elastic law.
     probes: whether zero-valued dislocations and force pairs are in, for derivatives to them alone.
@@ -33,6 +33,7 @@ class Topology:
     hub: bool = False
     hub_stiffens: bool = False
     strut_bending: bool = False
+    strut_stiffens: bool = False
     steer_arm: bool = False
     rack_mount: bool = False
     power_assist: bool = False

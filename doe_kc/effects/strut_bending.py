@@ -7,13 +7,17 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from doe_kc.axle.model import Axle, both
+from doe_kc.axle.places import Places
+from doe_kc.effects import _stiffening
 from doe_kc.effects._base import Effect, Option, Part, effect
+from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects.hypothesis import Size
 
 
 @effect
 class StrutBending(Effect):
-    """Strut bending at the clamp."""
+    """law: linear, or stiffening. By that alone the stiffness goes to loaded_factor times what it is at rest,
+    half of the way where the bending moment is reference_Nm off that at rest. Below 1 it softens."""
 
     id: ClassVar[str] = "strut_bending"
     part: ClassVar[Part] = "strut"
@@ -21,6 +25,7 @@ class StrutBending(Effect):
     options: ClassVar[Mapping[str, Option]] = {
         "k_Nm_deg": Option(8000.0, "Nm/deg"),
         "torsion_Nm_deg": Option(30000.0, "Nm/deg"),
+        **_stiffening.LAW_OPTIONS,
     }
 
     physics: ClassVar[str] = (
@@ -32,15 +37,25 @@ class StrutBending(Effect):
         Size("k_Nm_deg", 8000.0, "Nm/deg", "compliance"),
         Size("torsion_Nm_deg", 30000.0, "Nm/deg", "compliance"),
     )
+    laws: ClassVar[Mapping[str, tuple[Size, ...]]] = _stiffening.STIFFENING_LAWS
     replaces: ClassVar[tuple[str, ...]] = ("strut.flexibility",)
 
     def present(self, axle: Axle) -> bool:
         return axle.topology.strut_bending
 
+    def read(
+        self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
+    ) -> dict[str, Any]:
+        checked = super().read(options, source, places)
+        _stiffening.check_factor(checked, f"{source}: effect {self.id}")
+        return checked
+
     def extend(self, axle: Axle, options: Mapping[str, Any]) -> Axle:
-        changed = axle.changed(
-            both("strut.flexibility", 1.0)
-            | both("strut.bending", options["k_Nm_deg"])
-            | both("strut.torsion", options["torsion_Nm_deg"])
-        )
-        return replace(changed, topology=replace(axle.topology, strut_bending=True))
+        values = both("strut.flexibility", 1.0)
+        values |= both("strut.bending", options["k_Nm_deg"])
+        values |= both("strut.torsion", options["torsion_Nm_deg"])
+        law = _stiffening.law_values("strut", options)
+        for name, value in law.items():
+            values |= both(name, value)
+        topology = replace(axle.topology, strut_bending=True, strut_stiffens=bool(law))
+        return replace(axle.changed(values), topology=topology)

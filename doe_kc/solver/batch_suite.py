@@ -18,6 +18,7 @@ from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
 from doe_kc.solver.batch_library import BatchMarch, BatchMarcher, BatchProblem, BatchStart
+from doe_kc.solver.builder import LOAD_CASE
 from doe_kc.solver.compiled import adaptive_kernel
 from doe_kc.solver.elimination import EliminationOrder, elimination_order
 from doe_kc.solver.kernel import kernel, kernel_programs
@@ -156,9 +157,7 @@ class _BatchSuite:
         before, state, first = x[:, None], z, y
         seeds = np.zeros(0)
         for name, inputs in branch_inputs(case, loop=loop).items():
-            values = {"preload": datum.preload, **case.driven(inputs, datum)}
-            if loop:
-                values["friction"] = 1.0
+            values = {"preload": datum.preload, LOAD_CASE: 1.0, **case.driven(inputs, datum)}
             held = HOLD_WHEEL in values
             u = self._controls(values, len(inputs))
             s = np.broadcast_to(inputs, (self._designs, len(inputs)))
@@ -202,8 +201,8 @@ class _ReferenceOrders:
             if held:
                 height = {HOLD_WHEEL: 1.0, "bilateral": 1.0}
                 u = u + control_matrix(self._kernel, dict(height), 1)[0]
-            if self._kernel.topology.frictional and not full:
-                u = u + control_matrix(self._kernel, {"friction": 1.0}, 1)[0]
+            if not full:
+                u = u + control_matrix(self._kernel, {LOAD_CASE: 1.0}, 1)[0]
             active = self._kernel.nx if full else self._kernel.nx - self._kernel.layout.tail
             nonzeros = self._jacobian(x, self._c, u, z)
             self._orders[full, held] = elimination_order(self._kernel, nonzeros, active)

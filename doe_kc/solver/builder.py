@@ -23,6 +23,8 @@ MOMENT_SCALE = 100.0
 """N mm that weigh as much as 1 N in the convergence norm: a lever of 100 mm."""
 LENGTH_SCALE = 1e-3
 """mm of constraint violation that weigh as much as 1 N: 1000 N/mm."""
+LOAD_CASE = "load_case"
+"""Control that is 1 in a load case and 0 at rest, where friction has no force and no memory."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +167,7 @@ class Builder:
         return force
 
     def state(self, previous: ca.SX, following: ca.SX, *, freedom: str | None = None) -> None:
-        """Path-dependent state (mm): symbols of its previous value, expression of the next.
+        """Path-dependent state (mm, rad): symbols of its previous value, expression of the next.
 
         freedom: the free motion that it resists, in which steps are halved where it reverses; None for one
         so soft beside its spring that a reversal inside a step is not seen.

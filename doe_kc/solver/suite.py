@@ -14,6 +14,7 @@ from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER, LoadCase
+from doe_kc.solver.builder import LOAD_CASE
 from doe_kc.solver.compiled import MarchLibrary, adaptive_kernel, compiled_kernel
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.equilibria import Start
@@ -142,9 +143,7 @@ def _solve_case(
     done: list[BranchSolution] = []
     full = False
     for name, inputs in branch_inputs(case, loop=loop).items():
-        values = {"preload": static.datum.preload, **case.driven(inputs, static.datum)}
-        if loop:
-            values["friction"] = 1.0
+        values = {"preload": static.datum.preload, LOAD_CASE: 1.0, **case.driven(inputs, static.datum)}
         full = "hold_wheel_centre" in values
         u = control_matrix(k, values, len(inputs))
         start, origin = _start(static, done, u, inputs, loop=loop)

@@ -180,18 +180,20 @@ def test_variants_of_a_friction_are_its_laws() -> None:
         assert axle.topology.strut_friction == (variant.law or "dahl")
         assert axle.effects[own.effect].get("law", "dahl") == axle.topology.strut_friction
         assert axle.values["strut_friction.share2@L"] == pytest.approx(0.10)
-    (bending,) = EFFECTS["strut_bending"].hypotheses()
-    assert EFFECTS["strut_bending"].variants(bending) == (bending,)
+    (arm,) = EFFECTS["steer_arm_compliance"].hypotheses()
+    assert EFFECTS["steer_arm_compliance"].variants(arm) == (arm,)
 
 
-def test_a_hub_is_linear_or_stiffens() -> None:
-    (own,) = EFFECTS["hub_compliance"].hypotheses()
-    linear, stiffening = EFFECTS["hub_compliance"].variants(own)
+@pytest.mark.parametrize(("effect", "prefix"), [("hub_compliance", "hub"), ("strut_bending", "strut")])
+def test_a_hub_or_a_clamp_is_linear_or_stiffens(effect: str, prefix: str) -> None:
+    (own,) = EFFECTS[effect].hypotheses()
+    linear, stiffening = EFFECTS[effect].variants(own)
     assert linear == own and [s.name for s in stiffening.sizes] == [
         *(s.name for s in own.sizes), "loaded_factor", "reference_Nm",
     ]  # fmt: skip
     at_typical = {s.name: 0.0 if s.shape else 1.0 for s in stiffening.sizes}
     axle = apply_effect(nominal(), own.effect, stiffening.options(at_typical), source="test")
-    assert axle.topology.hub_stiffens
-    assert (axle.values["hub.loaded_factor@R"], axle.values["hub.reference@R"]) == (1.0, 300.0)
-    assert not apply_effect(nominal(), own.effect, {}, source="test").topology.hub_stiffens
+    assert getattr(axle.topology, f"{prefix}_stiffens")
+    assert (axle.values[f"{prefix}.loaded_factor@R"], axle.values[f"{prefix}.reference@R"]) == (1.0, 300.0)
+    linear_axle = apply_effect(nominal(), own.effect, {}, source="test")
+    assert not getattr(linear_axle.topology, f"{prefix}_stiffens")

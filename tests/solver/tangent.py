@@ -9,6 +9,7 @@ import numpy as np
 
 from doe_kc.axle import Axle
 from doe_kc.solver.assembly import assemble
+from doe_kc.solver.builder import LOAD_CASE
 from doe_kc.solver.equilibria import March, Start
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.march import march
@@ -35,18 +36,21 @@ class Rig:
         held = {"pad_L": pads.pad[0], "pad_R": pads.pad[1], "preload": pads.preload}
         return control_matrix(self.kernel, {**held, **values}, n)  # type: ignore[dict-item]
 
-    def path(self, waypoints: Sequence[Mapping[str, float]], steps: int, *, friction: bool = False) -> March:
-        """Straight lines between waypoints, which hold changes from rest (pads) or values; from rest."""
+    def path(self, waypoints: Sequence[Mapping[str, float]], steps: int, *, load_case: bool = False) -> March:
+        """Straight lines between waypoints, which hold changes from rest (pads) or values; from rest.
+
+        load_case: whether friction has force and memory, as in a load case.
+        """
         names = sorted({n for w in waypoints for n in w})
         pads = {"pad_L": self.static.datum.pad[0], "pad_R": self.static.datum.pad[1]}
         corners = np.array([[w.get(n, 0.0) + pads.get(n, 0.0) for n in names] for w in ({}, *waypoints)])
         t = np.linspace(0.0, len(waypoints), steps * len(waypoints) + 1)[1:]
         columns = {n: np.interp(t, range(len(corners)), corners[:, i]) for i, n in enumerate(names)}
-        self.u = self.controls(len(t), {**columns, "friction": float(friction)})
+        self.u = self.controls(len(t), {**columns, LOAD_CASE: float(load_case)})
         start = Start(
             np.zeros(1),
             self.static.x[None, :],
-            self.controls(1, {"friction": float(friction)})[0],
+            self.controls(1, {LOAD_CASE: float(load_case)})[0],
             self.static.z,
         )
         found = march(self.kernel, None, self.c, start, t, self.u)
@@ -71,7 +75,7 @@ class Rig:
         symbols = [eq.x, eq.c, eq.u, eq.z]
         wanted = [eq.output_names.index(n) for n in outputs]
         blocks = [ca.jacobian(e, s) for e in (eq.residual, eq.outputs[wanted]) for s in (eq.x, eq.u)]
-        at = (x, self.c, u, np.zeros(self.kernel.nz))
+        at = (x, self.c, u, self.static.z)
         rx, ru, yx, yu = (np.array(m) for m in ca.Function("t", symbols, blocks)(*at))
         columns = [eq.control_names.index(n) for n in inputs]
         return yu[:, columns] - yx @ np.linalg.solve(rx, ru[:, columns])

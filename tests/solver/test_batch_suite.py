@@ -33,7 +33,8 @@ CLOSE = 1e-9
 PATHS = ("WLC.z", "WLC.y", "spring.rate", "tyre.static_load")
 NOMINAL = "mcpherson_front"
 OPTIONS: dict[str, dict[str, object]] = {
-    "hub_compliance": {"law": "stiffening", "loaded_factor": 1.4, "reference_Nm": 100.0}
+    "hub_compliance": {"law": "stiffening", "loaded_factor": 1.4, "reference_Nm": 100.0},
+    "strut_bending": {"law": "stiffening", "loaded_factor": 0.7, "reference_Nm": 150.0},
 }
 """Of effects whose default leaves a law out."""
 FRICTION = ("strut_friction", "steering_friction", "rubber_hysteresis", "damper_friction")

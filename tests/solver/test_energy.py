@@ -109,7 +109,7 @@ def test_a_closed_loop_of_pads_drive_and_steer_gives_all_energy_back(rig: Rig) -
 def test_what_a_steering_loop_takes_is_what_friction_dissipates(law: str) -> None:
     axle = apply_effect(nominal(), "steering_friction", {"law": law}, source="test")
     rig, steps = Rig(axle), 200
-    path = rig.path([{"rack": a} for a in (30.0, -30.0, 30.0)], steps, friction=True)
+    path = rig.path([{"rack": a} for a in (30.0, -30.0, 30.0)], steps, load_case=True)
     _, down, up = work(rig, path, steps)
     column, travel = rig.output(path, "column_force")[steps:], rig.output(path, "rack_travel")[steps:]
     back = column + rig.output(path, "rack_force")[steps:]

@@ -48,6 +48,9 @@ AXLES = {
     "hub_that_stiffens": lambda: apply_effect(
         nominal(), "hub_compliance", {"law": "stiffening", "loaded_factor": 1.6}, source="test"
     ),
+    "strut_that_stiffens": lambda: apply_effect(
+        nominal(), "strut_bending", {"law": "stiffening", "loaded_factor": 0.6}, source="test"
+    ),
     "strut_bending": lambda: with_effect("strut_bending"),
     "subframe_flexibility": lambda: with_effect("subframe_flexibility"),
     "everything": everything,
@@ -58,7 +61,7 @@ LOADED = {"pad_L": 25.0, "pad_R": -15.0, "drive_L": 1500.0, "drive_R": -800.0, "
 @pytest.mark.parametrize("name", AXLES)
 def test_tangents_are_symmetric_at_rest_and_under_load(name: str) -> None:
     rig = Rig(AXLES[name]())
-    path = rig.path([LOADED], 12)
+    path = rig.path([LOADED], 12, load_case=True)
     for x, u in ((rig.static.x, rig.static.u), (path.x[-1], rig.u[-1])):
         hessian = rig.tangent(x, u, CONJUGATES, INPUTS) * SCALE * SCALE[:, None]
         np.testing.assert_allclose(hessian, hessian.T, rtol=0, atol=1e-9 * np.abs(hessian).max())

@@ -108,7 +108,7 @@ def test_what_a_loop_takes_is_what_the_sliders_dissipate() -> None:
     axle = apply_effect(nominal(), "rubber_hysteresis", RUBBER, source="test")
     rig, steps = Rig(axle), 60
     corners = [{"drive_L": f, "drive_R": f} for f in (2000.0, -2000.0, 2000.0)]
-    path = rig.path(corners, steps, friction=True)
+    path = rig.path(corners, steps, load_case=True)
     _, down, up = work(rig, path, steps)
     slips = np.abs(np.diff(path.z[steps - 1 :], axis=0)).sum(axis=0)
     taken = float(strengths(axle) @ slips)

@@ -18,7 +18,7 @@ from doe_kc.axle.model import FORCE_AXES, NM_PER_DEG
 from doe_kc.axle.sliders import RUBBER_SLIDERS
 from doe_kc.axle.structure import of_side
 from doe_kc.solver import curve, rotation
-from doe_kc.solver.builder import Body, Builder, Response
+from doe_kc.solver.builder import LOAD_CASE, Body, Builder, Response
 from doe_kc.solver.elements._cuts import ROTATION_AXES, SHIFTS, push_pair, stretch, turn_pair, turn_sign
 from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
@@ -90,7 +90,7 @@ def _friction(b: Builder, name: str, side: str, d: ca.SX) -> list[ca.SX]:
     forces = []
     for i, axis in enumerate(FORCE_AXES):
         before = ca.SX.sym(f"{name} {axis} {side} state", RUBBER_SLIDERS)
-        deflections = slider_deflections(d[i], before, yields, b.control("friction"))
+        deflections = slider_deflections(d[i], before, yields, b.control(LOAD_CASE))
         b.state(before, d[i] - deflections)
         forces.append(b.constant(_stiffness(b, name, side, axis)) * ca.dot(weights, deflections))
     return forces

@@ -17,7 +17,7 @@ import numpy as np
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.axle.topology import FrictionLaw
-from doe_kc.solver.builder import Builder
+from doe_kc.solver.builder import LOAD_CASE, Builder
 from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
 IWAN_ELEMENTS = 8
@@ -55,12 +55,12 @@ def duhem_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX,
 def add_friction(b: Builder, freedom: str, law: FrictionLaw, x: ca.SX, prefix: str, side: str) -> ca.SX:
     """Friction against the free motion x (mm), with `prefix.force` and `prefix.presliding`.
 
-    Off (and its state reset) where the control `friction` is 0. Returns the force against +x, N.
+    Off (and its state reset) where the control `LOAD_CASE` is 0. Returns the force against +x, N.
     """
     suffix = f"@{side}" if side else ""
     level = b.constant(b.parameter(f"{prefix}.force{suffix}"))
     presliding = b.constant(b.parameter(f"{prefix}.presliding{suffix}"))
-    on = b.control("friction")
+    on = b.control(LOAD_CASE)
     if law in ("dahl", "duhem"):
         before = ca.SX.sym(f"{freedom} state", 2)
         path = (x, before[0], before[1], level, presliding)

@@ -9,11 +9,11 @@ from doe_kc.solver import rotation
 from doe_kc.solver.builder import Body, Builder, body
 from doe_kc.solver.elements._base import hardpoint, mirror
 from doe_kc.solver.elements._cuts import cut
+from doe_kc.solver.elements._stiffening import stiffened
 from doe_kc.solver.freedoms import rotations
 
 SPIN_STIFFNESS = 1e11
 """N mm/rad about the carrier's Y: the reference's brake lock, stiff but not ideal."""
-NMM_PER_NM = 1000.0
 
 
 def add_wheel(b: Builder, carrier: Body, side: str, carrier_noun: str) -> None:
@@ -50,15 +50,9 @@ def _sprung_wheel(b: Builder, carrier: Body, side: str) -> Body:
     kappa, slope = rotation.angle_ratio(ca.dot(turn, turn))
     torque = ca.vertcat(camber, SPIN_STIFFNESS, toe) * (kappa * turn)
     if b.topology.hub_stiffens:
-        torque *= ca.vertcat(_stiffer(b, side, torque[0]), 1, _stiffer(b, side, torque[2]))
+        camber, toe = (stiffened(b, "hub", side, torque[i] ** 2) for i in (0, 2))
+        torque *= 1 + ca.vertcat(camber, 0, toe)
     moment = rotation.spring_moment(turn, torque, kappa, slope)
     for i, freedom in enumerate(turns):
         b.resist(freedom.name, moment[i])
     return b.join(f"hub {side}", wheel, carrier, turns)
-
-
-def _stiffer(b: Builder, side: str, moment: ca.SX) -> ca.SX:
-    """Stiffness under a moment over that at rest: 1 + (f - 1) q / (1 + q), q = (moment / M0)^2. moment: its
-    linear part."""
-    square = (moment / b.constant(b.parameter(f"hub.reference@{side}") * NMM_PER_NM)) ** 2
-    return 1 + b.constant(b.parameter(f"hub.loaded_factor@{side}") - 1) * square / (1 + square)

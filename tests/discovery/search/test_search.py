@@ -14,7 +14,7 @@ from tests.discovery.cases import library, model
 @pytest.mark.parametrize(
     ("known", "order"),
     [
-        ("strut_bending", ["others"]),
+        ("ball_joint_compliance", ["others"]),
         ("hub_compliance", ["laws", "others"]),
         ("steering_friction", ["laws", "others"]),
     ],

@@ -37,7 +37,7 @@ class Law:
         chosen = SHAPES | (shape or {})
         shapes = [n for n in b.parameters if n in chosen]
         parameters = [b.parameters[n] for n in ("f.force", "f.presliding", *shapes)]
-        self._call = ca.Function("law", [x, before, *parameters, b.controls["friction"]], out)
+        self._call = ca.Function("law", [x, before, *parameters, b.controls["load_case"]], out)
         self.numbers = (LEVEL, PRE, *(chosen[n] for n in shapes), on)
         self.z = np.zeros(before.numel())
         self.resistance = b.resistances["rack"]
