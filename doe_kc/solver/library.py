@@ -18,6 +18,7 @@ from types import MappingProxyType
 import casadi as ca
 
 from doe_kc.axle.topology import Topology
+from doe_kc.solver.cache_limit import note_use, remove_unused
 
 if sys.platform != "win32":
     import fcntl
@@ -87,6 +88,8 @@ def stored_library(topology: Topology, kind: str, flags: Mapping[str, str]) -> P
     with suppress(OSError, ValueError):
         path = entry.with_name(entry.read_text(encoding="utf-8"))
         if path.stem.endswith(f"-{fingerprint(path)}"):
+            note_use(entry)
+            note_use(path)
             return path
     return None
 
@@ -94,7 +97,9 @@ def stored_library(topology: Topology, kind: str, flags: Mapping[str, str]) -> P
 def stored_text(topology: Topology, kind: str) -> str | None:
     """What `store_text` put into the cache for a topology and the package's own sources."""
     with suppress(OSError, ValueError):
-        return _entry(topology, kind, ".json").read_text(encoding="utf-8")
+        entry = _entry(topology, kind, ".json")
+        note_use(entry)
+        return entry.read_text(encoding="utf-8")
     return None
 
 
@@ -106,7 +111,9 @@ def store_text(topology: Topology, kind: str, text: str) -> None:
 def stored_bytes(topology: Topology, kind: str) -> bytes | None:
     """What `store_bytes` put into the cache for a topology and the package's own sources."""
     with suppress(OSError):
-        return _entry(topology, kind, ".npz").read_bytes()
+        entry = _entry(topology, kind, ".npz")
+        note_use(entry)
+        return entry.read_bytes()
     return None
 
 
@@ -190,6 +197,7 @@ def build(sources: dict[str, str], flags: Mapping[str, str] = MappingProxyType({
                 library = _compile(compiler, Path(scratch), sources, flags)
                 target = folder / f"{name}-{fingerprint(library)}.so"
                 library.replace(target)
+            remove_unused(folder)
             return target
     except OSError as error:
         raise _unusable(folder, error) from error
