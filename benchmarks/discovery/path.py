@@ -14,6 +14,7 @@ from doe_kc.axle import Axle
 from doe_kc.curves import RIG_RESPONSES, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import LoadCase
+from doe_kc.solver.builder import LOAD_CASE
 from doe_kc.solver.diagnosis import sweep_failure
 from doe_kc.solver.equilibria import Start
 from doe_kc.solver.kernel import Kernel, kernel
@@ -75,7 +76,7 @@ class Bench:
         kept = []
         for branch in branches:
             values = {"preload": self._static.datum.preload, **case.controls(branch, self._static.datum)}
-            u = control_matrix(self._kernel, {**values, "friction": 1.0}, branch.size)
+            u = control_matrix(self._kernel, {**values, LOAD_CASE: 1.0}, branch.size)
             start = Start(branch[:1], x[None, :], u[0], z)
             full = "hold_wheel_centre" in values
             path = march(self._kernel, self._library, self._constants, start, branch[1:], u[1:], full=full)
