@@ -19,7 +19,7 @@ import numpy as np
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
 from doe_kc.curves import CaseCurves, CurveSet
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.search import tune
+from doe_kc.discovery.search.baseline import tune
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 

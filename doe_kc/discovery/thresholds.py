@@ -217,6 +217,9 @@ and ln likelihood, with priors, behind which a refit by another closed law is gi
 FREE_SHAPE_LOSS = 10.0
 """ln likelihood, with priors, that frictions of free shape may cost before sizes are estimated beside the
 laws that were chosen. As `LAW_WINDOW`: on a car with five effects they cost 1."""
+FEW_CONTRASTS = 1.1
+"""Mean square of the contrasts that remain, up to which single ones stand out of noise and not all: a law
+that a member lacks. Noise alone, with the discrepancy of laws among the errors, leaves 0.4 to 0.9."""
 FREE_TRAVELS = (0.5, 0.7, 1.4)
 """times the travel before the law was opened, other starts of a friction of free shape. Its sliders stand in
 ratios of 1.4 to 2.3, so that shares and travel move from one of them to the next."""

@@ -25,8 +25,13 @@ from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
-from doe_kc.discovery.search.refits import HypothesisFit, more_than_trace
-from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, FREE_TRAVELS, LAW_WINDOW, NOISE_CHANCE
+from doe_kc.discovery.search.refits import more_than_trace
+from doe_kc.discovery.thresholds import (
+    FREE_SHAPE_LOSS,
+    FREE_TRAVELS,
+    LAW_WINDOW,
+    NOISE_CHANCE,
+)
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects._friction import SHARES, TRAVEL
@@ -68,7 +73,7 @@ def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 
     They go on even with a little less evidence: an effect that is still missing may ask for them.
     """
-    for member in _frictions(current):
+    for member in frictions(current):
         for law in open_laws(member)[:1] if not member.law else ():
             if len(law.sizes) == len(_default(member).sizes) + 1:
                 current = _opened(current, member, law, LAW_WINDOW, workers)
@@ -86,8 +91,8 @@ def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> 
     the discrepancy of the linear law says as much with fewer numbers, and the effect stays named.
     """
     exact = refit_to_errors(current, own)
-    opened = _all_opened(exact, _frictions(exact), workers)
-    bent = _all_opened(opened, [h for h in opened.model.members if h not in _frictions(opened)], workers)
+    opened = _all_opened(exact, frictions(exact), workers)
+    bent = _all_opened(opened, [h for h in opened.model.members if h not in frictions(opened)], workers)
     if bent is not opened and _explained(bent):
         return bent
     return current if opened is exact else opened
@@ -104,28 +109,6 @@ def _explained(exact: Fit) -> bool:
     """Whether noise and the discrepancy of its laws explain what a fit to the records' own errors leaves."""
     settled, _ = fit_discrepancy(exact, effect_signals(exact))
     return settled.residual_map.chance >= NOISE_CHANCE
-
-
-def free_laws_instead(
-    current: Fit, further: HypothesisFit, own: Likelihood, workers: DiscoveryWorkers
-) -> Fit | None:
-    """The fit with the laws of most numbers of its frictions, where they say more of the records than a
-    further effect would; else None. own: the records' own errors.
-
-    Asked where noise explains what remains, but for single contrasts, as it does once the discrepancy of a
-    friction's law is among the errors. An effect that comes in then may be what that law lacks: a steering
-    friction of two stages, 383 N, became one of 978 N beside a rack mount of 18 000 N/mm.
-    """
-    frictions = _frictions(current)
-    left = current.residual_map
-    if (left.chance < NOISE_CHANCE and left.mean_square > 1.0) or not any(map(open_laws, frictions)):
-        return None
-    exact, rival = refit_to_errors(current, own), refit_to_errors(further.fit, own)
-    free = _best_fit(_with_most_numbers(exact, frictions), workers)
-    (added,) = workers.fits([FitStart(rival.model, rival.z, rival)], "opening laws")
-    if free is None or (added is not None and free.evidence <= added.evidence + further.prior):
-        return None
-    return free
 
 
 def with_best_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
@@ -149,7 +132,7 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
     as a law with drifting loops could make it, the fit stays as it is.
     """
-    start = _with_most_numbers(current, _frictions_to_free(current))
+    start = with_most_numbers(current, _frictions_to_free(current))
     if start.model is current.model:
         return current
     (refit,) = workers.fits([start], "opening laws")
@@ -158,7 +141,7 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     return refit
 
 
-def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
+def with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
     """Where a fit with the law of most numbers for some members begins."""
     model, z = current.model, current.z
     for member in members:
@@ -170,14 +153,15 @@ def _with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
 def _frictions_to_free(current: Fit) -> list[Hypothesis]:
     """Frictions of the set on whose law sizes hang: all that are more than traces where it has other effects
     of the car too, else rubber alone, whose share is a mean of bushings that differ."""
-    frictions = [h for h in _frictions(current) if len(EFFECTS[h.effect].variants(_default(h))) > 1]
-    others = [h for h in current.model.members if h not in frictions and not EFFECTS[h.effect].on_rig]
+    free = [h for h in frictions(current) if len(EFFECTS[h.effect].variants(_default(h))) > 1]
+    others = [h for h in current.model.members if h not in free and not EFFECTS[h.effect].on_rig]
     if not others:
-        return [h for h in frictions if not EFFECTS[h.effect].laws]
-    return [h for h in frictions if _more_than_trace(current, h)]
+        return [h for h in free if not EFFECTS[h.effect].laws]
+    return [h for h in free if _more_than_trace(current, h)]
 
 
-def _frictions(current: Fit) -> list[Hypothesis]:
+def frictions(current: Fit) -> list[Hypothesis]:
+    """Members of the set that are frictions."""
     return [h for h in current.model.members if EFFECTS[h.effect].frictional]
 
 
@@ -192,13 +176,13 @@ def _opened(
 ) -> Fit:
     if current.residual_map.chance >= NOISE_CHANCE:
         return current
-    refit = _best_fit(FitStart(*with_law(current, member, law), current), workers)
+    refit = best_fit(FitStart(*with_law(current, member, law), current), workers)
     if refit is None or refit.evidence < current.evidence - window:
         return current
     return refit
 
 
-def _best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:
+def best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:
     """The fit with an opened law; where noise does not explain what it leaves, the best of several starts.
 
     The sliders of a free backbone make the cost rough. From Duhem's law, 235 N over 0.81 mm, a friction of

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, cost_of
-from doe_kc.discovery.gauss_newton import FitStart, chord_fit, fit, known_columns, refit_to_errors
-from doe_kc.discovery.linear_nuisances import LinearNuisances
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
+from doe_kc.discovery.search.baseline import tune, with_clutter
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
 from doe_kc.discovery.search.law_discrepancy import (
@@ -25,13 +22,13 @@ from doe_kc.discovery.search.law_discrepancy import (
     without_own_discrepancy,
 )
 from doe_kc.discovery.search.laws import (
-    free_laws_instead,
     may_open,
     with_best_laws,
     with_free_laws,
     with_free_shapes,
     with_open_laws,
 )
+from doe_kc.discovery.search.laws_first import free_laws_instead, needless_beside_laws
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -39,13 +36,9 @@ from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
     EFFECTS_MOST,
     MOST_STEPS,
-    TRACE_SD,
-    TRACE_SEEN,
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
@@ -168,6 +161,12 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         instead = None
         if decision.accepted:
             instead = free_laws_instead(current, decision.trials[0], model.likelihood, workers)
+            needless = instead is None and needless_beside_laws(
+                current, decision.trials[0], model.likelihood, workers
+            )
+            if needless:
+                decision = replace(decision, accepted=False)
+                steps[-1] = decision.step(model.likelihood)
         if instead is not None:
             steps.pop()
             current = instead
@@ -248,27 +247,6 @@ def _settled(
     return settled, shares, following
 
 
-def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
-    """The re-tuned axle with traces of all effects, those that cannot move anything left out."""
-    names: list[str] = []
-    columns: list[FloatArray] = []
-    for s in screened:
-        if s.failed or EFFECTS[s.hypothesis.effect].on_rig:
-            continue
-        for size, column in zip(s.hypothesis.sizes, s.columns.T, strict=True):
-            if not size.shape and np.linalg.norm(column) * TRACE_SD > TRACE_SEEN:
-                names.append(s.hypothesis.name)
-                columns.append(TRACE_SD * column)
-    if not names:
-        return tuned
-    sides = tuned.model.nuisances or LinearNuisances(np.zeros((tuned.residual.size, 0)))
-    model = replace(tuned.model, nuisances=sides.with_traces(names, np.array(columns).T))
-    z = np.concatenate([tuned.z, np.zeros(len(names))])
-    jacobian = model.jacobian(tuned.jacobian.own)
-    state = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
-    return chord_fit(state, model)
-
-
 def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit at its own optimum, on derivatives taken there.
 
@@ -277,15 +255,6 @@ def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """
     (refit,) = workers.fits([FitStart(current.model, current.z, current)], "settling")
     return refit or current
-
-
-def tune(model: EffectModel) -> Fit:
-    """The best axle without a further effect, the differences between its sides linear about it."""
-    first = fit(model, model.centre)
-    sides = model.scatter * side_differences(model.axle_at(first.z), model.space, model.likelihood)
-    sided = replace(model, nuisances=LinearNuisances(sides))
-    start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
-    return fit(sided, start, known=known_columns(first, sided), aged=0.0)
 
 
 def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list[Screened]:

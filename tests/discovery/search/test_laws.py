@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import ClassVar
 
@@ -12,12 +11,9 @@ import pytest
 import doe_kc.discovery.search.laws as laws_module
 from doe_kc.axle.places import places_of
 from doe_kc.axle_file import read_axle
-from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, amplitude_estimates
-from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.laws import (
-    free_laws_instead,
     open_laws,
     other_laws,
     with_best_laws,
@@ -26,54 +22,12 @@ from doe_kc.discovery.search.laws import (
     with_law,
     with_open_laws,
 )
-from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.thresholds import FREE_TRAVELS, NOISE_CHANCE
-from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.discovery.thresholds import FREE_TRAVELS
 from doe_kc.effects import EFFECTS
 from doe_kc.examples import example_folder
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
-
-
-class Answers(DiscoveryWorkers):
-    """Gives the fit of the start itself, better or worse by some cost, and notes the laws asked for."""
-
-    def __init__(self, cost: float, best: str = "") -> None:
-        """best: a law whose cost is 100 less."""
-        super().__init__()
-        self.cost, self.best, self.laws = cost, best, [""] * 0
-
-    def fits(
-        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
-    ) -> list[Fit | None]:
-        laws = [
-            next(h.law for h in s.model.members if len(EFFECTS[h.effect].variants(h)) > 1) for s in starts
-        ]
-        self.laws += laws
-        return [
-            self._fit(s.model, s.z, s.near, self.cost - (100.0 if law == self.best != "" else 0.0))
-            for s, law in zip(starts, laws, strict=True)
-        ]
-
-    def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
-        more = z.size - found.z.size
-        jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
-        return replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + cost)
-
-
-def agreeing() -> Fit:
-    return discovery("friction").search.with_law_discrepancy
-
-
-def records() -> Likelihood:
-    """The records' own errors."""
-    return discovery("friction").search.tuned.model.likelihood
-
-
-def disagreeing() -> Fit:
-    residual = agreeing().residual.copy()
-    residual[:60] += 5.0
-    return replace(agreeing(), residual=residual)
+from tests.discovery.search.law_answers import Answers, agreeing, beside_a_hub, disagreeing, records
 
 
 def test_a_law_has_its_default_numbers_and_its_own_at_typical() -> None:
@@ -181,50 +135,6 @@ def test_a_free_backbone_that_leaves_something_begins_from_other_travels(best: f
     asked.laws.clear()
     explained = agreeing()
     assert with_free_laws(explained, records(), asked) is explained and not asked.laws
-
-
-@pytest.mark.parametrize(("best", "freed"), [("backbone", True), ("", False)])
-def test_where_noise_explains_what_remains_a_free_law_comes_before_an_effect(best: str, freed: bool) -> None:
-    """A steering friction of two stages was answered by a mount of the rack beside it, and 978 N for 383."""
-    (hub,) = library("hub_compliance")
-    further = HypothesisFit(hub, beside_a_hub(), 12.0, 3.0)
-    asked, own = Answers(0.0, best), agreeing().model.likelihood
-    found = free_laws_instead(agreeing(), further, own, asked)
-    assert asked.laws == ["backbone", ""], "both are refitted, the effect beside the law that it came in with"
-    assert (found is not None and found.model.members[0].law == "backbone") is freed
-
-
-def test_a_free_law_comes_first_where_one_contrast_alone_remains() -> None:
-    """A steering friction of two stages, 408 N, took a mount of the rack and a strut's friction into its set:
-    each explained a little of what its law lacked, as long as noise did not."""
-    found, asked = agreeing(), Answers(0.0, "backbone")
-    known = found.model.contrasts
-    tilt = next(i for i, c in enumerate(known.names) if c.load_case == "steer" and c.shape == "loop tilt")
-    row = known.rows[:, [tilt]].toarray()[:, 0]
-    one = replace(found, residual=0.5 * found.residual + 9.0 * row)
-    assert one.residual_map.chance < NOISE_CHANCE and one.residual_map.mean_square < 1.0
-    (hub,) = library("hub_compliance")
-    freed = free_laws_instead(one, HypothesisFit(hub, beside_a_hub(), 12.0), found.model.likelihood, asked)
-    assert freed is not None and freed.model.members[0].law == "backbone"
-
-
-def test_a_free_law_does_not_replace_an_effect_where_more_is_missing_or_no_friction_is_there() -> None:
-    (hub,) = library("hub_compliance")
-    further, asked = HypothesisFit(hub, beside_a_hub(), 12.0), Answers(-100.0)
-    own = agreeing().model.likelihood
-    assert free_laws_instead(disagreeing(), further, own, asked) is None
-    alone = discovery("named").search.with_law_discrepancy
-    assert free_laws_instead(alone, further, own, asked) is None
-    assert not asked.laws
-
-
-def beside_a_hub() -> Fit:
-    """The friction by its default law, and a hub of no size, which moves nothing."""
-    (hub,) = library("hub_compliance")
-    found, none = agreeing(), np.zeros(len(hub.sizes))
-    model, z = found.model.extended(hub), np.append(found.z, none)
-    own = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
-    return replace(found, model=model, z=z, jacobian=model.jacobian(own))
 
 
 @pytest.mark.parametrize(("cost", "free"), [(-50.0, True), (19.0, True), (21.0, False)])

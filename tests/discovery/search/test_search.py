@@ -41,6 +41,14 @@ def test_a_step_whose_laws_gain_nothing_is_told_once(monkeypatch: pytest.MonkeyP
     assert [step.accepted for step in found.steps] == [True, False]
 
 
+def test_an_effect_that_a_law_makes_needless_does_not_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    monkeypatch.setattr(search_module, "needless_beside_laws", lambda *_: asked.append(1) or len(asked) > 1)
+    found = search(model("pair"), library("hub_compliance", "strut_bending"), DiscoveryWorkers())
+    assert len(found.with_law_discrepancy.model.members) == 1, "the car has both"
+    assert [step.accepted for step in found.steps] == [True, False] and not found.steps[-1].added
+
+
 def test_refits_that_lose_are_told_without_their_derivatives() -> None:
     """The car has another effect beside the compliance, so that every effect of the library is refitted."""
     found = search(model("pair"), library("hub_compliance", "steering_ratio"), DiscoveryWorkers())

@@ -1,0 +1,48 @@
+"""What the search begins with: the axle re-tuned without any effect, and traces of all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
+from doe_kc.discovery.linear_nuisances import LinearNuisances
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.nuisances import side_differences
+from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.thresholds import TRACE_SD, TRACE_SEEN
+from doe_kc.effects import EFFECTS
+from doe_kc.ground.typing import FloatArray
+
+
+def tune(model: EffectModel) -> Fit:
+    """The best axle without a further effect, the differences between its sides linear about it."""
+    first = fit(model, model.centre)
+    sides = model.scatter * side_differences(model.axle_at(first.z), model.space, model.likelihood)
+    sided = replace(model, nuisances=LinearNuisances(sides))
+    start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
+    return fit(sided, start, known=known_columns(first, sided), aged=0.0)
+
+
+def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
+    """The re-tuned axle with traces of all effects, those that cannot move anything left out."""
+    names: list[str] = []
+    columns: list[FloatArray] = []
+    for s in screened:
+        if s.failed or EFFECTS[s.hypothesis.effect].on_rig:
+            continue
+        for size, column in zip(s.hypothesis.sizes, s.columns.T, strict=True):
+            if not size.shape and np.linalg.norm(column) * TRACE_SD > TRACE_SEEN:
+                names.append(s.hypothesis.name)
+                columns.append(TRACE_SD * column)
+    if not names:
+        return tuned
+    sides = tuned.model.nuisances or LinearNuisances(np.zeros((tuned.residual.size, 0)))
+    model = replace(tuned.model, nuisances=sides.with_traces(names, np.array(columns).T))
+    z = np.concatenate([tuned.z, np.zeros(len(names))])
+    jacobian = model.jacobian(tuned.jacobian.own)
+    state = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
+    return chord_fit(state, model)

@@ -1,0 +1,67 @@
+"""Fits of laws without fitting: what the tests of laws ask."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
+from doe_kc.ground.typing import FloatArray
+from tests.discovery.cases import discovery, library
+
+
+class Answers(DiscoveryWorkers):
+    """Gives the fit of the start itself, better or worse by some cost, and notes the laws asked for."""
+
+    def __init__(self, cost: float, best: str = "") -> None:
+        """best: a law whose cost is 100 less."""
+        super().__init__()
+        self.cost, self.best, self.laws = cost, best, [""] * 0
+
+    def fits(
+        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+    ) -> list[Fit | None]:
+        laws = [
+            next(h.law for h in s.model.members if len(EFFECTS[h.effect].variants(h)) > 1) for s in starts
+        ]
+        self.laws += laws
+        return [
+            self._fit(s.model, s.z, s.near, self.cost - (100.0 if law == self.best != "" else 0.0))
+            for s, law in zip(starts, laws, strict=True)
+        ]
+
+    def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
+        more = z.size - found.z.size
+        jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
+        return replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + cost)
+
+
+def agreeing() -> Fit:
+    return discovery("friction").search.with_law_discrepancy
+
+
+def records() -> Likelihood:
+    """The records' own errors."""
+    return discovery("friction").search.tuned.model.likelihood
+
+
+def disagreeing() -> Fit:
+    residual = agreeing().residual.copy()
+    residual[:60] += 5.0
+    return replace(agreeing(), residual=residual)
+
+
+def beside_a_hub() -> Fit:
+    """The friction by its default law, and a hub of no size, which moves nothing."""
+    (hub,) = library("hub_compliance")
+    found, none = agreeing(), np.zeros(len(hub.sizes))
+    model, z = found.model.extended(hub), np.append(found.z, none)
+    own = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
+    return replace(found, model=model, z=z, jacobian=model.jacobian(own))

@@ -1,0 +1,83 @@
+"""Laws before further effects: a friction's takes its place, a compliance's keeps it out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.laws_first import free_laws_instead, needless_beside_laws
+from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.thresholds import NOISE_CHANCE, PROPOSAL_GAIN
+from doe_kc.ground.typing import FloatArray
+from tests.discovery.cases import discovery, library
+from tests.discovery.search.law_answers import Answers, agreeing, beside_a_hub, disagreeing
+
+
+@pytest.mark.parametrize(("best", "freed"), [("backbone", True), ("", False)])
+def test_where_noise_explains_what_remains_a_free_law_comes_before_an_effect(best: str, freed: bool) -> None:
+    """A steering friction of two stages was answered by a mount of the rack beside it, and 978 N for 383."""
+    (hub,) = library("hub_compliance")
+    further = HypothesisFit(hub, beside_a_hub(), 12.0, 3.0)
+    asked, own = Answers(0.0, best), agreeing().model.likelihood
+    found = free_laws_instead(agreeing(), further, own, asked)
+    assert asked.laws == ["backbone", ""], "both are refitted, the effect beside the law that it came in with"
+    assert (found is not None and found.model.members[0].law == "backbone") is freed
+
+
+def test_a_free_law_comes_first_where_one_contrast_alone_remains() -> None:
+    """A steering friction of two stages, 408 N, took a mount of the rack and a strut's friction into its set:
+    each explained a little of what its law lacked, as long as noise did not."""
+    found, asked = agreeing(), Answers(0.0, "backbone")
+    known = found.model.contrasts
+    tilt = next(i for i, c in enumerate(known.names) if c.load_case == "steer" and c.shape == "loop tilt")
+    row = known.rows[:, [tilt]].toarray()[:, 0]
+    one = replace(found, residual=0.5 * found.residual + 9.0 * row)
+    assert one.residual_map.chance < NOISE_CHANCE and one.residual_map.mean_square < 1.0
+    (hub,) = library("hub_compliance")
+    freed = free_laws_instead(one, HypothesisFit(hub, beside_a_hub(), 12.0), found.model.likelihood, asked)
+    assert freed is not None and freed.model.members[0].law == "backbone"
+
+
+def test_a_free_law_does_not_replace_an_effect_where_more_is_missing_or_no_friction_is_there() -> None:
+    (hub,) = library("hub_compliance")
+    further, asked = HypothesisFit(hub, beside_a_hub(), 12.0), Answers(-100.0)
+    own = agreeing().model.likelihood
+    assert free_laws_instead(disagreeing(), further, own, asked) is None
+    alone = discovery("named").search.with_law_discrepancy
+    assert free_laws_instead(alone, further, own, asked) is None
+    assert not asked.laws
+
+
+@pytest.mark.parametrize(
+    ("law", "effect", "needless"),
+    [(-20.0, 0.0, True), (-20.0, -20.0, False), (10.0, 0.0, False)],
+    ids=["the law says all", "the effect says something beside it", "the law says less"],
+)
+def test_a_weak_effect_that_a_compliance_s_law_makes_needless(
+    law: float, effect: float, needless: bool
+) -> None:
+    """A clamp that softened by a law of its own was answered by a mount of the rack beside it."""
+    found = discovery("named").search.with_effects
+    own = found.model.likelihood
+    (mount,) = library("rack_mount_compliance")
+    none = np.zeros(len(mount.sizes))
+    model, z = found.model.extended(mount), np.append(found.z, none)
+    known = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
+    beside = replace(found, model=model, z=z, jacobian=model.jacobian(known))
+
+    class Bent(Answers):
+        def _fit(self, model: EffectModel, z: FloatArray, near: Fit, cost: float) -> Fit:
+            return super()._fit(model, z, near, cost + (effect if len(model.members) > 1 else 0.0))
+
+    weak, asked = HypothesisFit(mount, beside, 7.0), Bent(law)
+    assert needless_beside_laws(found, weak, own, asked) is needless
+    assert asked.laws == ["stiffening"] * 2
+    asked.laws.clear()
+    assert not needless_beside_laws(found, replace(weak, gain=PROPOSAL_GAIN), own, asked)
+    many = replace(found, residual=3.0 * found.residual)
+    assert not needless_beside_laws(many, weak, own, asked), "more than single contrasts remain"
+    assert not asked.laws
