@@ -12,8 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.discovery.fit import Fit, last_member
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
@@ -28,7 +27,8 @@ from doe_kc.discovery.search.refits import (
 )
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import BEYOND_DOUBT, NAME_ALWAYS_LEVEL
+from doe_kc.discovery.thresholds import NAME_ALWAYS_LEVEL
+from doe_kc.discovery.verdict.removals import Removal, ceiling_of, in_groups, own_errors, removals
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
@@ -127,20 +127,31 @@ def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers)
     """
     if _is_first(search):
         return (_from_first_step(search, temper, workers),)
-    bases, withouts = _removals(search, workers)
-    losses = [base.evidence - w.evidence for base, w in zip(bases, withouts, strict=True)]
+    taken_out = removals(search, workers)
+    most = max((removal.loss for removal in taken_out), default=0.0)
+    out: list[Alternatives] = []
+    for group in in_groups(taken_out):
+        out += _compared(search, group, most, temper, workers)
+    return tuple(out)
+
+
+def _compared(
+    search: EffectSearch, group: Sequence[Removal], most: float, temper: float, workers: DiscoveryWorkers
+) -> list[Alternatives]:
+    """The alternatives of some members; most: ln evidence that the costliest removal of all loses."""
+    fits = workers.fits([removal.start for removal in group], "taking effects out")
     places = [
-        _place(search, base, without, decoy=loss == max(losses))
-        for base, without, loss in zip(bases, withouts, losses, strict=True)
+        _place(search, removal.base, fit or search.tuned, decoy=removal.loss == most)
+        for removal, fit in zip(group, fits, strict=True)
     ]
     places = _on_true_solutions(places, workers)
-    rivals = [refit_starts(p.without, p.near, _ceiling(p.base)) for p in places]
+    rivals = [refit_starts(p.without, p.near, ceiling_of(p.base)) for p in places]
     every = [start for own in rivals for start in own]
     refits = iter(workers.fits(every, "refitting rivals", derivatives=lambda _: False))
-    return tuple(
+    return [
         _place_comparison(place, [next(refits) for _ in own], search, temper)
         for place, own in zip(places, rivals, strict=True)
-    )
+    ]
 
 
 @dataclass(frozen=True)
@@ -159,45 +170,20 @@ class _Place:
     """Its rivals that are worth a refit."""
 
 
-def _own_errors(search: EffectSearch, member: Hypothesis) -> Likelihood:
-    """Errors of the records that do not grant the member's own law."""
-    return search.without_own_discrepancy.get(member.name, search.with_law_discrepancy.model.likelihood)
-
-
-def _removals(search: EffectSearch, workers: DiscoveryWorkers) -> tuple[list[Fit], list[Fit]]:
-    """Of every member of the last set, in its own errors: the set with it as the last one, without
-    derivatives, and the set without it, fitted as far as anything turns on it."""
-    final = search.with_law_discrepancy
-    bases, starts = [], []
-    for member in final.model.members:
-        near = refit_to_errors(final, _own_errors(search, member))
-        base = last_member(near, member).without_derivatives
-        z = base.z[: base.z.size - len(member.sizes)]
-        bases.append(base)
-        starts.append(FitStart(near.model.without(member), z, near, _ceiling(base)))
-    fits = workers.fits(starts, "taking effects out")
-    return bases, [w or search.tuned for w in fits]  # no equilibrium without it: nothing in the model at all
-
-
-def _ceiling(base: Fit) -> float:
-    """Cost above which another set is out of the question."""
-    return base.cost + 2.0 * BEYOND_DOUBT
-
-
 def _is_first(search: EffectSearch) -> bool:
     """Whether the first step began without effects and all sets since have one alone, in the same errors."""
     members = search.with_law_discrepancy.model.members
     before = search.first.before.model
     if len(members) != 1 or before.members or not search.first.has_derivatives:
         return False
-    after = _own_errors(search, members[0])
+    after = own_errors(search, members[0])
     return all(a is b for a, b in zip(before.likelihood.curves, after.curves, strict=True))
 
 
 def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> Alternatives:
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
     first, final = search.first, search.with_law_discrepancy
-    base = refit_to_errors(final, _own_errors(search, final.model.members[0]))
+    base = refit_to_errors(final, own_errors(search, final.model.members[0]))
     own = _own(base, first.before, search.prior)
     kept = [
         t

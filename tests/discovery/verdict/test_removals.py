@@ -1,0 +1,49 @@
+"""Effects taken out of the last set: what each is worth, a few of them in memory at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import pytest
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.discovery.verdict import removals as removals_module
+from doe_kc.discovery.verdict.alternatives import alternatives
+from doe_kc.discovery.verdict.removals import in_groups, removals
+from doe_kc.discovery.workers import DiscoveryWorkers
+from tests.discovery.cases import discovery
+
+
+class Counted(DiscoveryWorkers):
+    """Notes how many fits were asked for at once, and whether those kept their derivatives."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.asked: list[tuple[int, bool]] = []
+
+    def fits(
+        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+    ) -> list[Fit | None]:
+        found = super().fits(starts, what, derivatives=derivatives)
+        if what == "taking effects out":
+            self.asked.append((len(starts), any(f is not None and derivatives(f) for f in found)))
+        return found
+
+
+def test_members_are_taken_a_few_at_a_time() -> None:
+    assert in_groups([1, 2, 3, 4, 5, 6, 7]) == [[1, 2, 3], [4, 5, 6], [7]]
+    assert in_groups([]) == []
+
+
+def test_each_loses_what_its_comparison_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    search, workers = discovery("pair").search, Counted()
+    monkeypatch.setattr(removals_module, "AT_ONCE", 1)
+    found = removals(search, workers)
+    assert [r.base.model.members[-1] for r in found] == list(search.with_law_discrepancy.model.members)
+    assert workers.asked == [(1, False)] * 2
+    compared = alternatives(search, 1.0, workers)
+    assert [one.loss for one in compared] == pytest.approx([r.loss for r in found])
+    assert workers.asked[4:] == [(1, True)] * 2, "one after the other, from the cache of results"
+    at_once = alternatives(search, 1.0, DiscoveryWorkers())
+    assert [one.loss for one in at_once] == pytest.approx([r.loss for r in found], rel=1e-12)
