@@ -26,12 +26,7 @@ from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
 from doe_kc.discovery.search.refits import more_than_trace
-from doe_kc.discovery.thresholds import (
-    FREE_SHAPE_LOSS,
-    FREE_TRAVELS,
-    LAW_WINDOW,
-    NOISE_CHANCE,
-)
+from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, FREE_TRAVELS, LAW_WINDOW, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects._friction import SHARES, TRAVEL

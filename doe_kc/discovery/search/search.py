@@ -32,11 +32,7 @@ from doe_kc.discovery.search.laws_first import free_laws_instead, needless_besid
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import (
-    ACCEPTED_ODDS,
-    EFFECTS_MOST,
-    MOST_STEPS,
-)
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS, EFFECTS_MOST, MOST_STEPS
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
