@@ -14,7 +14,8 @@ Controls = dict[str, float | FloatArray]
 """Control name -> one value for all steps or one a step; controls that are not named are zero.
 
 pad_L, pad_R (mm), wc_z_L, wc_z_R (mm), preload (N), roll (rad), rack (mm), lateral_*, drive_*, brake_* (N),
-lateral_offset (mm); switches 0/1: hold_wheel_centre, hold_load, hold_height, bilateral, friction.
+lateral_offset (mm); switches 0/1: hold_wheel_centre, hold_load, hold_height, bilateral, load_case
+(the solver's own: 1 in a load case, 0 at rest).
 """
 
 REVERSAL_SHARES = (0.5, 0.2)
