@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +19,11 @@ from doe_kc.effects import EFFECTS
 SHARE = (0.02, 0.05)
 """Of the typical size."""
 MEAN = sum(SHARE) / 2
+SIZE_SD = (SHARE[1] - SHARE[0]) / math.sqrt(12.0) / MEAN
+"""Relative standard deviation of their sizes, from car to car."""
+TRAVEL_SD = 0.45
+"""Of the logarithm of a friction's presliding travel, drawn evenly over a factor of 4 to 4.8."""
+TRAVEL = "presliding_mm"
 TYPICAL = 0.02
 """1/mm^2, progression of the bushings of other axle types."""
 PRESENT = (
@@ -39,6 +47,25 @@ def clutter(axle: Axle, rng: np.random.Generator, but: Collection[str]) -> tuple
     drawn = [CATALOGUE[ident](rng, float(rng.uniform(*SHARE)), axle) for ident in present]
     drawn += [_preload(rng, axle), _progression(rng, axle)]
     return tuple(h for h in drawn if h.id not in but)
+
+
+def unlike(small: Hidden) -> list[Hidden]:
+    """The small effect as it is in a car like this one: larger by one standard deviation, and a friction of a
+    longer travel. Nobody knows either of a car."""
+    larger = replace(small, options={k: _larger(small, k, v) for k, v in small.options.items()})
+    if TRAVEL not in small.options:
+        return [larger]
+    longer = {**small.options, TRAVEL: small.options[TRAVEL] * math.exp(TRAVEL_SD)}
+    return [larger, replace(small, options=longer)]
+
+
+def _larger(small: Hidden, option: str, value: Any) -> Any:
+    if isinstance(value, list):  # of a progression beyond that of the axle, of which there is some
+        added = [small.parameters[f"{option}[{i}]"] for i in range(len(value))]
+        return [v + SIZE_SD * more for v, more in zip(value, added, strict=True)]
+    if option in small.stiff:
+        return value / (1.0 + SIZE_SD)
+    return value * (1.0 + SIZE_SD) if option in small.parameters else value
 
 
 def _preload(rng: np.random.Generator, axle: Axle) -> Hidden:

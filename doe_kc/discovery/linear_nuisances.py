@@ -67,6 +67,11 @@ class LinearNuisances:
         """The same and further traces (M, k)."""
         return LinearNuisances(np.hstack([self.columns, columns]), (*self.traces, *names))
 
+    def with_sides(self, columns: FloatArray) -> LinearNuisances:
+        """The same with other columns (M, k) of the differences between the sides."""
+        traces = self.columns[:, self.count - len(self.traces) :]
+        return LinearNuisances(np.hstack([columns, traces]), self.traces)
+
     @property
     def names_only(self) -> LinearNuisances:
         """The same nuisances without their columns: how many there are, and of what."""

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.screening.screen import rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
-from doe_kc.discovery.search.laws import other_laws, with_law
-from doe_kc.discovery.search.proposals import LinearSets
+from doe_kc.discovery.search.laws import open_laws, other_laws, with_law
+from doe_kc.discovery.search.proposals import LinearSets, SetProposal
+from doe_kc.discovery.search.refits import set_refits
 from doe_kc.discovery.search.search import EffectSearch, search_from
-from doe_kc.discovery.thresholds import ACCEPTED_ODDS, NOISE_CHANCE
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS, HOPELESS_SHARE, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -27,29 +27,54 @@ def with_exchanged_laws(
 ) -> EffectSearch:
     """The search, gone on from its last set with another law of a friction where that leads to a better one.
 
-    Where noise explains what remains no law is asked for.
+    Where noise explains what remains only frictions are asked for another law that the search gave a free
+    one: that can take up an effect which came too late. A steering friction of 412 N beside a mount of the
+    rack of 3570 N/mm was 237 N without the mount, 40 of ln evidence behind Prandtl-Iwan's law with it.
     """
-    if search.with_law_discrepancy.residual_map.chance >= NOISE_CHANCE:
-        return search
+    explained = search.with_law_discrepancy.residual_map.chance >= NOISE_CHANCE
     last = search.with_effects
     for member in last.model.members:
+        if explained and member.name not in _freed(search):
+            continue
         starts = [FitStart(*with_law(last, member, law), last) for law in other_laws(member)]
         refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
-        gains = [f.evidence + promise(search, f) - search.evidence for f in refits]
-        if max(gains, default=0.0) <= ACCEPTED_ODDS:
+        sets = [_best_set(search, f, workers) for f in refits]
+        best, gain = max(sets, key=lambda one: one[1], default=(last, 0.0))
+        if gain <= ACCEPTED_ODDS:
             continue
-        best = refits[int(np.argmax(gains))]
         changed = next(h for h in best.model.members if h.name == member.name)
         start = FitStart(best.model, best.z, best)
-        other = search_from(search, start, changed, max(gains), library, workers)
+        other = search_from(search, start, changed, gain, library, workers)
         if other.log_posterior > search.log_posterior:
             return other
     return search
 
 
-def promise(search: EffectSearch, fit: Fit) -> float:
-    """ln posterior odds of the most probable set to first order about a fit, against its own; at least 0."""
+def _freed(search: EffectSearch) -> set[str]:
+    """Names of the frictions whose law the search itself gave a free shape."""
+    last = search.steps[-1].members
+    return {h.name for h in last if h.law and EFFECTS[h.effect].frictional and not open_laws(h)}
+
+
+def _best_set(search: EffectSearch, fit: Fit, workers: DiscoveryWorkers) -> tuple[Fit, float]:
+    """Of a fit by another law and of the set that it asks for the better one, with ln of the posterior odds
+    against the last set, of the fit with what it promises to first order.
+
+    The set itself is refitted where the promise alone is too little, by no more than half of it.
+    """
+    gain = fit.evidence - search.evidence
+    asked = proposed(search, fit)
+    if asked is None or gain + asked.gain > ACCEPTED_ODDS:
+        return fit, gain + (asked.gain if asked else 0.0)
+    if gain + (1.0 + HOPELESS_SHARE) * asked.gain <= ACCEPTED_ODDS:
+        return fit, gain
+    trials = set_refits(fit, [asked], search.prior, workers)
+    return next(((t.fit, gain + t.gain) for t in trials if t.gain > 0.0), (fit, gain))
+
+
+def proposed(search: EffectSearch, fit: Fit) -> SetProposal | None:
+    """The most probable set to first order about a fit; None where that is its own."""
     errors = search.with_law_discrepancy.model.likelihood, fit.model.likelihood
     there = [s for s in search.screened if compatible(fit.model, s.hypothesis)]
     sets = LinearSets.of(fit, rewhitened_screenings(there, *errors), search.prior)
-    return max([0.0, *(p.gain for p in sets.proposals()[:1])])
+    return next((p for p in sets.proposals()[:1] if p.gain > 0.0), None)

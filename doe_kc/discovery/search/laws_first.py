@@ -9,38 +9,40 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
-from doe_kc.discovery.search.laws import best_fit, frictions, open_laws, with_most_numbers
+from doe_kc.discovery.search.laws import frictions, open_laws, with_best_law, with_most_numbers
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS, FEW_CONTRASTS, NOISE_CHANCE, PROPOSAL_GAIN
 from doe_kc.discovery.workers import DiscoveryWorkers
 
 
-def free_laws_instead(
+def laws_instead(
     current: Fit, further: HypothesisFit, own: Likelihood, workers: DiscoveryWorkers
 ) -> Fit | None:
-    """The fit with the laws of most numbers of its frictions, where they say more of the records than a
-    further effect would; else None. own: the records' own errors.
+    """The fit with the best laws of its frictions, where they say more of the records than a further effect
+    would; else None. own: the records' own errors.
 
     Asked where noise explains what remains, but for single contrasts, as it does once the discrepancy of a
     friction's law is among the errors. An effect that comes in then may be what that law lacks: a steering
     friction of two stages, 383 N, became one of 978 N beside a rack mount of 18 000 N/mm.
     """
-    members = frictions(current)
-    if not _few_contrasts(current) or not any(map(open_laws, members)):
+    members = [h for h in frictions(current) if open_laws(h)]
+    if not _few_contrasts(current) or not members:
         return None
     exact, rival = refit_to_errors(current, own), refit_to_errors(further.fit, own)
-    free = best_fit(with_most_numbers(exact, members), workers)
+    best = exact
+    for member in members:
+        best = with_best_law(best, member, workers)
     (added,) = workers.fits([FitStart(rival.model, rival.z, rival)], "opening laws")
-    if free is None or (added is not None and free.evidence <= added.evidence + further.prior):
+    if best is exact or (added is not None and best.evidence <= added.evidence + further.prior):
         return None
-    return free
+    return best
 
 
 def needless_beside_laws(
     current: Fit, further: HypothesisFit, own: Likelihood, workers: DiscoveryWorkers
 ) -> bool:
     """Whether a weak further effect brings nothing beside the laws of most numbers of the set's compliances,
-    which say more of the records than it. own: the records' own errors. Asked as `free_laws_instead`.
+    which say more of the records than it. own: the records' own errors. Asked as `laws_instead`.
 
     A clamp of 4000 Nm/deg that softened by a law of its own took a rack mount of 5700 N/mm into its set: 60
     of ln evidence in the records' own errors, where the law of the clamp had 840, and nothing beside it.

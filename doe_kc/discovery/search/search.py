@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
-from doe_kc.discovery.search.baseline import tune, with_clutter
+from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
 from doe_kc.discovery.search.law_discrepancy import (
@@ -28,7 +28,7 @@ from doe_kc.discovery.search.laws import (
     with_free_shapes,
     with_open_laws,
 )
-from doe_kc.discovery.search.laws_first import free_laws_instead, needless_beside_laws
+from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -156,7 +156,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         before = current.model.likelihood
         instead = None
         if decision.accepted:
-            instead = free_laws_instead(current, decision.trials[0], model.likelihood, workers)
+            instead = laws_instead(current, decision.trials[0], model.likelihood, workers)
             needless = instead is None and needless_beside_laws(
                 current, decision.trials[0], model.likelihood, workers
             )
@@ -232,6 +232,7 @@ def _settled(
     before: the errors of the set before it. own: the model without effects, in the records' own errors.
     without_own: of the set before it.
     """
+    current = with_sides_anew(current)
     current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
     exact = refit_to_errors(own_loops(current, own.axle), own.likelihood)
     signals = effect_signals(exact)

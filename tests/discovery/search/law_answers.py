@@ -16,6 +16,9 @@ from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
+CLOSED = ["iwan", "duhem", "lognormal"]
+"""Closed laws of a friction beside its default one."""
+
 
 class Answers(DiscoveryWorkers):
     """Gives the fit of the start itself, better or worse by some cost, and notes the laws asked for."""
@@ -38,8 +41,9 @@ class Answers(DiscoveryWorkers):
         ]
 
     def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
-        more = z.size - found.z.size
-        jacobian = model.jacobian(np.hstack([found.jacobian.own, np.zeros((found.residual.size, more))]))
+        more, known = z.size - found.z.size, found.jacobian.own
+        none = np.zeros((found.residual.size, max(more, 0)))  # that are the last where a law has fewer
+        jacobian = model.jacobian(np.hstack([known[:, : known.shape[1] + min(more, 0)], none]))
         return replace(found, model=model, z=z, jacobian=jacobian, cost=found.cost + cost)
 
 

@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from doe_kc.discovery.search.baseline import tune, with_clutter
-from doe_kc.discovery.thresholds import TRACE_SD, TRACE_SEEN
+from doe_kc.discovery.fit import cost_of
+from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew
+from doe_kc.discovery.thresholds import SIDE_ANGLE, TRACE_SD, TRACE_SEEN
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.curve_set import curve_set
+from doe_kc.solver.suite import solve
 from tests.discovery.cases import library, model
 
 
@@ -14,6 +20,40 @@ def test_the_axle_is_tuned_with_sides_that_differ() -> None:
     tuned = tune(model("pair"))
     assert tuned.converged and not tuned.model.members
     assert tuned.cost < np.inf and tuned.z.size > model("pair").centre.size
+
+
+def test_sides_are_linear_about_the_axle_with_its_effects() -> None:
+    """Against differences of solutions: what unequal camber makes of the loops of a strut friction too."""
+    bare = tune(model("pair"))
+    (friction,) = library("strut_friction")
+    beside, z = bare.model.extended(friction), np.append(bare.z, [1.0, 0.0])
+    known = np.hstack([bare.jacobian.own, np.zeros((bare.residual.size, 2))])
+    before = replace(bare, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(known))
+    found = with_sides_anew(before)
+    assert bare.model.nuisances is not None and found.model.nuisances is not None
+    sides, anew = bare.model.nuisances.columns, found.model.nuisances.columns
+    assert sides.shape == anew.shape
+    axle = beside.axle_at(z)
+    there = [v.path for v in beside.space.variables if f"{v.path}@R" in axle.values]
+    camber = there.index("static.camber")
+
+    def unlike(sd: float) -> FloatArray:
+        half = 0.5 * sd * SIDE_ANGLE
+        moved = {f"static.camber@{of}": axle.values[f"static.camber@{of}"] for of in "LR"}
+        moved["static.camber@L"] -= half
+        moved["static.camber@R"] += half
+        return beside.likelihood.residual(curve_set(solve(axle.changed(moved))), np.zeros(0))
+
+    change = 0.5 * (unlike(1.0) - unlike(-1.0))
+    assert np.linalg.norm(anew[:, camber] - change) < 0.01 * np.linalg.norm(change)
+    assert np.linalg.norm(sides[:, camber] - change) > 0.2 * np.linalg.norm(change)
+    assert found.cost <= cost_of(found.model, z, found.model.residual(z))
+
+
+def test_sides_that_are_not_known_yet_stay_so() -> None:
+    bare = tune(model("pair"))
+    alone = replace(bare, model=replace(bare.model, nuisances=None))
+    assert with_sides_anew(alone) is alone
 
 
 def test_traces_are_of_the_sizes_of_effects_that_move_something() -> None:

@@ -9,23 +9,25 @@ import pytest
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.laws_first import free_laws_instead, needless_beside_laws
+from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.thresholds import NOISE_CHANCE, PROPOSAL_GAIN
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
-from tests.discovery.search.law_answers import Answers, agreeing, beside_a_hub, disagreeing
+from tests.discovery.search.law_answers import CLOSED, Answers, agreeing, beside_a_hub, disagreeing
 
 
-@pytest.mark.parametrize(("best", "freed"), [("backbone", True), ("", False)])
-def test_where_noise_explains_what_remains_a_free_law_comes_before_an_effect(best: str, freed: bool) -> None:
+@pytest.mark.parametrize(("best", "instead"), [("iwan", True), ("", False)])
+def test_where_noise_explains_what_remains_another_law_comes_before_an_effect(
+    best: str, instead: bool
+) -> None:
     """A steering friction of two stages was answered by a mount of the rack beside it, and 978 N for 383."""
     (hub,) = library("hub_compliance")
     further = HypothesisFit(hub, beside_a_hub(), 12.0, 3.0)
     asked, own = Answers(0.0, best), agreeing().model.likelihood
-    found = free_laws_instead(agreeing(), further, own, asked)
-    assert asked.laws == ["backbone", ""], "both are refitted, the effect beside the law that it came in with"
-    assert (found is not None and found.model.members[0].law == "backbone") is freed
+    found = laws_instead(agreeing(), further, own, asked)
+    assert asked.laws == [*CLOSED, ""], "all are refitted, the effect beside the law that it came in with"
+    assert (found is not None and found.model.members[0].law == best) is instead
 
 
 def test_a_free_law_comes_first_where_one_contrast_alone_remains() -> None:
@@ -38,7 +40,7 @@ def test_a_free_law_comes_first_where_one_contrast_alone_remains() -> None:
     one = replace(found, residual=0.5 * found.residual + 9.0 * row)
     assert one.residual_map.chance < NOISE_CHANCE and one.residual_map.mean_square < 1.0
     (hub,) = library("hub_compliance")
-    freed = free_laws_instead(one, HypothesisFit(hub, beside_a_hub(), 12.0), found.model.likelihood, asked)
+    freed = laws_instead(one, HypothesisFit(hub, beside_a_hub(), 12.0), found.model.likelihood, asked)
     assert freed is not None and freed.model.members[0].law == "backbone"
 
 
@@ -46,9 +48,9 @@ def test_a_free_law_does_not_replace_an_effect_where_more_is_missing_or_no_frict
     (hub,) = library("hub_compliance")
     further, asked = HypothesisFit(hub, beside_a_hub(), 12.0), Answers(-100.0)
     own = agreeing().model.likelihood
-    assert free_laws_instead(disagreeing(), further, own, asked) is None
+    assert laws_instead(disagreeing(), further, own, asked) is None
     alone = discovery("named").search.with_law_discrepancy
-    assert free_laws_instead(alone, further, own, asked) is None
+    assert laws_instead(alone, further, own, asked) is None
     assert not asked.laws
 
 
