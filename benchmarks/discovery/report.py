@@ -70,9 +70,9 @@ def lines(found: Sequence[Score], run: Run, followed: Sequence[Score] = ()) -> l
         "",
         "Effects are hidden by other laws than the analyser's (Prandtl-Iwan friction, tabulated bushings, "
         "compliances that stiffen with load), in cars with production scatter, unequal sides and small "
-        "shares of all other effects. Diagnosable: the true change of the curves stands out of re-tuning "
-        "and of the sides' usual differences by 10 standard deviations, and noise names the most similar "
-        "rival in at most 5 % of cars.",
+        "shares of all other effects. Diagnosable: the true change of the curves stands out of re-tuning, "
+        "of the sides' usual differences and of other sizes of those small shares by 10 standard "
+        "deviations, and noise names the most similar rival in at most 5 % of cars.",
         "",
         "Percent of the cars, with the Wilson interval of 95 %.",
         "",
