@@ -16,7 +16,7 @@ from doe_kc.discovery.search.laws import open_laws, other_laws, with_law
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.refits import set_refits
 from doe_kc.discovery.search.search import EffectSearch, search_from
-from doe_kc.discovery.thresholds import ACCEPTED_ODDS, HOPELESS_SHARE, NOISE_CHANCE
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS, BEYOND_DOUBT, HOPELESS_SHARE, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -36,7 +36,8 @@ def with_exchanged_laws(
     for member in last.model.members:
         if explained and member.name not in _freed(search):
             continue
-        starts = [FitStart(*with_law(last, member, law), last) for law in other_laws(member)]
+        most = last.cost + 2.0 * BEYOND_DOUBT
+        starts = [FitStart(*with_law(last, member, law), last, most) for law in other_laws(member)]
         refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
         sets = [_best_set(search, f, workers) for f in refits]
         best, gain = max(sets, key=lambda one: one[1], default=(last, 0.0))

@@ -135,8 +135,9 @@ def with_best_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 
 
 def _with_closed_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers) -> Fit:
-    # widths of the sizes hardly make good as much, but for that of a free shape
-    most = current.cost + 2.0 * LAW_WINDOW if open_laws(member) else np.inf
+    # widths of the sizes hardly make good as much, that of a free shape somewhat more
+    window = LAW_WINDOW if open_laws(member) else LAW_WINDOW + FREE_SHAPE_LOSS
+    most = current.cost + 2.0 * window
     starts = [FitStart(*with_law(current, member, law), current, most) for law in other_laws(member)]
     refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
     return max([current, *refits], key=lambda f: f.evidence)
