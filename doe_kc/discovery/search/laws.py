@@ -147,15 +147,20 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with every friction by the law of most numbers, where sizes may hang on it.
 
     Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
-    as a law with drifting loops could make it, the fit stays as it is.
+    as a law with drifting loops could make it, the fit stays as it is. It begins from other travels too where
+    the first ends above the closed law, which it could all but follow: on a car with two frictions and rubber
+    that left a contrast of 4.3 standard deviations, and 10 of ln likelihood.
     """
     start = with_most_numbers(current, _frictions_to_free(current))
     if start.model is current.model:
         return current
-    (refit,) = workers.fits([start], "opening laws")
-    if refit is None or refit.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
+    refits = workers.fits([start], "opening laws")
+    if all(f is None or f.cost > current.cost for f in refits):
+        refits += workers.fits(_other_travels(start), "opening laws")
+    best = min((f for f in refits if f is not None), key=lambda f: f.cost, default=None)
+    if best is None or best.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
         return current
-    return refit
+    return best
 
 
 def with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:

@@ -179,6 +179,23 @@ def test_beside_another_effect_a_friction_gets_a_free_shape_unless_that_fits_wor
     assert hub == library("hub_compliance")[0]
 
 
+@pytest.mark.parametrize(("first", "tried"), [(-5.0, 1), (5.0, 1 + len(FREE_TRAVELS))])
+def test_a_free_shape_that_ends_above_the_closed_law_begins_from_other_travels(
+    first: float, tried: int
+) -> None:
+    """Two frictions and rubber: 2 of cost above, and 17 below from 1.4 of the travel."""
+    closed = beside_a_hub()
+
+    class Rough(Answers):
+        def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
+            return super()._fit(model, z, found, first if len(self.laws) == 1 else -8.0 * len(self.laws))
+
+    asked = Rough(0.0)
+    found = with_free_shapes(closed, asked)
+    assert asked.laws == ["backbone"] * tried
+    assert found.cost == pytest.approx(closed.cost + (first if tried == 1 else -8.0 * tried))
+
+
 @pytest.mark.parametrize(("cost", "law"), [(10.0, "iwan"), (110.0, "")])
 def test_beside_another_effect_a_friction_gets_the_law_of_most_evidence(cost: float, law: str) -> None:
     """A friction of 208 N and a mount of 3275 N/mm were 320 +- 9 and 2178 +- 47 by the free shape that began
