@@ -1,4 +1,4 @@
-"""Nuisances whose columns are the same at every point: differences between the sides, and clutter.
+"""Nuisances whose columns are the same at every point of a fit: differences between the sides, and clutter.
 
 Clutter are traces of every effect that is not in the model, further Gaussian unknowns of a fit. Every car has
 a little of each. Without them what they do to the records would pass for another effect, or shift the sizes
@@ -23,7 +23,8 @@ from doe_kc.ground.typing import FloatArray
 
 @dataclass(frozen=True)
 class LinearNuisances:
-    """Their columns about the re-tuned axle, the same arrays for all models of the same errors."""
+    """Their columns: of the sides about the axle with the set's effects, of traces about the re-tuned one. The
+    same arrays for all models of the same set and errors."""
 
     columns: FloatArray
     """(M, l) change of the residual by each, per its standard deviation; differences between the sides first,

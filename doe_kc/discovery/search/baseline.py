@@ -1,4 +1,5 @@
-"""What the search begins with: the axle re-tuned without any effect, and traces of all of them."""
+"""What the search begins with: the axle re-tuned without any effect, and traces of all of them; and its
+sides, taken anew beside the effects of each set."""
 
 from __future__ import annotations
 
