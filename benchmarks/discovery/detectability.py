@@ -10,7 +10,7 @@ place of 12 do the same but for 3, by curves that were solved.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,13 +51,17 @@ class Detectability:
 
 def detectability(nominal: Axle, car: Car, likelihood: Likelihood) -> dict[str, Detectability]:
     """Hidden effect -> its standing. likelihood: of the records, for their noise."""
-    out = {}
+    axle = _as_read(car)
+    full = _residual(axle, likelihood)
+    sides = [_residual(unequal, likelihood) - full for unequal in unequal_in_one(axle)]
+    rivals, out = _rivals(nominal, likelihood), {}
     for hidden in car.hidden:
         without = replace(car, hidden=tuple(h for h in car.hidden if h is not hidden))
-        basis = _unknown(nominal, without, likelihood)
-        change = _residual(_as_read(car), likelihood) - _residual(_as_read(without), likelihood)
+        basis = _unknown(nominal, without, likelihood, sides)
+        change = full - _residual(_as_read(without), likelihood)
         left = _beyond(change, basis)
-        out[hidden.id] = _against_rivals(left, hidden.id, nominal, likelihood, basis)
+        others = {ident: changes for ident, changes in rivals.items() if ident != hidden.id}
+        out[hidden.id] = _against_rivals(left, others, likelihood, basis)
     return out
 
 
@@ -74,9 +78,9 @@ def _residual(axle: Axle, likelihood: Likelihood) -> FloatArray:
     return likelihood.residual(observed(axle, curve_set(solve(axle))), NO_CHARACTERISTICS)
 
 
-def _unknown(nominal: Axle, car: Car, likelihood: Likelihood) -> FloatArray:
+def _unknown(nominal: Axle, car: Car, likelihood: Likelihood, sides: Sequence[FloatArray]) -> FloatArray:
     """(M + d, d) orthonormal basis of what is not known of a car: what the variables can do within their
-    priors, sides that are unequal, and small effects of other sizes."""
+    priors, sides that are unequal, and small effects of other sizes. sides: change by each difference."""
     space = build_space(nominal, VariableOptions(), "detectability")
     held = {path for e in EFFECTS.values() for path in e.replaces}
     free = [v for v in space.variables if v.path not in held]
@@ -87,8 +91,8 @@ def _unknown(nominal: Axle, car: Car, likelihood: Likelihood) -> FloatArray:
     gradients = scaled_gradients(gradients, reading_gains(axle))
     rows = likelihood.jacobian(gradients, np.zeros((0, len(free)))) * np.array(slopes)
     blank = likelihood.residual(observed(axle, curve_set(solution)), NO_CHARACTERISTICS)
-    others = [*unequal_in_one(axle), *(_as_read(c) for c in _of_other_sizes(car))]
-    columns = np.column_stack([rows, *(_residual(other, likelihood) - blank for other in others)])
+    small = [_residual(_as_read(other), likelihood) - blank for other in _of_other_sizes(car)]
+    columns = np.column_stack([rows, *sides, *small])
     basis, _ = qr(np.vstack([columns, np.eye(columns.shape[1])]), mode="economic")
     return np.asarray(basis)
 
@@ -107,29 +111,39 @@ def _beyond(change: FloatArray, basis: FloatArray) -> FloatArray:
     return np.asarray(padded - basis @ (basis.T @ padded))
 
 
-def _against_rivals(
-    left: FloatArray, ident: str, nominal: Axle, likelihood: Likelihood, basis: FloatArray
-) -> Detectability:
-    strength = float(np.linalg.norm(left))
+def _rivals(nominal: Axle, likelihood: Likelihood) -> dict[str, list[list[FloatArray]]]:
+    """Effect -> for each of its places the changes by its sizes."""
     blank = _residual(nominal, likelihood)
-    rival, closest = "", 0.0
     places = places_of(nominal)
+    out: dict[str, list[list[FloatArray]]] = {}
     for effect in EFFECTS.values():
-        if effect.id == ident or not effect.possible(places):
-            continue
-        for hypothesis in effect.hypotheses(places):
+        for hypothesis in effect.hypotheses(places) if effect.possible(places) else ():
             sizes = [s for s in hypothesis.sizes if not s.shape]
-            columns = []
+            changes = []
             for chosen in [s.name for s in sizes] or [""]:
                 at = {s.name: float(s.name == chosen) for s in hypothesis.sizes}
                 try:
                     axle = apply_effect(nominal, effect.id, hypothesis.options(at), source=effect.id)
-                    columns.append(_beyond(_residual(axle, likelihood) - blank, basis))
+                    changes.append(_residual(axle, likelihood) - blank)
                 except NotConverged:
                     continue
-            alike = _explained(left, columns)
+            out.setdefault(effect.id, []).append(changes)
+    return out
+
+
+def _against_rivals(
+    left: FloatArray,
+    rivals: Mapping[str, Sequence[Sequence[FloatArray]]],
+    likelihood: Likelihood,
+    basis: FloatArray,
+) -> Detectability:
+    strength = float(np.linalg.norm(left))
+    rival, closest = "", 0.0
+    for ident, of_places in rivals.items():
+        for changes in of_places:
+            alike = _explained(left, [_beyond(change, basis) for change in changes])
             if alike > closest:
-                rival, closest = effect.id, alike
+                rival, closest = ident, alike
     return Detectability(strength, rival, wrong_name(strength, closest), _shows(left, likelihood))
 
 
