@@ -23,8 +23,7 @@ from doe_kc.ground.typing import FloatArray
 
 @dataclass(frozen=True)
 class LinearNuisances:
-    """Their columns: of the sides about the axle with the set's effects, of traces about the re-tuned one. The
-    same arrays for all models of the same set and errors."""
+    """Their columns, of the sides about the axle with the set's effects, of traces about the re-tuned one."""
 
     columns: FloatArray
     """(M, l) change of the residual by each, per its standard deviation; differences between the sides first,
