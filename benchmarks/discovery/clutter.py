@@ -15,6 +15,7 @@ from benchmarks.discovery.hidden import Hidden
 from doe_kc.axle import Axle
 from doe_kc.axle.places import places_of
 from doe_kc.effects import EFFECTS
+from doe_kc.effects._friction import TRAVEL
 
 SHARE = (0.02, 0.05)
 """Of the typical size."""
@@ -23,7 +24,6 @@ SIZE_SD = (SHARE[1] - SHARE[0]) / math.sqrt(12.0) / MEAN
 """Relative standard deviation of their sizes, from car to car."""
 TRAVEL_SD = 0.45
 """Of the logarithm of a friction's presliding travel, drawn evenly over a factor of 4 to 4.8."""
-TRAVEL = "presliding_mm"
 TYPICAL = 0.02
 """1/mm^2, progression of the bushings of other axle types."""
 PRESENT = (

@@ -2,9 +2,9 @@
 
 Computed from the opened key with the true change of the curves: no analyser has a part in it. What nobody
 knows are the variables within their priors, the differences between the sides, and the sizes of the small
-effects that every car has, all to first order about the car without the effect. A mount of the rack changed
-the curves by 290 standard deviations; a column that is softer by a third and a steering friction of 7 N in
-place of 12 do the same but for 3, by curves that were solved.
+effects that every car has, to first order about the car, without the effect but for the sides. A mount of the
+rack changed the curves by 290 standard deviations; a column that is softer by a third and a steering friction
+of 7 N in place of 12 do the same but for 3, by curves that were solved.
 """
 
 from __future__ import annotations

@@ -11,12 +11,13 @@ from scipy.optimize import least_squares
 
 from benchmarks.discovery.car import Car
 from benchmarks.discovery.chance import stream
-from benchmarks.discovery.clutter import SIZE_SD, TRAVEL, TRAVEL_SD, clutter, unlike
+from benchmarks.discovery.clutter import SIZE_SD, TRAVEL_SD, clutter, unlike
 from benchmarks.discovery.detectability import detectability
 from benchmarks.discovery.generator import RECORDS, HiddenCar
 from benchmarks.discovery.hidden import Hidden
 from doe_kc.axle.parameters import parameter_value, with_values
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
+from doe_kc.effects._friction import TRAVEL
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import reduce_measurement
 from doe_kc.solver.curve_set import curve_set

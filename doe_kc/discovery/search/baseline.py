@@ -23,7 +23,7 @@ from doe_kc.solver.result import NotConverged
 def tune(model: EffectModel) -> Fit:
     """The best axle without a further effect, the differences between its sides linear about it."""
     first = fit(model, model.centre)
-    sides = model.scatter * side_differences(model.axle_at(first.z), model.space, model.likelihood)
+    sides = _sides(first)
     sided = replace(model, nuisances=LinearNuisances(sides))
     start = np.concatenate([first.z, np.zeros(sided.dimension - model.dimension)])
     return fit(sided, start, known=known_columns(first, sided), aged=0.0)
@@ -39,13 +39,19 @@ def with_sides_anew(current: Fit) -> Fit:
     if known is None:
         return current
     try:
-        sides = model.scatter * side_differences(model.axle_at(current.z), model.space, model.likelihood)
+        sides = _sides(current)
     except NotConverged:
         return current
     model = replace(model, nuisances=known.with_sides(sides))
     jacobian = model.jacobian(current.jacobian.own)
     residual = model.residual(current.z)
     return chord_fit(replace(current, model=model, residual=residual, jacobian=jacobian), model)
+
+
+def _sides(fit: Fit) -> FloatArray:
+    """(M, k) change of the residual by each difference between the sides, about the fit."""
+    model = fit.model
+    return np.asarray(model.scatter * side_differences(model.axle_at(fit.z), model.space, model.likelihood))
 
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:

@@ -32,9 +32,9 @@ def with_exchanged_laws(
     rack of 3570 N/mm was 237 N without the mount, 40 of ln evidence behind Prandtl-Iwan's law with it.
     """
     explained = search.with_law_discrepancy.residual_map.chance >= NOISE_CHANCE
-    last = search.with_effects
+    last, freed = search.with_effects, _freed(search)
     for member in last.model.members:
-        if explained and member.name not in _freed(search):
+        if explained and member.name not in freed:
             continue
         most = last.cost + 2.0 * BEYOND_DOUBT
         starts = [FitStart(*with_law(last, member, law), last, most) for law in other_laws(member)]

@@ -76,7 +76,7 @@ def with_open_laws(current: Fit, workers: DiscoveryWorkers) -> Fit:
 
 
 def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> Fit:
-    """The fit with the laws of most numbers that gain evidence, where nothing else explains what remains.
+    """The fit with the laws that gain evidence, closed or free, where nothing else explains what remains.
 
     own: the records' own errors, to which such a law is fitted: errors that hold the discrepancy of the law
     before it take a poor one for explained. A friction of two stages, 227 N over 0.19 mm, ended at 223 N over
@@ -97,14 +97,14 @@ def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> 
 
 
 def with_best_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers) -> Fit:
-    """The fit with the law of most evidence for a friction: its own, another closed one, or where noise does
-    not explain what those leave a free one, which begins from the best of them.
+    """The fit with the law of most evidence for a friction by a closed law: its own, another closed one, or
+    where noise does not explain what those leave a free one, which begins from the best of them.
 
     A free shape pays for the width of its prior: of a strut friction by Prandtl-Iwan's law it had 26 to 81 of
     ln evidence less than that, and kept other effects out.
     """
     best = _with_closed_law(current, member, workers)
-    if not open_laws(member) or best.residual_map.chance >= NOISE_CHANCE:
+    if best.residual_map.chance >= NOISE_CHANCE:
         return best
     closed = next(h for h in best.model.members if h.name == member.name)
     free = best_fit(with_most_numbers(best, [closed]), workers)

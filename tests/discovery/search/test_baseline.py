@@ -7,13 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.discovery.fit import cost_of
+from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew
 from doe_kc.discovery.thresholds import SIDE_ANGLE, TRACE_SD, TRACE_SEEN
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
-from tests.discovery.cases import library, model
+from tests.discovery.cases import discovery, library, model
 
 
 def test_the_axle_is_tuned_with_sides_that_differ() -> None:
@@ -48,6 +49,16 @@ def test_sides_are_linear_about_the_axle_with_its_effects() -> None:
     assert np.linalg.norm(anew[:, camber] - change) < 0.01 * np.linalg.norm(change)
     assert np.linalg.norm(sides[:, camber] - change) > 0.2 * np.linalg.norm(change)
     assert found.cost <= cost_of(found.model, z, found.model.residual(z))
+
+
+def test_a_search_ends_with_sides_about_the_axle_with_its_effects() -> None:
+    search = discovery("friction").search
+    bare, last = search.tuned.model.nuisances, search.with_effects
+    assert bare is not None and last.model.nuisances is not None
+    count = bare.count
+    sides = side_differences(last.model.axle_at(last.z), last.model.space, last.model.likelihood)
+    off = np.linalg.norm(last.model.nuisances.columns[:, :count] - sides)
+    assert off < 0.2 * np.linalg.norm(bare.columns - sides), "taken anew close to where it ends"
 
 
 def test_sides_that_are_not_known_yet_stay_so() -> None:
