@@ -21,13 +21,11 @@ from doe_kc.axle import Axle  # noqa: E402  # after the thread limits
 from doe_kc.axle.topology import Topology  # noqa: E402
 from doe_kc.axle_file import read_axle  # noqa: E402
 from doe_kc.solver.compiled import adaptive_kernel  # noqa: E402
-from doe_kc.solver.derivative_library import adaptive_derivatives  # noqa: E402
 
 
 def compile_now(topology: Topology) -> None:
-    """Compile the kernel and the derivatives of a topology, which otherwise run by programs for a while."""
+    """Compile the kernel of a topology, which otherwise runs by programs for a while."""
     adaptive_kernel(topology).compile()
-    adaptive_derivatives(topology).compile()
 
 
 def example_axle() -> Axle:

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
@@ -50,9 +49,9 @@ def linearize(
     solution = solve(there)
     paths = _moved_paths(space)
     exact = sensitivities(there, solution, paths)
-    chain = _chain(space, point)
     slopes = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
-    return Linearization(slopes @ chain, _chained(gradients_of(solution, exact), chain, space.paths))
+    curves = _chained(gradients_of(solution, exact), space, point, space.paths)
+    return Linearization(_to_places(slopes, space, space.slopes(point)), curves)
 
 
 def linearized_curves(
@@ -61,38 +60,53 @@ def linearized_curves(
     space: Space,
     point: FloatArray,
     directions: Mapping[str, Mapping[str, float]],
+    input_gain: str,
 ) -> CurveGradients:
-    """Curves of the axle at `point` (d,) to first order: d variables, ties followed, then `directions`.
+    """Curves of the axle at `point` (d,) to first order: d variables, ties followed, then `directions`, then
+    the gain of each curve's own load case.
 
-    solution: of that axle. directions: see `sensitivities`.
+    solution: of that axle. directions, input_gain: see `sensitivities`.
     """
-    exact = sensitivities(there, solution, _moved_paths(space), directions, outputs=CURVE_OUTPUTS)
-    chain = block_diag(_chain(space, point), np.eye(len(directions)))
-    return _chained(gradients_of(solution, exact), chain, (*space.paths, *directions))
+    exact = sensitivities(
+        there, solution, _moved_paths(space), directions, outputs=CURVE_OUTPUTS, input_gain=input_gain
+    )
+    return _chained(gradients_of(solution, exact), space, point, (*space.paths, *directions, input_gain))
 
 
 def _moved_paths(space: Space) -> list[str]:
     return [*space.paths, *(tie.follower for tie in space.ties)]
 
 
-def _chain(space: Space, point: FloatArray) -> FloatArray:
-    """(paths and followers, d) d value / d u."""
-    slopes = np.diag(space.slopes(point))
+def _to_places(gradient: FloatArray, space: Space, slopes: FloatArray) -> FloatArray:
+    """(..., d and others) derivatives to the places u, from those to the values of d paths, of their
+    followers and of others, which stay what they are. slopes: (d,) dvalue/du.
+
+    Column by column: products with the matrix of all dvalue/du, which is all but diagonal, took an eighth of
+    the time of all derivatives.
+    """
+    count, end = space.dimension, space.dimension + len(space.ties)
+    out = np.concatenate([gradient[..., :count], gradient[..., end:]], axis=-1)
     places = {path: i for i, path in enumerate(space.paths)}
-    followers = [tie.slope * slopes[places[tie.leader]] for tie in space.ties]
-    return np.vstack([slopes, *followers])
+    for i, tie in enumerate(space.ties, start=count):
+        out[..., places[tie.leader]] += tie.slope * gradient[..., i]
+    out[..., :count] *= slopes
+    return out
 
 
-def _chained(gradients: CurveGradients, chain: FloatArray, paths: tuple[str, ...]) -> CurveGradients:
-    def chained(cases: Mapping[str, Mapping[str, FloatArray]]) -> dict[str, dict[str, FloatArray]]:
-        return {case: {r: g @ chain for r, g in responses.items()} for case, responses in cases.items()}
+def _chained(
+    gradients: CurveGradients, space: Space, point: FloatArray, paths: tuple[str, ...]
+) -> CurveGradients:
+    slopes = space.slopes(point)
+
+    def chained(responses: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+        return {response: _to_places(g, space, slopes) for response, g in responses.items()}
 
     return replace(
         gradients,
         paths=paths,
-        cases=chained(gradients.cases),
-        static={r: g @ chain for r, g in gradients.static.items()},
-        half_width=chained(gradients.half_width),
+        cases={case: chained(responses) for case, responses in gradients.cases.items()},
+        static=chained(gradients.static),
+        half_width={case: chained(responses) for case, responses in gradients.half_width.items()},
     )
 
 

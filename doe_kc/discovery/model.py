@@ -22,8 +22,8 @@ from doe_kc.discovery.solutions import Solutions
 from doe_kc.discovery.thresholds import (
     AMPLITUDE_LIMIT,
     AMPLITUDE_STEP,
-    CALIBRATION_STEP,
     DIRECTION_STEP,
+    INPUT_GAIN,
     NUISANCE_LIMIT,
 )
 from doe_kc.effects import EFFECTS, apply_effect
@@ -220,34 +220,37 @@ class EffectModel(FieldsOnly):
     def own_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
         """(M, p + m) derivative of the residual to parameters, calibrations and amplitudes. residual: at z.
 
-        Exact to the parameters, and to amplitudes that move nothing but numbers of the axle.
+        Exact to parameters and calibrations, and to amplitudes that move nothing but numbers of the axle.
         """
-        axle = self._driven(self.axle_at(z), z)
-        moves = self._directions(z)
+        sound = self.axle_at(z)
+        axle, moves = self._driven(sound, z), self._directions(z, sound)
         gradients = linearized_curves(
             axle,
             self.solutions(axle),
             self.space,
             z[: self.parameters],
             {str(i): m for i, m in moves.items()},
+            "input gain",
         )
         gradients = scaled_gradients(gradients, reading_gains(axle))
         exact = self.likelihood.jacobian(gradients, np.zeros((0, len(gradients.paths))))
-        amplitudes = np.empty((residual.size, z.size - self.dimension))
+        out = np.zeros((residual.size, z.size - self.linear.stop + self.linear.start))
+        out[:, : self.parameters] = exact[:, : self.parameters]
+        self._set_calibration_columns(out, exact[:, -1], sound)
+        amplitudes = out[:, self.calibrations.stop :]
         known = np.array(list(moves), dtype=int) - self.dimension
-        amplitudes[:, known] = exact[:, self.parameters :]
+        amplitudes[:, known] = exact[:, self.parameters : -1]
         others = np.delete(np.arange(amplitudes.shape[1]), known)
         amplitudes[:, others] = self.amplitude_columns(z, residual, self.dimension + others)
-        calibrations = self._calibration_columns(z, residual)
-        return np.hstack([exact[:, : self.parameters], calibrations, amplitudes])
+        return out
 
-    def _directions(self, z: FloatArray) -> dict[int, dict[str, float]]:
-        """Place in z of an amplitude -> what it changes the axle's internal values by.
+    def _directions(self, z: FloatArray, here: Axle) -> dict[int, dict[str, float]]:
+        """Place in z of an amplitude -> what it changes the internal values of the axle at z, `here`, by.
 
         Without those that change anything else, its equations or what the rig reads, and those so small that
         they stand for none: their derivatives are differences.
         """
-        here, out = self.axle_at(z), {}
+        out: dict[int, dict[str, float]] = {}
         in_car = ((h, p) for h, p in self.places() if not EFFECTS[h.effect].on_rig)
         for i in (i for _, place in in_car for i in range(place.start, place.stop)):
             moved = z.copy()
@@ -263,15 +266,13 @@ class EffectModel(FieldsOnly):
                 out[i] = change
         return out
 
-    def _calibration_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
-        """(M, k) derivative to the calibrations, from one solution: each moves its own load case alone."""
-        direction = np.zeros(z.size)
-        direction[self.calibrations] = 1.0
-        change = self._difference(z, residual, direction, CALIBRATION_STEP)
-        out = np.zeros((residual.size, len(self.cases)))
+    def _set_calibration_columns(self, columns: FloatArray, to_gain: FloatArray, sound: Axle) -> None:
+        """Set those of the columns (M, p + m) that are derivatives to the calibrations, each of which moves
+        its own load case alone. to_gain: (M,) to the gain of each curve's load case. sound: the axle with its
+        inputs as yet not calibrated."""
         for curve, place in self.likelihood.slices():
-            out[place, self.cases.index(curve.load_case)] = change[place]
-        return out
+            at = self.calibrations.start + self.cases.index(curve.load_case)
+            columns[place, at] = INPUT_GAIN * sound.load_cases[curve.load_case].gain * to_gain[place]
 
     def amplitude_columns(
         self, z: FloatArray, residual: FloatArray, places: Iterable[int] | None = None

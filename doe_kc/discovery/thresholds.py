@@ -94,9 +94,6 @@ DIRECTION_STEP = 1e-06
 """typical sizes, step of amplitudes for the derivatives of the axle's numbers, from which those of the curves
 follow exactly. Rounding is a millionth of them, a compliance of a hundredth of its typical size bends by a
 ten-thousandth."""
-CALIBRATION_STEP = 0.1
-"""standard deviations, step of the calibrations of inputs for their derivatives. They are linear far beyond
-it."""
 SHARE_AT_BOUNDS = 0.05
 """-, share of the parameters at a bound from which wider ranges are tried. A single one is a tolerance, not a
 series."""

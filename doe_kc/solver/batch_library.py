@@ -14,7 +14,7 @@ import numpy as np
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect, c_sources
+from doe_kc.solver.c_source import Dialect, c_sources
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions, kernel_programs
@@ -22,10 +22,16 @@ from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 from doe_kc.solver.library_on_demand import LibraryOnDemand
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.program import interpreter_source
-from doe_kc.solver.program_library import MARCH_SOURCES, ProgramFunction, ProgramSet, load_program_library
+from doe_kc.solver.program_library import (
+    LANES_HEADER,
+    MARCH_SOURCES,
+    ProgramFunction,
+    ProgramSet,
+    lane_dialect,
+    load_program_library,
+)
 
 BATCH_SOURCE = Path(__file__).with_name("batch.c")
-LANES_HEADER = Path(__file__).with_name("lanes.h")
 NO_CONSTANTS = "#define NO_CONSTANTS\n"
 """Leaves `constants_batch` out."""
 _INT, _DOUBLE, _ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
@@ -186,8 +192,7 @@ def _march_by(
 
 
 def _dialect(instructions: InstructionSet) -> Dialect:
-    before = instructions.defines + LANES_HEADER.read_text()
-    return Dialect("lane", "lane_of({0})", LANE_EXPRESSIONS, before)
+    return lane_dialect(instructions.defines + LANES_HEADER.read_text())
 
 
 def _driver(dialect: Dialect) -> str:

@@ -17,7 +17,7 @@ from scipy import sparse
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.blocks import SINGULAR_EQUILIBRIUM, Block, Points, equilibrium_change, interpreted_blocks
-from doe_kc.solver.derivative_library import SensitivityLibrary, adaptive_derivatives
+from doe_kc.solver.derivative_library import DerivativeLibrary, derivative_library
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.library import CompileError
 from doe_kc.solver.program_library import ProgramFunction
@@ -69,7 +69,7 @@ class Derivatives(Protocol):
 def derivatives_of(topology: Topology, c: FloatArray, dc: sparse.csr_array) -> Derivatives:
     """By compiled code where that can be done. c: (nc,) constants; dc: (nc, np) their derivatives."""
     try:
-        return CompiledDerivatives(kernel(topology), c, dc, adaptive_derivatives(topology))
+        return CompiledDerivatives(kernel(topology), c, dc, derivative_library(topology))
     except CompileError:
         return InterpretedDerivatives(kernel(topology), c, dc)
 
@@ -77,7 +77,7 @@ def derivatives_of(topology: Topology, c: FloatArray, dc: sparse.csr_array) -> D
 def constants_gradient(topology: Topology) -> ca.Function | ProgramFunction:
     """(nc, internal parameters) derivative of the constants."""
     try:
-        return adaptive_derivatives(topology).constants
+        return derivative_library(topology).constants
     except CompileError:
         return interpreted_blocks(topology)["constants"]
 
@@ -141,7 +141,7 @@ class CompiledDerivatives:
     kernel: Kernel
     c: FloatArray
     dc: sparse.csr_array
-    library: SensitivityLibrary
+    library: DerivativeLibrary
 
     @cached_property
     def _sparse(self) -> tuple[np.ndarray, np.ndarray, FloatArray]:
@@ -171,7 +171,6 @@ class CompiledDerivatives:
         )
         start, column, value = (a.ctypes.data for a in self._sparse)
         code = self.library.sensitivity(
-            n,
             *(k.nx, k.nu, k.nz, k.ny, k.scale.ctypes.data, k.layout.order.ctypes.data, self.c.ctypes.data),
             *(n, x.ctypes.data, u.ctypes.data, z.ctypes.data, columns, start, column, value),
             *(len(way), way.ctypes.data, gradient.ctypes.data, place.ctypes.data),

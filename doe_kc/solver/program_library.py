@@ -6,7 +6,7 @@ import ctypes
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect
 from doe_kc.solver.instructions import own_instruction_set
 from doe_kc.solver.library import build, handwritten, store_bytes, stored_bytes
 from doe_kc.solver.program import Program, interpreter_source, program_of, programs_bytes, read_programs
@@ -22,6 +23,7 @@ from doe_kc.solver.program import Program, interpreter_source, program_of, progr
 MARCH_SOURCES = (Path(__file__).with_name("march.h"), Path(__file__).with_name("driver.c"))
 """Of the compiled march; the header has the constants of march.py and newton.py."""
 SENSITIVITY = Path(__file__).with_name("sensitivity.c")
+LANES_HEADER = Path(__file__).with_name("lanes.h")
 PROGRAM_FLAGS = {"program": "-O2 -ffp-contract=off"}
 ALIGNMENT = 8
 """Numbers: of the largest vector registers."""
@@ -43,25 +45,39 @@ class _Record(ctypes.Structure):
 @lru_cache(maxsize=1)
 def march_library() -> ctypes.CDLL:
     """The march of driver.c and what carries programs out; CompileError when it cannot be built."""
-    return _program_library({"driver": handwritten(*MARCH_SOURCES)}, {"driver": "-O3"})
+    sources = {"driver": handwritten(*MARCH_SOURCES), "program": interpreter_source()}
+    library = load_program_library(sources, {"driver": "-O3", **PROGRAM_FLAGS})
+    library.run_program.argtypes = (_ADDRESS, _ADDRESS, _ADDRESS)
+    return library
 
 
 @lru_cache(maxsize=1)
 def sensitivity_library() -> ctypes.CDLL:
-    """The same with sensitivity.c."""
-    return _program_library({"sensitivity": SENSITIVITY.read_text()}, sensitivity_flags())
+    """sensitivity.c and what carries programs out, for as many points side by side as `point_lanes`.
+
+    Functions are those of the C library, lane by lane, not of its vector library: numbers are the same on all
+    processors.
+    """
+    instructions = replace(own_instruction_set(), library=False)
+    lanes = instructions.defines + LANES_HEADER.read_text()
+    sources = {
+        "sensitivity": lanes + SENSITIVITY.read_text(),
+        "program": interpreter_source(lane_dialect(lanes)),
+    }
+    flags = {"sensitivity": "-O3", **PROGRAM_FLAGS}
+    return load_program_library(
+        sources, {part: " ".join((own, *instructions.flags)) for part, own in flags.items()}
+    )
 
 
-def sensitivity_flags() -> dict[str, str]:
-    """Of the compiler for sensitivity.c, by the name of its part: for this machine's vector registers."""
-    return {"sensitivity": " ".join(("-O3", *own_instruction_set().flags))}
+def point_lanes() -> int:
+    """Equilibria whose derivatives programs compute side by side."""
+    return own_instruction_set().lanes
 
 
-def _program_library(sources: Mapping[str, str], flags: Mapping[str, str]) -> ctypes.CDLL:
-    """Of what calls programs, and of what carries them out."""
-    library = load_program_library({**sources, "program": interpreter_source()}, {**flags, **PROGRAM_FLAGS})
-    library.run_program.argtypes = (_ADDRESS, _ADDRESS, _ADDRESS)
-    return library
+def lane_dialect(header: str) -> Dialect:
+    """Of numbers side by side. header: lanes.h with what it wants to know."""
+    return Dialect("lane", "lane_of({0})", LANE_EXPRESSIONS, header)
 
 
 def load_program_library(sources: dict[str, str], flags: Mapping[str, str]) -> ctypes.CDLL:

@@ -1,12 +1,13 @@
 /* Derivatives of consecutive equilibria to parameters, by the implicit function theorem: the same algorithm as
-   InterpretedDerivatives of derivatives.py. `derivatives`, which gives all blocks of one point, is generated. */
+   InterpretedDerivatives of derivatives.py. `derivatives`, a program, gives all blocks of as many points side by
+   side as a vector register holds, see lanes.h: carrying it out for them takes hardly longer than for one. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef long long integer;
 
-int derivatives(const double **, double **, integer *, double *, int);
+int derivatives(const lane **, lane **, integer *, lane *, int);
 const integer *derivatives_sparsity_out(integer);
 
 #define INLINE static inline __attribute__((always_inline))
@@ -17,38 +18,47 @@ const integer *derivatives_sparsity_out(integer);
 #else
 #define PACK 2
 #endif
-#define TILE (4 * PACK) /* columns that are handled at once, in registers; what is left goes by PACK */
+#define PACKS 8         /* registers of a tile: as many sums at once hide the latency of each */
+#define TILE (PACKS * PACK) /* columns that are handled at once, in registers; what is left goes by fewer */
 
 enum { R_X, R_C, R_U, Y_X, Y_C, Y_U, R_Z, Y_Z, Z_X, Z_C, Z_U, Z_Z, BLOCKS };
 
 typedef double pack __attribute__((vector_size(8 * PACK), aligned(8)));
-typedef struct { pack a, b, c, d; } tile;       /* one row of TILE columns, or of PACK: then `a` alone */
+typedef struct { pack a, b, c, d, e, f, g, h; } tile; /* one row of `width` columns: the first width / PACK */
 
-/* width: TILE or PACK, known where the functions are inlined. */
+/* width: 1, 2, 4 or 8 of PACK, known where the functions are inlined. */
 INLINE tile load(int width, const double *at) {
     const pack *p = (const pack *)at;
     tile s = {p[0]};
-    if (width > PACK) s.b = p[1], s.c = p[2], s.d = p[3];
+    if (width >= 2 * PACK) s.b = p[1];
+    if (width >= 4 * PACK) s.c = p[2], s.d = p[3];
+    if (width >= 8 * PACK) s.e = p[4], s.f = p[5], s.g = p[6], s.h = p[7];
     return s;
 }
 
 INLINE void store(int width, double *at, tile s) {
     pack *p = (pack *)at;
     p[0] = s.a;
-    if (width > PACK) p[1] = s.b, p[2] = s.c, p[3] = s.d;
+    if (width >= 2 * PACK) p[1] = s.b;
+    if (width >= 4 * PACK) p[2] = s.c, p[3] = s.d;
+    if (width >= 8 * PACK) p[4] = s.e, p[5] = s.f, p[6] = s.g, p[7] = s.h;
 }
 
 /* s + v times the row at `at` */
 INLINE tile add(int width, tile s, double v, const double *at) {
     const pack *p = (const pack *)at;
     s.a += v * p[0];
-    if (width > PACK) s.b += v * p[1], s.c += v * p[2], s.d += v * p[3];
+    if (width >= 2 * PACK) s.b += v * p[1];
+    if (width >= 4 * PACK) s.c += v * p[2], s.d += v * p[3];
+    if (width >= 8 * PACK) s.e += v * p[4], s.f += v * p[5], s.g += v * p[6], s.h += v * p[7];
     return s;
 }
 
 INLINE tile times(int width, double v, tile s) {
     s.a *= v;
-    if (width > PACK) s.b *= v, s.c *= v, s.d *= v;
+    if (width >= 2 * PACK) s.b *= v;
+    if (width >= 4 * PACK) s.c *= v, s.d *= v;
+    if (width >= 8 * PACK) s.e *= v, s.f *= v, s.g *= v, s.h *= v;
     return s;
 }
 
@@ -69,7 +79,7 @@ typedef struct {
 
 /* dc and the directions of the controls, cut into columns that are handled at once. */
 typedef struct {
-    int columns, padded;                /* padded: a multiple of PACK */
+    int columns, padded;                /* padded: to whole tiles, the last of as few registers as hold it */
     int directions;
     by_rows dc;                         /* what is not zero, tile after tile; columns within their tile */
     int *dc_row;                        /* of dc, of each of these numbers */
@@ -77,7 +87,11 @@ typedef struct {
     double du[TILE];                    /* of one control */
 } right_side;
 
-INLINE int width_at(const right_side *p, int first) { return p->padded - first >= TILE ? TILE : PACK; }
+INLINE int width_at(const right_side *p, int first) {
+    int left = p->columns - first, width = PACK;
+    while (width < TILE && width < left) width *= 2;
+    return width;
+}
 
 static int open_rows(by_rows *r, int rows, int count) {
     r->start = calloc(rows + 2, sizeof(int));
@@ -123,7 +137,8 @@ static void close_block(block *b) {
 static int open_right_side(right_side *p, int columns, int rows, const int *start, const int *column,
                            const double *value, int directions, const double *direction) {
     p->columns = columns;
-    p->padded = (columns + PACK - 1) / PACK * PACK;
+    p->padded = 0;
+    while (p->padded < columns) p->padded += width_at(p, p->padded);
     p->directions = directions;
     p->direction = calloc((size_t)directions * p->padded + 1, sizeof(double));
     p->dc_row = malloc(sizeof(int) * (start[rows] + 1));
@@ -300,10 +315,49 @@ static int differentiate(point *e, right_side *p, const double *gradient, double
         for (int k = 0; k < numbers; k++) b->ordered.value[k] = b->value[b->place[k]];
     }
     for (int first = 0, number = 0; first < p->padded; first += width_at(p, first), number++) {
-        if (width_at(p, first) == TILE) differentiate_tile(TILE, e, p, gradient, number, first, dy, dx);
-        else differentiate_tile(PACK, e, p, gradient, number, first, dy, dx);
+        switch (width_at(p, first) / PACK) {
+        case 8: differentiate_tile(8 * PACK, e, p, gradient, number, first, dy, dx); break;
+        case 4: differentiate_tile(4 * PACK, e, p, gradient, number, first, dy, dx); break;
+        case 2: differentiate_tile(2 * PACK, e, p, gradient, number, first, dy, dx); break;
+        default: differentiate_tile(PACK, e, p, gradient, number, first, dy, dx);
+        }
     }
     return 0;
+}
+
+/* Arguments and blocks of LANES points side by side. */
+typedef struct {
+    lane *argument[4], *value[BLOCKS];
+    int count[4];                       /* of each argument's numbers */
+} side_by_side;
+
+static int open_points(side_by_side *s, const int *count, const block *of, int blocks) {
+    int closed = 0;
+    memset(s, 0, sizeof(*s));
+    for (int k = 0; k < 4; k++) {
+        s->count[k] = count[k];
+        closed |= !(s->argument[k] = aligned_alloc(sizeof(lane), sizeof(lane) * (count[k] + 1)));
+    }
+    for (int b = 0; b < blocks; b++)
+        closed |= !(s->value[b] = aligned_alloc(sizeof(lane), sizeof(lane) * (of[b].start[of[b].columns] + 1)));
+    return closed;
+}
+
+static void close_points(side_by_side *s) {
+    for (int k = 0; k < 4; k++) free(s->argument[k]);
+    for (int b = 0; b < BLOCKS; b++) free(s->value[b]);
+}
+
+/* All blocks at the points `first` on, of n; given: (n, .) of each argument, (1, .) of the constants, the second. */
+static void evaluate_points(side_by_side *s, const double *const *given, int first, int n) {
+    for (int k = 0; k < 4; k++)
+        for (int l = 0; l < LANES; l++) {
+            int at = k == 1 ? 0 : first + l < n ? first + l : n - 1;
+            const double *row = given[k] + (size_t)at * s->count[k];
+            double *to = (double *)s->argument[k] + l;
+            for (int i = 0; i < s->count[k]; i++) to[(size_t)i * LANES] = row[i];
+        }
+    derivatives((const lane **)s->argument, s->value, 0, 0, 0);
 }
 
 /* The friction states' derivatives, (nz, columns) as the caller holds them, to or from tile after tile. */
@@ -329,14 +383,13 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const int *
                 const int *place, double *dy, double *dx, double *dz) {
     int count = nz ? BLOCKS : R_Z, failed = 0, closed = 0;
     block of[BLOCKS];
-    double *value[BLOCKS];
+    side_by_side points;
     right_side p;
     point e = {nx, ny, nz, scale, pair, of};
     memset(of, 0, sizeof(of));
-    for (int b = 0; b < count; b++) {
-        closed |= open_block(of + b, b);
-        value[b] = of[b].value;
-    }
+    for (int b = 0; b < count; b++) closed |= open_block(of + b, b);
+    const int nc = of[R_C].columns, sizes[4] = {nx, nc, nu, nz};
+    closed |= open_points(&points, sizes, of, count);
     closed |= open_right_side(&p, columns, of[R_C].columns, dc_start, dc_column, dc_value, directions, direction);
     closed |= open_rows(&e.factors, 2 * nx, nx * nx);
     double *memory = calloc((size_t)nx * nx + (size_t)TILE * (2 * nx + ny + nz) + (size_t)nz * p.padded + 1, sizeof(double));
@@ -352,9 +405,14 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const int *
         e.dz_next = e.dy + TILE * ny;
         e.dz = e.dz_next + TILE * nz;
         copy_states(&p, nz, dz, e.dz, 1);
+        const double *given[4] = {x, c, u, z};
         for (int i = 0; i < n && !failed; i++) {
-            const double *arg[4] = {x + (size_t)i * nx, c, u + (size_t)i * nu, z + (size_t)i * nz};
-            derivatives(arg, value, 0, 0, 0);
+            if (i % LANES == 0) evaluate_points(&points, given, i, n);
+            for (int b = 0; b < count; b++) {
+                const double *from = (const double *)points.value[b] + i % LANES;
+                integer numbers = of[b].start[of[b].columns];
+                for (integer k = 0; k < numbers; k++) of[b].value[k] = from[k * LANES];
+            }
             double *own_y = place[i] >= 0 ? dy + (size_t)place[i] * ny * columns : NULL;
             double *own_x = dx ? dx + (size_t)i * nx * columns : NULL;
             if (differentiate(&e, &p, gradient + (size_t)i * nu * directions, own_y, own_x)) failed = i + 1;
@@ -362,6 +420,7 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const int *
         copy_states(&p, nz, dz, e.dz, 0);
     }
     for (int b = 0; b < count; b++) close_block(of + b);
+    close_points(&points);
     close_right_side(&p);
     close_rows(&e.factors);
     free(memory);

@@ -61,20 +61,25 @@ def sensitivities(
     paths: Sequence[str],
     directions: Mapping[str, Mapping[str, float]] | None = None,
     outputs: Sequence[str] | None = None,
+    *,
+    input_gain: str = "",
 ) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
     To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. directions:
     further ones by name, behind the paths: what each changes the axle's internal values by, per unit.
-    outputs: those that are kept of the branches, default all.
+    outputs: those that are kept of the branches, default all. input_gain: name of a last column, to the gain
+    of each branch's own load case, nothing at rest; default none.
     ValueError when the solution has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
         raise ValueError("a solution without a static state has no sensitivities")
     further = directions or {}
     names, moves = (*paths, *further), [*(internal_gradient(axle, p) for p in paths), *further.values()]
+    if input_gain:
+        names, moves = (*names, input_gain), [*moves, {}]
     columns = solution.output_names if outputs is None else tuple(outputs)
-    exact = _Differentiator(axle, solution.static, names, moves, columns).run(solution)
+    exact = _Differentiator(axle, solution.static, names, moves, columns, input_gain).run(solution)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
@@ -126,8 +131,10 @@ class _Differentiator:
         paths: tuple[str, ...],
         moves: Sequence[Mapping[str, float]],
         columns: tuple[str, ...],
+        input_gain: str = "",
     ) -> None:
         self._static, self._paths, self._moves = static, paths, moves
+        self._gain = np.array([float(bool(input_gain) and p == input_gain) for p in paths])
         self._kernel = kernel(axle.topology)
         c = self._kernel.constant_values(dict(axle.values))
         p = np.array([axle.values[n] for n in self._kernel.layout.parameter_names])
@@ -176,7 +183,7 @@ class _Differentiator:
         dy = at_rest.dy[-1]
         heights = [dy[self._outputs.index(f"wc_z@{side}")] for side in ("L", "R")]
         dimensions = [-self._change_of("WLC.y@L"), self._change_of("steering.rack_mm_per_rev")]
-        return dy, at_rest.dz, np.array([*pads, *heights, directions[-1], *dimensions])
+        return dy, at_rest.dz, np.array([*pads, *heights, directions[-1], *dimensions, self._gain])
 
     def _change_of(self, internal: str) -> FloatArray:
         """(np,) d(internal value) / d(path)."""

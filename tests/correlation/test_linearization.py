@@ -43,10 +43,32 @@ def test_a_direction_of_internal_values_is_the_path_that_moves_them() -> None:
         "rate": internal_gradient(there, "spring.rate"),
         "height": internal_gradient(there, "ROB.z"),
     }
-    curves = linearized_curves(there, solve(there), space, space.start, directions)
+    curves = linearized_curves(there, solve(there), space, space.start, directions, "gain")
     order = [curves.paths.index(path) for path in ("spring.rate", "ROB.z")]
-    assert curves.paths[2:] == ("rate", "height")
+    assert curves.paths[2:] == ("rate", "height", "gain")
     slopes = space.slopes(space.start)[order]
     for case in curves.cases.values():
         for columns in case.values():
-            np.testing.assert_allclose(columns[..., 2:] * slopes, columns[..., order], atol=1e-12)
+            np.testing.assert_allclose(columns[..., 2:4] * slopes, columns[..., order], atol=1e-12)
+
+
+def test_what_follows_a_variable_moves_with_it() -> None:
+    """A tied path has no column of its own: that of its leader holds it."""
+    tied = VariableOptions.model_validate(
+        {"use": ["spring.rate", "ROB.z"], "change": [{"match": "RIB.z", "tie": "ROB.z"}]}
+    )
+    space = build_space(nominal(), tied, "test")
+    assert len(space.ties) == 1 and space.ties[0].slope == 1.0
+    axle, solution = nominal(), solve(nominal())
+    free = build_space(nominal(), VariableOptions(use=["spring.rate", "ROB.z", "RIB.z"]), "test")
+    own = linearized_curves(axle, solution, space, space.start, {}, "gain")
+    alone = linearized_curves(axle, solution, free, free.start, {}, "gain")
+    rob, rib = (alone.paths.index(path) for path in ("ROB.z", "RIB.z"))
+    slopes = free.slopes(free.start)
+    share = slopes[rob] / slopes[rib]
+    for case, responses in own.cases.items():
+        for response, columns in responses.items():
+            expected = alone.cases[case][response]
+            both = expected[..., rob] + share * expected[..., rib]
+            np.testing.assert_allclose(columns[..., own.paths.index("ROB.z")], both, atol=1e-9)
+            np.testing.assert_allclose(columns[..., -1], expected[..., -1], atol=1e-12)

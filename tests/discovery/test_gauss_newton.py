@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import CALIBRATION_STEP, FIT_DECREASE
+from doe_kc.discovery.thresholds import AMPLITUDE_STEP, FIT_DECREASE
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import Failure, NotConverged
 from tests.discovery.cases import library
@@ -66,44 +67,38 @@ def test_a_fit_near_its_ceiling_is_not_given_up_on_derivatives_of_another(with_h
 
 
 class Locked(EffectModel):
-    """A model whose axle has no equilibrium where the first calibration is beyond LOCK."""
+    """A model whose axle has no equilibrium where the last size is beyond `lock`."""
+
+    lock: ClassVar[float]
 
     def residual(self, z: FloatArray) -> FloatArray:
-        if z[self.calibrations.start] > LOCK:
+        if z[-1] > self.lock:
             failure = Failure("steer", "load", 1, 415.0, "deg", 412.0, "rack moved by 60 mm", "it locks")
             raise NotConverged(failure)
         return super().residual(z)
 
 
-LOCK = 0.05
-"""Between the point of the tests below and a step of the differences from it."""
-
-
-def locked(found: Fit) -> Locked:
+def locked(found: Fit, size: float) -> Locked:
+    """The model of a fit that locks half a step of the differences beyond a size."""
     shown = {f.name: getattr(found.model, f.name) for f in fields(found.model)}
-    return Locked(**shown)
+    return type("LockedHere", (Locked,), {"lock": size + 0.5 * AMPLITUDE_STEP})(**shown)
 
 
 def test_at_the_edge_of_what_the_axle_can_do_a_derivative_is_taken_from_the_other_side(with_hub: Fit) -> None:
     """A steering case that was held out ended 0.4 deg before full lock, and the discovery with it."""
-    model, z = locked(with_hub), with_hub.z.copy()
-    z[model.calibrations] = LOCK - 0.5 * CALIBRATION_STEP
-    residual = with_hub.model.residual(z)
+    model, z, residual = locked(with_hub, with_hub.z[-1]), with_hub.z, with_hub.residual
     with pytest.raises(NotConverged):
-        model.residual(z + np.where(np.arange(z.size) == model.calibrations.start, CALIBRATION_STEP, 0.0))
-    inside, whole = model.own_columns(z, residual), with_hub.model.own_columns(z, residual)
+        model.residual(z + AMPLITUDE_STEP * np.eye(z.size)[-1])
+    inside, whole = model.amplitude_columns(z, residual), with_hub.model.amplitude_columns(z, residual)
     assert np.linalg.norm(inside - whole) < 1e-3 * np.linalg.norm(whole)
 
 
 def test_a_size_that_cannot_be_less_has_no_derivative_where_it_cannot_be_more(with_hub: Fit) -> None:
     z = with_hub.z.copy()
-    z[with_hub.model.calibrations.start] = LOCK - 0.5 * CALIBRATION_STEP
-    model = locked(with_hub)
-    at, direction = np.where(z > model.lower, z, model.lower), np.zeros(z.size)
-    direction[[model.calibrations.start, z.size - 1]] = 1.0
-    at[-1] = model.lower[-1]
+    z[-1] = with_hub.model.lower[-1]
+    model = locked(with_hub, z[-1])
     with pytest.raises(NotConverged):
-        model._difference(at, model.residual(at), direction, CALIBRATION_STEP)
+        model.amplitude_columns(z, model.residual(z), [z.size - 1])
 
 
 def test_a_fit_ends_inside_what_the_axle_can_do(with_hub: Fit, monkeypatch: pytest.MonkeyPatch) -> None:

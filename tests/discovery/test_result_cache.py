@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import sqlite3
+import threading
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from doe_kc.discovery import result_cache
 from doe_kc.discovery.linear_nuisances import LinearNuisances
-from doe_kc.discovery.result_cache import ResultCache, fingerprint, key_of, packed, unpacked
-from doe_kc.ground.errors import InputError
+from doe_kc.discovery.result_cache import (
+    WRITES_BEGUN,
+    Arrays,
+    ResultCache,
+    fingerprint,
+    key_of,
+    packed,
+    unpacked,
+)
+from doe_kc.ground.errors import InputError, RunError
 from tests.discovery.cases import library, model
 
 
@@ -23,6 +34,41 @@ def test_arrays_come_back_exactly(tmp_path: Path) -> None:
         found = cache.get("k")
     assert found is not None
     assert all(np.array_equal(found[k], v) and found[k].shape == v.shape for k, v in arrays.items())
+
+
+def test_what_is_still_being_written_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """And in the file once the cache is closed, however many wait."""
+    slow, path = threading.Event(), tmp_path / "discovery.sqlite"
+
+    def packed_late(arrays: Arrays) -> bytes:
+        slow.wait(10.0)
+        return packed(arrays)
+
+    monkeypatch.setattr(result_cache, "packed", packed_late)
+    with ResultCache(path) as cache:
+        for k in range(WRITES_BEGUN):
+            cache.put(str(k), {"a": np.array([float(k)])})
+        assert cache.get("other") is None
+        threading.Timer(0.05, slow.set).start()
+        found = cache.get("2")
+        assert found is not None and found["a"] == 2.0
+        for k in range(WRITES_BEGUN, 3 * WRITES_BEGUN):
+            cache.put(str(k), {"a": np.array([float(k)])})
+    with ResultCache(path) as cache:
+        every = [cache.get(str(k)) for k in range(3 * WRITES_BEGUN)]
+    assert [float(one["a"][0]) for one in every if one is not None] == list(range(3 * WRITES_BEGUN))
+
+
+def test_a_write_that_fails_is_told_by_what_follows(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(_: Arrays) -> bytes:
+        raise sqlite3.OperationalError("disk I/O error")
+
+    with (
+        pytest.raises(RunError, match=r"discovery\.sqlite"),
+        ResultCache(tmp_path / "discovery.sqlite") as cache,
+    ):
+        monkeypatch.setattr(result_cache, "packed", refused)
+        cache.put("k", {})
 
 
 def test_a_jacobian_takes_less_than_half_of_its_bytes() -> None:

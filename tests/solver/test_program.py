@@ -12,15 +12,14 @@ import pytest
 
 from doe_kc.axle import Axle
 from doe_kc.effects import apply_effect
-from doe_kc.solver import compiled, derivative_library, library_on_demand
+from doe_kc.solver import compiled, library_on_demand
 from doe_kc.solver.c_source import EXPRESSIONS
 from doe_kc.solver.compiled import AdaptiveKernel, adaptive_kernel
-from doe_kc.solver.derivative_library import AdaptiveDerivatives, adaptive_derivatives
+from doe_kc.solver.derivative_library import derivative_library
 from doe_kc.solver.kernel import Buffered, interpreted_functions, kernel, kernel_programs
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, find_compiler
 from doe_kc.solver.program import Program, program_of, programs_bytes, read_programs
 from doe_kc.solver.program_library import ProgramFunction, march_library, programs_for, sensitivity_library
-from doe_kc.solver.sensitivity import sensitivities
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 
@@ -152,8 +151,7 @@ def impatient(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
         library()  # from the cache that has it
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     monkeypatch.setattr(library_on_demand, "OPERATIONS_BEFORE_COMPILING", 1)
-    caches = (compiled.compiled_kernel, adaptive_kernel, adaptive_derivatives, kernel)
-    caches = (*caches, derivative_library.derivative_library)
+    caches = (compiled.compiled_kernel, adaptive_kernel, derivative_library, kernel)
     for cache in caches:
         cache.cache_clear()
     yield
@@ -167,24 +165,19 @@ def test_what_is_asked_for_often_is_compiled_with_the_same_digits(
     effects: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     axle = axle_with(effects)
-    paths = ["LLF.z", "spring.rate", "llr.Fy"]
 
     def run() -> list[np.ndarray]:
         solution = solve(axle, ["vertical", "lateral"])
-        slopes = sensitivities(axle, solution, paths)
-        out = [part for case in solution.cases.values() for b in case.branches for part in (b.x, b.y, b.z)]
-        return [*out, slopes.static, *(b for branches in slopes.branches.values() for b in branches)]
+        return [part for case in solution.cases.values() for b in case.branches for part in (b.x, b.y, b.z)]
 
     with monkeypatch.context() as patch:
         patch.setattr(library_on_demand, "OPERATIONS_BEFORE_COMPILING", 10**12)
         programs = run()
         assert not adaptive_kernel(axle.topology).compiled
-        assert not adaptive_derivatives(axle.topology).compiled
     for expected, own in zip(programs, run(), strict=True):
         np.testing.assert_array_equal(own, expected)
     assert adaptive_kernel(axle.topology).compiled
-    assert adaptive_derivatives(axle.topology).compiled
-    assert AdaptiveKernel(axle.topology).compiled and AdaptiveDerivatives(axle.topology).compiled
+    assert AdaptiveKernel(axle.topology).compiled
     assert kernel(axle.topology).constants is not None
 
 

@@ -52,6 +52,8 @@ def tight(axle: Axle) -> Solution:
 
 def step_of(axle: Axle, path: str) -> float:
     """Wide enough to drown rounding; Richardson's extrapolation takes care of the rest."""
+    if path == INPUT_GAIN:
+        return 2e-5  # at 1e-4 a loop with friction is marched in other steps
     if path == "tie_rod.gap":
         return 1e-4
     if path == "tie_rod.flexibility":
@@ -67,9 +69,19 @@ def output_units(names: tuple[str, ...]) -> list[str]:
     return [units[name.split("@")[0]] for name in names]
 
 
+INPUT_GAIN = "input gain"
+"""Name of the column of the gain, which no path of an axle has."""
+
+
+def moved(axle: Axle, path: str, change: float) -> Axle:
+    """The axle with a path, or the gain of the input of every load case, changed."""
+    if path != INPUT_GAIN:
+        return with_values(axle, {path: parameter_value(axle, path) + change})
+    return replace(axle, load_cases={i: replace(c, gain=c.gain + change) for i, c in axle.load_cases.items()})
+
+
 def differences(axle: Axle, path: str, h: float) -> dict[tuple[str, int], np.ndarray]:
-    value = parameter_value(axle, path)
-    up, down = (tight(with_values(axle, {path: value + sign * h})) for sign in (1, -1))
+    up, down = (tight(moved(axle, path, sign * h)) for sign in (1, -1))
     return {
         (case, i): (up.cases[case].branches[i].y - branch.y) / (2 * h)
         for case, solved in down.cases.items()
@@ -128,6 +140,23 @@ def test_dimensions_that_load_cases_use(path: str, *, friction: bool) -> None:
     assert ratio < 1e-5, where
     case = "roll" if path == "WLC.y" else "steer"
     assert path == "right.WLC.y" or np.abs(exact.branches[case][0][:, :, 0]).max() > 0.01
+
+
+@pytest.mark.parametrize("gain", [1.0, 0.97])
+@pytest.mark.parametrize("effect", ["", "steering_friction", "strut_friction"])
+def test_the_gain_of_the_inputs(effect: str, gain: float) -> None:
+    """Of each load case its own; pads that roll by an angle move by its tangent."""
+    axle = apply_effect(short(nominal()), "roll_technique", {}, source="test")
+    axle = moved(axle, INPUT_GAIN, gain - 1.0)
+    if effect:
+        axle = apply_effect(axle, effect, {}, source="test")
+    exact = sensitivities(axle, tight(axle), ["spring.rate"], input_gain=INPUT_GAIN)
+    assert exact.paths == ("spring.rate", INPUT_GAIN)
+    assert not exact.static[:, 1].any() and exact.static[:, 0].any()
+    ratio, where = worst(axle, exact, INPUT_GAIN)
+    assert ratio < 1e-5, where
+    for case, branches in exact.branches.items():
+        assert np.abs(branches[0][:, :, 1]).max() > 0.01, case
 
 
 @pytest.mark.parametrize("path", ["strut.flexibility", "right.strut.flexibility"])
