@@ -15,6 +15,7 @@ import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.curves import CurveSet
+from doe_kc.discovery.derivatives import own_columns
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.thresholds import COMMON_SHARE
@@ -73,7 +74,7 @@ def series_scatter(model: EffectModel, measurement: Measurement) -> SeriesScatte
     rig's inputs are taken off before. NotConverged when the nominal axle has no equilibrium.
     """
     cars, z = measurement.cars, model.centre
-    own = model.own_columns(z, model.residual(z))
+    own = own_columns(model, z, model.residual(z))
     sides = side_differences(model.axle_at(z), model.space, model.likelihood)
     scales = np.linalg.qr(own[:, model.calibrations])[0]
 

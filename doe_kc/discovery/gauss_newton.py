@@ -12,6 +12,7 @@ import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.derivatives import amplitude_columns, own_columns
 from doe_kc.discovery.fit import Fit, cost_of, rewhitened_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import (
@@ -176,10 +177,10 @@ def _expanded(
     known: FloatArray | None = None,
 ) -> Fit:
     """With derivatives at z, those that are `known` taken from there."""
-    own = model.own_columns(z, residual) if known is None else known.copy()
+    own = own_columns(model, z, residual) if known is None else known.copy()
     missing = np.flatnonzero(np.isnan(own[0]))
     places = missing - model.calibrations.stop + model.dimension
-    own[:, missing] = model.amplitude_columns(z, residual, places)
+    own[:, missing] = amplitude_columns(model, z, residual, places.tolist())
     cost = cost_of(model, z, residual)
     return Fit(model, z, residual, model.jacobian(own), cost, evaluations + missing.size, False)
 

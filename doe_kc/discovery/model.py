@@ -1,8 +1,8 @@
-"""An axle with effects of unknown size: its residuals against the records, and their derivatives."""
+"""An axle with effects of unknown size, and its residuals against the records."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import with_values
 from doe_kc.correlation.likelihood import Likelihood
-from doe_kc.correlation.linearization import linearized_curves
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.linear_nuisances import LinearNuisances
@@ -21,19 +20,14 @@ from doe_kc.discovery.screening.contrasts import Contrasts, contrasts
 from doe_kc.discovery.solutions import Solutions
 from doe_kc.discovery.thresholds import (
     AMPLITUDE_LIMIT,
-    AMPLITUDE_STEP,
-    DIRECTION_STEP,
-    INPUT_GAIN,
     NUISANCE_LIMIT,
 )
-from doe_kc.effects import EFFECTS, apply_effect
-from doe_kc.effects._base import observed, reading_gains
+from doe_kc.effects import apply_effect
+from doe_kc.effects._base import observed
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.fields_only import FieldsOnly
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.curve_gradient import scaled_gradients
 from doe_kc.solver.curve_set import curve_set
-from doe_kc.solver.result import NotConverged
 from doe_kc.variables import Space
 
 NO_CHARACTERISTICS = np.zeros(0)
@@ -194,10 +188,11 @@ class EffectModel(FieldsOnly):
         return self._read(self.axle_at(z), z)
 
     def _read(self, axle: Axle, z: FloatArray) -> CurveSet:
-        driven = self._driven(axle, z)
+        driven = self.driven(axle, z)
         return observed(driven, curve_set(self.solutions(driven)))
 
-    def _driven(self, axle: Axle, z: FloatArray) -> Axle:
+    def driven(self, axle: Axle, z: FloatArray) -> Axle:
+        """The axle, its load cases driven by their inputs as calibrated at a point."""
         return calibrated(axle, self.cases, z[self.calibrations])
 
     def residual(self, z: FloatArray) -> FloatArray:
@@ -216,84 +211,3 @@ class EffectModel(FieldsOnly):
         if self.nuisances is None:
             return Jacobian(own)
         return Jacobian(own, self.calibrations.stop, self.nuisances, self.weights)
-
-    def own_columns(self, z: FloatArray, residual: FloatArray) -> FloatArray:
-        """(M, p + m) derivative of the residual to parameters, calibrations and amplitudes. residual: at z.
-
-        Exact to parameters and calibrations, and to amplitudes that move nothing but numbers of the axle.
-        """
-        sound = self.axle_at(z)
-        axle, moves = self._driven(sound, z), self._directions(z, sound)
-        gradients = linearized_curves(
-            axle,
-            self.solutions(axle),
-            self.space,
-            z[: self.parameters],
-            {str(i): m for i, m in moves.items()},
-            "input gain",
-        )
-        gradients = scaled_gradients(gradients, reading_gains(axle))
-        exact = self.likelihood.jacobian(gradients, np.zeros((0, len(gradients.paths))))
-        out = np.zeros((residual.size, z.size - self.linear.stop + self.linear.start))
-        out[:, : self.parameters] = exact[:, : self.parameters]
-        self._set_calibration_columns(out, exact[:, -1], sound)
-        amplitudes = out[:, self.calibrations.stop :]
-        known = np.array(list(moves), dtype=int) - self.dimension
-        amplitudes[:, known] = exact[:, self.parameters : -1]
-        others = np.delete(np.arange(amplitudes.shape[1]), known)
-        amplitudes[:, others] = self.amplitude_columns(z, residual, self.dimension + others)
-        return out
-
-    def _directions(self, z: FloatArray, here: Axle) -> dict[int, dict[str, float]]:
-        """Place in z of an amplitude -> what it changes the internal values of the axle at z, `here`, by.
-
-        Without those that change anything else, its equations or what the rig reads, and those so small that
-        they stand for none: their derivatives are differences.
-        """
-        out: dict[int, dict[str, float]] = {}
-        in_car = ((h, p) for h, p in self.places() if not EFFECTS[h.effect].on_rig)
-        for i in (i for _, place in in_car for i in range(place.start, place.stop)):
-            moved = z.copy()
-            moved[i] += DIRECTION_STEP
-            there = self.axle_at(moved)
-            change = {
-                name: (value - here.values[name]) / DIRECTION_STEP
-                for name, value in there.values.items()
-                if value != here.values.get(name)
-            }
-            same = there.topology == here.topology and there.load_cases == here.load_cases
-            if same and change and there.values.keys() == here.values.keys():
-                out[i] = change
-        return out
-
-    def _set_calibration_columns(self, columns: FloatArray, to_gain: FloatArray, sound: Axle) -> None:
-        """Set those of the columns (M, p + m) that are derivatives to the calibrations, each of which moves
-        its own load case alone. to_gain: (M,) to the gain of each curve's load case. sound: the axle with its
-        inputs as yet not calibrated."""
-        for curve, place in self.likelihood.slices():
-            at = self.calibrations.start + self.cases.index(curve.load_case)
-            columns[place, at] = INPUT_GAIN * sound.load_cases[curve.load_case].gain * to_gain[place]
-
-    def amplitude_columns(
-        self, z: FloatArray, residual: FloatArray, places: Iterable[int] | None = None
-    ) -> FloatArray:
-        """(M, k) derivative to amplitudes by differences. residual: at z. places: (k,) in z, default all."""
-        columns = []
-        for i in range(self.dimension, z.size) if places is None else places:
-            step = AMPLITUDE_STEP if z[i] + AMPLITUDE_STEP <= self.upper[i] else -AMPLITUDE_STEP
-            columns.append(self._difference(z, residual, np.eye(z.size)[i], step))
-        return np.array(columns).T.reshape(residual.size, -1)
-
-    def _difference(
-        self, z: FloatArray, residual: FloatArray, direction: FloatArray, step: float
-    ) -> FloatArray:
-        """(M,) derivative along a direction, from one step; from one the other way where the axle has no
-        equilibrium there, as at the end of its steering lock. NotConverged where it has none on that side
-        either, or may not go there."""
-        try:
-            return np.asarray((self.residual(z + step * direction) - residual) / step)
-        except NotConverged:
-            back = z - step * direction
-            if np.any((back < self.lower) | (back > self.upper)):
-                raise
-        return np.asarray((residual - self.residual(back)) / step)

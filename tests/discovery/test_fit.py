@@ -7,6 +7,12 @@ import pytest
 from scipy.stats import multivariate_normal, norm
 
 from doe_kc.correlation.least_squares import bounded_step
+from doe_kc.discovery.derivatives import (
+    amplitude_columns,
+    amplitude_differences,
+    directions,
+    own_columns,
+)
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
@@ -19,7 +25,7 @@ def test_residual_and_its_derivatives_agree(with_hub: Fit) -> None:
     rng = np.random.default_rng(2)
     step = 1e-4 * rng.standard_normal(z.size) * model.prior_sd
     change = model.residual(z + step) - model.residual(z - step)
-    expected = 2.0 * model.own_columns(z, with_hub.residual) @ step
+    expected = 2.0 * own_columns(model, z, with_hub.residual) @ step
     assert np.linalg.norm(change - expected) < 0.01 * np.linalg.norm(expected)
 
 
@@ -92,15 +98,16 @@ def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
         extended = car.extended(member)
         z = np.concatenate([car.centre, np.full(len(member.sizes), 0.4)])
         residual = extended.residual(z)
-        exact = extended.own_columns(z, residual)[:, extended.calibrations.stop :]
-        differences = extended.amplitude_columns(z, residual)
+        exact = own_columns(extended, z, residual)[:, extended.calibrations.stop :]
+        places = range(extended.dimension, z.size)
+        differences = amplitude_differences(extended, z, residual, places)
+        np.testing.assert_allclose(amplitude_columns(extended, z, residual, places), exact, atol=1e-9)
         assert np.linalg.norm(exact - differences) < 0.01 * np.linalg.norm(differences)
     (friction, hub, _), absent = members, extended.centre[: car.dimension]
-    assert car.extended(hub)._directions(np.append(absent, [0.0, 0.5])).keys() == {car.dimension + 1}
-    assert car.extended(friction)._directions(np.append(absent, [0.5, 0.0])).keys() == {
-        car.dimension,
-        car.dimension + 1,
-    }
+    places, (size, other) = [car.dimension, car.dimension + 1], map(str, (car.dimension, car.dimension + 1))
+    assert directions(car.extended(hub), np.append(absent, [0.0, 0.5]), places).keys() == {other}
+    assert directions(car.extended(friction), np.append(absent, [0.5, 0.0]), places).keys() == {size, other}
+    assert directions(car.extended(friction), np.append(absent, [0.5, 0.0]), places[1:]).keys() == {other}
 
 
 @pytest.mark.parametrize("fault", ["rig_channel_gain", "rig_input_gain"])
@@ -111,9 +118,11 @@ def test_derivatives_beside_a_fault_of_the_rig_are_those_of_differences(fault: s
     car = model("named", ("lateral",)).extended(hub).extended(wrong)
     z = np.concatenate([car.centre[: car.dimension], [0.5, 0.4, 2.0]])
     residual = car.residual(z)
-    assert car._directions(z).keys() == {car.dimension, car.dimension + 1}
-    own = car.own_columns(z, residual)
-    differences = car.amplitude_columns(z, residual)
+    places = range(car.dimension, z.size)
+    assert directions(car, z, places).keys() == {str(car.dimension), str(car.dimension + 1)}
+    own = own_columns(car, z, residual)
+    differences = amplitude_differences(car, z, residual, places)
+    np.testing.assert_allclose(amplitude_columns(car, z, residual, places), own[:, -3:], atol=1e-9)
     assert np.linalg.norm(own[:, -3:] - differences) < 0.003 * np.linalg.norm(differences)
     moved = z.copy()
     moved[: car.parameters] += 1e-5

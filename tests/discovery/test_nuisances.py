@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.likelihood import record_likelihood
+from doe_kc.discovery.derivatives import amplitude_columns
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import fit, known_columns
 from doe_kc.discovery.jacobian import Jacobian
@@ -41,7 +42,8 @@ def test_a_stop_touches_inside_the_sweep() -> None:
 def test_the_calibration_is_the_effect_s_own_column(tuned: Fit, case: str) -> None:
     model = tuned.model.extended(wrong_input(case))
     place = model.calibrations.start + model.cases.index(case)
-    effect = model.amplitude_columns(np.append(tuned.z, 0.0), tuned.residual)[:, 0] / np.log(1.05)
+    z = np.append(tuned.z, 0.0)
+    effect = amplitude_columns(model, z, tuned.residual, [tuned.z.size])[:, 0] / np.log(1.05)
     calibration = tuned.jacobian.dense[:, place] / INPUT_GAIN
     assert np.linalg.norm(effect) > 50.0
     assert np.linalg.norm(effect - calibration) < 0.01 * np.linalg.norm(effect)

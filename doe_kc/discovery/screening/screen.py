@@ -15,6 +15,7 @@ import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.discovery.derivatives import amplitude_columns
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Changes
@@ -236,7 +237,7 @@ def _solved(
 def _derived(model: EffectModel, fit: Fit, best: _AmplitudeSolution, place: slice) -> _AmplitudeSolution:
     """The same with columns taken there. place: of the amplitudes in z."""
     z, residual = np.concatenate([fit.z, best.amplitudes]), fit.residual + best.change.rows[:, 0]
-    columns = model.amplitude_columns(z, residual, range(place.start, place.stop))
+    columns = amplitude_columns(model, z, residual, range(place.start, place.stop))
     return replace(best, columns=fit.changes(columns))
 
 

@@ -15,6 +15,7 @@ from scipy.linalg import block_diag, cho_factor, cho_solve
 
 from doe_kc.correlation.curve_data import CurveData
 from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.derivatives import own_columns
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import AMPLITUDE_FACTOR, TEST_WORTH, TESTS_LISTED
@@ -71,7 +72,7 @@ def _separation(one: Fit, other: Fit, case: LoadCase, like: str) -> float:
     free, count = model.dimension - model.parameters, model.parameters
     z = _point(model, other)
     difference = model.residual(z)
-    jacobian = model.own_columns(z, difference)
+    jacobian = own_columns(model, z, difference)
     kept = np.r_[0:count, other.model.dimension : other.z.size]
     known = other.covariance[np.ix_(kept, kept)]
     covariance = block_diag(known[:count, :count], np.eye(free), known[count:, count:])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
+from doe_kc.discovery import gauss_newton
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit, fit
 from doe_kc.discovery.jacobian import Jacobian
@@ -44,13 +45,13 @@ def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
 
 def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     search, taken = discovery("named").search, []
-    tuning = EffectModel.own_columns
+    tuning = gauss_newton.own_columns
 
-    def counted(self: EffectModel, *at: FloatArray) -> FloatArray:
-        taken.append(self.left_out)
-        return tuning(self, *at)
+    def counted(model: EffectModel, *at: FloatArray) -> FloatArray:
+        taken.append(model.left_out)
+        return tuning(model, *at)
 
-    monkeypatch.setattr(EffectModel, "own_columns", counted)
+    monkeypatch.setattr(gauss_newton, "own_columns", counted)
     near = fit_without(search.with_effects, "lateral_opposite")
     assert not taken and near.converged
     anew = fit(near.model, search.with_effects.z)
