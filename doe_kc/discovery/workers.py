@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import closing
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -105,12 +106,19 @@ class DiscoveryWorkers:
         return out
 
     def fits(
-        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+        self,
+        starts: Sequence[FitStart],
+        what: str,
+        *,
+        derivatives: Callable[[Fit], bool] = lambda _: True,
+        enough: Callable[[Fit | None], bool] = lambda _: False,
     ) -> list[Fit | None]:
         """Fits from several starts, None where one has no equilibrium.
 
         They are of the very models of `starts`, wherever they were computed: whether two fits are to the same
         errors is asked by identity. derivatives: whether a fit keeps its own, see `Fit.without_derivatives`.
+        enough: whether the fit from the first start will do; then that alone is given. Workers begin with the
+        others meanwhile, which is for nothing then.
         """
         keys = [_fit_key(start) for start in starts]
         self._begun += len(starts)
@@ -130,11 +138,14 @@ class DiscoveryWorkers:
         tasks = (
             (s.model, s.z, known_columns(s.near, s.model), s.ceiling) for s in (starts[i] for i in missing)
         )
-        for at, result in self._run(_fit_one, tasks):
-            self._cache.put(keys[missing[at]], result)
-            unpacked(missing[at], result)
-            self.watch(what, 1)
-        return [out[i] for i in range(len(starts))]
+        with closing(self._run(_fit_one, tasks)) as results:
+            while not (first := 0 in out and enough(out[0])) and len(out) < len(starts):
+                at, result = next(results)
+                self._cache.put(keys[missing[at]], result)
+                unpacked(missing[at], result)
+                self.watch(what, 1)
+        self._begun -= len(starts) - len(out)
+        return [out[i] for i in range(1 if first else len(starts))]
 
     def held_out(self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit) -> tuple[HeldOut, ...]:
         """Every load case of the records, predicted from the others; see `held_out`."""
@@ -164,10 +175,13 @@ class DiscoveryWorkers:
 
         return waited
 
-    def _run(self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
+    def _run(
+        self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]
+    ) -> Generator[tuple[int, T], None, None]:
         """(place, result) of every task as it is done; in this process one is done before the next begins.
 
-        No more are begun ahead than keep every worker busy: what they are given is large.
+        No more are begun ahead than keep every worker busy: what they are given is large. Closed before its
+        end, it begins with none of the others.
         """
         if isinstance(self._executor, InProcess):
             for i, call in enumerate(arguments):
@@ -177,14 +191,18 @@ class DiscoveryWorkers:
         begun: dict[Future[T], int] = {}
         for i, call in islice(following, TASKS_AHEAD * self._workers):
             begun[self._executor.submit(task, *call)] = i
-        while begun:
-            for future in wait(begun, return_when=FIRST_COMPLETED).done:
-                place = begun.pop(future)
-                for i, call in islice(following, 1):
-                    begun[self._executor.submit(task, *call)] = i
-                return_free_pages()
-                yield place, future.result()
-                return_free_pages()
+        try:
+            while begun:
+                for future in wait(begun, return_when=FIRST_COMPLETED).done:
+                    place = begun.pop(future)
+                    for i, call in islice(following, 1):
+                        begun[self._executor.submit(task, *call)] = i
+                    return_free_pages()
+                    yield place, future.result()
+                    return_free_pages()
+        finally:
+            for future in begun:
+                future.cancel()
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:

@@ -124,3 +124,25 @@ def test_fits_are_kept_without_derivatives_on_request_and_no_more_are_begun_than
         first = next(done)
         assert first == (0, 0.0) and len(asked) <= TASKS_AHEAD + 1
         assert dict([first, *done]) == {i: float(i) for i in range(9)}
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_first_fit_that_will_do_is_the_only_one(tuned: Fit, count: int, tmp_path: Path) -> None:
+    """In this process nothing else is computed; workers' other fits are not waited for."""
+    extended, z = start(tuned)
+    starts = [FitStart(extended, np.append(z[:-2], [a, a]), tuned) for a in (0.5, 0.7, 0.3, 0.9)]
+    stored: list[str] = []
+
+    class Noted(ResultCache):
+        def put(self, key: str, arrays: Arrays) -> None:
+            stored.append(key)
+            super().put(key, arrays)
+
+    with processes(count) as executor, Noted(tmp_path / "discovery.sqlite") as cache:
+        workers = DiscoveryWorkers(executor, cache, workers=count)
+        (first,) = workers.fits(starts, "", enough=lambda refit: refit is not None)
+        assert count == 2 or len(stored) == 1
+        assert len(workers.fits(starts, "", enough=lambda refit: refit is None)) == len(starts)
+        assert len(set(stored)) == len(starts)
+        (again,) = workers.fits(starts, "", enough=lambda refit: refit is not None)
+    assert first is not None and again is not None and np.array_equal(first.z, again.z)

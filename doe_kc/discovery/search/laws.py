@@ -154,9 +154,11 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> Fit:
     start = with_most_numbers(current, _frictions_to_free(current))
     if start.model is current.model:
         return current
-    refits = workers.fits([start], "opening laws")
-    if all(f is None or f.cost > current.cost for f in refits):
-        refits += workers.fits(_other_travels(start), "opening laws")
+    refits = workers.fits(
+        [start, *_other_travels(start)],
+        "opening laws",
+        enough=lambda refit: refit is not None and refit.cost <= current.cost,
+    )
     best = min((f for f in refits if f is not None), key=lambda f: f.cost, default=None)
     if best is None or best.cost > current.cost + 2.0 * FREE_SHAPE_LOSS:
         return current
@@ -211,10 +213,11 @@ def best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:
     two stages ended 160 of ln evidence behind the fit from 0.7 of that travel: 224.7 N over 0.38 mm, the
     car's.
     """
-    (refit,) = workers.fits([start], "opening laws")
-    if refit is not None and refit.residual_map.chance >= NOISE_CHANCE:
-        return refit
-    fits = [refit, *workers.fits(_other_travels(start), "opening laws")]
+    fits = workers.fits(
+        [start, *_other_travels(start)],
+        "opening laws",
+        enough=lambda refit: refit is not None and refit.residual_map.chance >= NOISE_CHANCE,
+    )
     return max((f for f in fits if f is not None), key=lambda f: f.evidence, default=None)
 
 

@@ -29,8 +29,17 @@ class Answers(DiscoveryWorkers):
         self.cost, self.best, self.laws = cost, best, [""] * 0
 
     def fits(
-        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+        self,
+        starts: Sequence[FitStart],
+        what: str,
+        *,
+        derivatives: Callable[[Fit], bool] = lambda _: True,
+        enough: Callable[[Fit | None], bool] = lambda _: False,
     ) -> list[Fit | None]:
+        first = self._answers(starts[:1])
+        return first if not first or enough(first[0]) else [*first, *self._answers(starts[1:])]
+
+    def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
         laws = [
             next(h.law for h in s.model.members if len(EFFECTS[h.effect].variants(h)) > 1) for s in starts
         ]

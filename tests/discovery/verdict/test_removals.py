@@ -23,9 +23,14 @@ class Counted(DiscoveryWorkers):
         self.asked: list[tuple[int, bool]] = []
 
     def fits(
-        self, starts: Sequence[FitStart], what: str, *, derivatives: Callable[[Fit], bool] = lambda _: True
+        self,
+        starts: Sequence[FitStart],
+        what: str,
+        *,
+        derivatives: Callable[[Fit], bool] = lambda _: True,
+        enough: Callable[[Fit | None], bool] = lambda _: False,
     ) -> list[Fit | None]:
-        found = super().fits(starts, what, derivatives=derivatives)
+        found = super().fits(starts, what, derivatives=derivatives, enough=enough)
         if what == "taking effects out":
             self.asked.append((len(starts), any(f is not None and derivatives(f) for f in found)))
         return found
