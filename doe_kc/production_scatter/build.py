@@ -171,9 +171,9 @@ def _check_correlation(model: ScatterModel, source: str) -> None:
         if values[0] >= -EIGENVALUE_ROUNDING:
             continue
         weight = model.by_parameter(vectors[:, 0] ** 2)
-        worst = [
-            model.scatters[i].parameter.path for i in np.argsort(-weight, kind="stable")[:CORRELATED_NAMED]
-        ]
+        shares = np.round(weight / weight.max(), 2)  # equal ones in the order of the axle, by any eigensolver
+        order = np.argsort(-shares, kind="stable")[:CORRELATED_NAMED]
+        worst = [model.scatters[i].parameter.path for i in order if shares[i] > 0.0]
         raise InputError(
             f"{source}: tolerance.correlation: no cars have all these correlations at once (smallest "
             f"eigenvalue {values[0]:.3g}); make those between {', '.join(worst)} smaller, or give them the "

@@ -94,7 +94,7 @@ BAD = {
     ),
     "impossible": (
         {"correlation": [{"match": ["LLF.x", "LLF.y", "LLF.z"], "value": -0.9}]},
-        "no cars have all these correlations at once .* between LLF.x, LLF.y, LLF.z",
+        "no cars have all these correlations at once .* between LLF.x, LLF.y, LLF.z smaller",
     ),
     "unlike": (
         {
