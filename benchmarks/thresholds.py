@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
-from doe_kc.discovery import fit, thresholds
+from doe_kc.discovery import gauss_newton, thresholds
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.result import Discovery
 from tests.discovery.cases import known_to, model
@@ -55,7 +55,8 @@ def _assign(readers: list[ModuleType], name: str, value: Any) -> None:
     for module in readers:
         setattr(module, name, value)
     if name == "FIT_STEPS":  # a default argument, read when `fit` was defined
-        fit.fit.__kwdefaults__["steps"] = value
+        assert gauss_newton.fit.__kwdefaults__ is not None
+        gauss_newton.fit.__kwdefaults__["steps"] = value
 
 
 def line(car: str, what: str) -> str:
