@@ -27,7 +27,8 @@ class Named:
 
 @dataclass(frozen=True)
 class Answer:
-    """effects: most important first. classes: ids that are not told apart, one tuple an effect.
+    """effects: most important first. traces: effects too small for a name. classes: ids that are not told
+    apart, one tuple an effect.
 
     unexplained_at: (load case, response). gap: nominal, tuned, with_effect, best_decoy as whitened RMS.
     held_out: load case -> (tuned, with effect). diagnosable: effect -> (detectability, chance of a wrong
@@ -36,6 +37,7 @@ class Answer:
 
     verdict: Verdict
     effects: tuple[Named, ...]
+    traces: tuple[Named, ...]
     classes: tuple[tuple[str, ...], ...]
     unexplained_at: tuple[tuple[str, str], ...]
     gap: Mapping[str, float]
@@ -81,7 +83,7 @@ class Answer:
         return self.verdict
 
 
-FAILED = Answer("failed", (), (), (), {}, {}, {}, (), frozenset(), float("nan"))
+FAILED = Answer("failed", (), (), (), (), {}, {}, {}, (), frozenset(), float("nan"))
 """The analyser gave none."""
 
 
@@ -92,6 +94,7 @@ def read_answer(data: Mapping[str, Any] | None) -> Answer:
     return Answer(
         verdict=data["verdict"],
         effects=tuple(_named(e) for e in data.get("effects") or ()),
+        traces=tuple(_named(e) for e in data.get("traces") or ()),
         classes=tuple(tuple(c) for c in data.get("classes") or ()),
         unexplained_at=tuple((u["load_case"], u["response"]) for u in data.get("unexplained_at") or ()),
         gap={k: float(v) for k, v in (data.get("gap") or {}).items() if v is not None},

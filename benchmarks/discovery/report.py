@@ -21,6 +21,7 @@ from benchmarks.discovery.table import (
     located,
     members_named,
     parameter_lines,
+    small_effect_lines,
     suite_table,
 )
 
@@ -84,6 +85,7 @@ def lines(found: Sequence[Score], run: Run, followed: Sequence[Score] = ()) -> l
         f"- Place right, of rightly named effects that have one: {located(found)}",
         f"- Excluded below their true size, of hidden effects that are not named: {excluded_wrongly(found)}",
         *parameter_lines(found),
+        *small_effect_lines(found),
         *closed_lines(found),
         *followup_lines(found, followed),
         *calibration_lines(found),

@@ -44,7 +44,9 @@ class Score:
     the named effects, and the best other one, close; nan where the answer gives none. members: hidden effects
     that are named, also beside something unexplained, over those diagnosable by themselves beside the others.
     false_names: names, those among them, that are not what is there, over all. excluded: hidden effects
-    that are excluded below their size, over those not named.
+    that are excluded below their size, over those not named. traces: parameters of effects told as traces
+    that the car has; traced: such effects, over all told. limits: small effects of the car whose limit of
+    exclusion is below their size, over those with one.
     """
 
     name: str
@@ -72,6 +74,9 @@ class Score:
     members: tuple[int, int]
     false_names: tuple[int, int]
     excluded: tuple[int, int]
+    traces: tuple[Estimate, ...]
+    traced: tuple[int, int]
+    limits: tuple[int, int]
     seconds: float
 
 
@@ -96,6 +101,7 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
     names, committed = frozenset(answer.names), frozenset(answer.committed)
     small = frozenset(e.id for e in answer.effects if e.id in committed - truth.ids and _traced(truth, e))
     pairs = [(t, n) for t in truth.effects for n in answer.effects if n.id == t.id and t.id in names]
+    traces = [(t, n) for t in (*truth.effects, *truth.small) for n in answer.traces if _same(t, n)]
     return Score(
         name=truth.name,
         suite=truth.suite,
@@ -126,6 +132,9 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
         members=_members(truth, committed, predicted),
         false_names=(len(committed - truth.ids - small), len(committed)),
         excluded=_excluded(truth, answer, names),
+        traces=tuple(_estimates(traces)),
+        traced=(len(traces), len(answer.traces)),
+        limits=_limits(truth, answer),
         seconds=answer.seconds,
     )
 
@@ -134,6 +143,18 @@ def _excluded(truth: Truth, answer: Answer, names: frozenset[str]) -> tuple[int,
     unnamed = [e for e in truth.effects if e.id not in names and truth.suite != DELETED]
     wrong = [e for e in unnamed if any(contradicted(e, s) for s in said_of(e, answer.excluded))]
     return len(wrong), len(unnamed)
+
+
+def _same(true: TrueEffect, told: Named) -> bool:
+    """Whether a trace that is told is that effect, where it has a place of its own there."""
+    return told.id == true.id and place(true.id, true.location) in ("", place(told.id, told.location or ""))
+
+
+def _limits(truth: Truth, answer: Answer) -> tuple[int, int]:
+    """Small effects that are larger than their limit, over those of whose numbers one has a limit."""
+    said = [(t, s) for t in truth.small for s in answer.excluded if s.id == t.id]
+    known = [(t, s) for t, s in said if any(s.above.get(n) is not None for n in t.parameters)]
+    return sum(contradicted(t, s) for t, s in known), len(known)
 
 
 def _members(truth: Truth, names: frozenset[str], predicted: Predicted | None) -> tuple[int, int]:

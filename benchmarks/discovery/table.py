@@ -106,6 +106,20 @@ def excluded_wrongly(found: Iterable[Score]) -> Share:
     return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
 
 
+def small_effect_lines(found: Sequence[Score]) -> list[str]:
+    """How far traces and limits of exclusion can be trusted, by the small shares of all other effects that
+    every car has."""
+    traced = Share(sum(s.traced[0] for s in found), sum(s.traced[1] for s in found))
+    limits = Share(sum(s.limits[0] for s in found), sum(s.limits[1] for s in found))
+    lines = [f"- Effects told as traces that the car has: {traced}"]
+    for label, approximate in (("same law", False), ("law of another shape", True)):
+        z = np.abs([e.z for s in found for e in s.traces if e.approximate == approximate])
+        if z.size:
+            inside = ", ".join(f"within {n} sd: {share(list(z < n))}" for n in (1, 2))
+            lines.append(f"- Numbers of those traces, {label}: {z.size}, {inside}")
+    return [*lines, f"- Small effects of the car above their limit of exclusion: {limits} (target <= 5 %)"]
+
+
 def followup_lines(found: Sequence[Score], followed: Sequence[Score]) -> list[str]:
     """What the tests advised bring to confounded cars. followed: those not named at once, after the tests."""
     again = {s.name: s for s in followed}

@@ -23,12 +23,12 @@ class TrueEffect:
 
 @dataclass(frozen=True)
 class Truth:
-    """clutter: id -> parameters of what is there in traces. shows: where what no library has can be seen."""
+    """small: what is there in traces. shows: where what no library has can be seen."""
 
     name: str
     suite: str
     effects: tuple[TrueEffect, ...]
-    clutter: Mapping[str, Mapping[str, float]]
+    small: tuple[TrueEffect, ...]
     outside: str
     shows: frozenset[tuple[str, str]]
 
@@ -36,6 +36,11 @@ class Truth:
     def ids(self) -> frozenset[str]:
         """Hidden effects."""
         return frozenset(e.id for e in self.effects)
+
+    @property
+    def clutter(self) -> Mapping[str, Mapping[str, float]]:
+        """Id -> parameters of what is there in traces."""
+        return {e.id: e.parameters for e in self.small}
 
     @property
     def label(self) -> str:
@@ -48,16 +53,18 @@ class Truth:
 def read_truth(key: str) -> Truth:
     """From the key's TOML."""
     data = tomllib.loads(key)
-    effects = tuple(
-        TrueEffect(e["id"], e["size"], e["location"], e["parameters"], e["approximate"])
-        for e in data["effects"]
+    effects, small = (
+        tuple(
+            TrueEffect(e["id"], e["size"], e["location"], e["parameters"], e["approximate"]) for e in data[of]
+        )
+        for of in ("effects", "clutter")
     )
     outside = data.get("outside", {})
     return Truth(
         name=data["name"],
         suite=data["suite"],
         effects=effects,
-        clutter={c["id"]: c["parameters"] for c in data["clutter"]},
+        small=small,
         outside=outside.get("kind", ""),
         shows=frozenset((case, response) for case, response in outside.get("shows", [])),
     )

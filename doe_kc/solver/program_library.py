@@ -55,8 +55,8 @@ def march_library() -> ctypes.CDLL:
 def sensitivity_library() -> ctypes.CDLL:
     """sensitivity.c and what carries programs out, for as many points side by side as `point_lanes`.
 
-    Functions are those of the C library, lane by lane, not of its vector library: numbers are the same on all
-    processors.
+    Functions are those of the C library, lane by lane: its vector library's are right within 4 units in the
+    last place only.
     """
     instructions = replace(own_instruction_set(), library=False)
     lanes = instructions.defines + LANES_HEADER.read_text()

@@ -16,7 +16,7 @@ from benchmarks.discovery.report import Run, write
 from benchmarks.discovery.scoring import Predicted, Score, score
 from benchmarks.discovery.statistics import brier, calibration_error, reliability, wilson
 from benchmarks.discovery.suites import ALL_SUITES
-from benchmarks.discovery.table import followup_lines, groups
+from benchmarks.discovery.table import followup_lines, groups, small_effect_lines
 from benchmarks.discovery.truth import TrueEffect, Truth
 
 RUN = Run("python x", "example", 1, "abc", "a machine")
@@ -25,7 +25,8 @@ RUN = Run("python x", "example", 1, "abc", "a machine")
 def _truth(name: str, suite: str, *ids: str, outside: str = "") -> Truth:
     effects = tuple(TrueEffect(i, 1.0, "", {"force_N": 250.0}, False) for i in ids)
     shows = frozenset({("brake", "spin")}) if outside else frozenset()
-    return Truth(name, suite, effects, {"strut_friction": {"force_N": 4.0}}, outside, shows)
+    small = (TrueEffect("strut_friction", 0.04, "", {"force_N": 4.0}, True),)
+    return Truth(name, suite, effects, small, outside, shows)
 
 
 TRUTHS = (
@@ -122,7 +123,7 @@ def test_a_place_that_the_records_do_not_show_is_left_open(
     place: str, above: list[float | None], is_open: bool
 ) -> None:
     effect = TrueEffect("bushing_preload", 1.0, "LLR", {"LLR[0]": 40.0, "LLR[1]": 600.0}, False)
-    truth = Truth("x", "confounded", (effect,), {}, "", frozenset())
+    truth = Truth("x", "confounded", (effect,), (), "", frozenset())
     said = {"id": "bushing_preload", "location": place, "above": {place: {"value": above, "unit": "N"}}}
     assert score(truth, read_answer({"verdict": "none", "excluded": [said]})).open is is_open
 
@@ -163,7 +164,7 @@ def test_luck_names_wrongly_and_is_sure() -> None:
 def test_an_exclusion_of_what_is_there_is_counted(
     ident: str, place: str, true: dict[str, float], above: dict[str, Any], wrong: bool
 ) -> None:
-    truth = Truth("x", "single", (TrueEffect(ident, 1.0, place, true, False),), {}, "", frozenset())
+    truth = Truth("x", "single", (TrueEffect(ident, 1.0, place, true, False),), (), "", frozenset())
     said = {"id": ident, "location": "LLR" if ident == "bushing_preload" else None}
     said["above"] = {key: {"value": value, "unit": ""} for key, value in above.items()}
     found = score(truth, read_answer({"verdict": "none", "excluded": [said]}))
@@ -190,6 +191,41 @@ def test_a_trace_counts_as_such_only_in_its_own_size() -> None:
     assert answer(80.0).wrong and not answer(80.0).trace
 
 
+def test_a_trace_that_is_told_is_scored_by_what_the_car_has() -> None:
+    """Of a small effect and of a hidden one; not of what the car has not got, nor at another place."""
+    hidden = TrueEffect("bushing_preload", 0.1, "LLR", {"LLR[1]": 60.0}, False)
+    small = TrueEffect("strut_friction", 0.04, "", {"force_N": 4.0}, True)
+    truth = Truth("x", "single", (hidden,), (small,), "", frozenset())
+
+    def trace(ident: str, location: str | None, **values: float) -> dict[str, Any]:
+        numbers = {key: {"value": value, "sd": 1.0, "unit": "N"} for key, value in values.items()}
+        return {"id": ident, "location": location, "parameters": numbers}
+
+    told = [
+        trace("strut_friction", None, force_N=5.5),
+        trace("bushing_preload", "LLR", **{"LLR[1]": 57.0}),
+        trace("bushing_preload", "LLF", **{"LLF[1]": 57.0}),
+        trace("hub_compliance", None, camber_Nm_deg=90000.0),
+    ]
+    found = score(truth, read_answer({"verdict": "none", "traces": told}))
+    assert found.traced == (2, 4)
+    assert {(e.effect, e.z, e.approximate) for e in found.traces} == {
+        ("strut_friction", 1.5, True),
+        ("bushing_preload", -3.0, False),
+    }
+    lines = "\n".join(small_effect_lines([found]))
+    assert "that the car has: 2/4" in lines and "another shape: 1, within 1 sd: 0/1" in lines
+
+
+@pytest.mark.parametrize(("limit", "above"), [(3.0, (1, 1)), (5.0, (0, 1)), (None, (0, 0))])
+def test_a_limit_of_exclusion_is_scored_by_the_small_effect_that_every_car_has(
+    limit: float | None, above: tuple[int, int]
+) -> None:
+    said = {"id": "strut_friction", "location": None, "above": {"force_N": {"value": limit, "unit": "N"}}}
+    found = score(TRUTHS[0], read_answer({"verdict": "none", "excluded": [said]}))
+    assert found.limits == above and found.excluded == (0, 0)
+
+
 def test_leads_of_an_unexplained_verdict_are_no_names() -> None:
     effect = {"id": "hub_compliance", "probability": 0.99, "parameters": {}}
     found = score(TRUTHS[1], read_answer({"verdict": "unexplained", "effects": [effect]}))
@@ -203,7 +239,7 @@ def test_an_analysis_that_broke_off_is_no_answer() -> None:
 
 def test_location_and_numbers() -> None:
     effect = TrueEffect("bushing_preload", 1.0, "LLR", {"LLR[1]": 600.0}, False)
-    truth = Truth("x", "single", (effect,), {}, "", frozenset())
+    truth = Truth("x", "single", (effect,), (), "", frozenset())
     numbers = {"LLR[1]": {"value": 660.0, "sd": 40.0, "unit": "N"}}
     named = {"id": "bushing_preload", "location": "llr", "probability": 0.95, "parameters": numbers}
     found = score(truth, read_answer({"verdict": "named", "effects": [named]}))
@@ -214,7 +250,7 @@ def test_location_and_numbers() -> None:
 
 def test_a_stiffer_left_is_a_softer_right() -> None:
     effect = TrueEffect("left_right_asymmetry", 1.0, "LLR_L", {"LLR_L": 1.25}, False)
-    truth = Truth("x", "single", (effect,), {}, "", frozenset())
+    truth = Truth("x", "single", (effect,), (), "", frozenset())
     numbers = {"LLR_R": {"value": 0.78, "sd": 0.02, "unit": "-"}}
     named = {"id": effect.id, "location": "LLR_R", "probability": 0.95, "parameters": numbers}
     found = score(truth, read_answer({"verdict": "named", "effects": [named]}))

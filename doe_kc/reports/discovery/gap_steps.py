@@ -43,10 +43,13 @@ def gap_steps(discovery: Discovery) -> list[GapStep]:
 
 
 def _changed(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> str:
-    """`+ steering friction`, `− strut bending`."""
-    new = [f"+ {_name(h)}" for h in after if h.name not in {b.name for b in before}]
+    """`+ steering friction`, `− strut bending`, `other law of strut friction`."""
+    laws = {h.name: h.law for h in before}
+    new = [f"+ {_name(h)}" for h in after if h.name not in laws]
     gone = [f"− {_name(h)}" for h in before if h.name not in {a.name for a in after}]
-    return ", ".join([*new, *gone]) or "refitted"
+    bent = [_name(h) for h in after if h.law != laws.get(h.name, h.law)]
+    changed = [f"other law of {' and '.join(bent)}"] if bent else []
+    return ", ".join([*new, *gone, *changed]) or "refitted"
 
 
 def _name(hypothesis: Hypothesis) -> str:

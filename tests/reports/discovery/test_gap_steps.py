@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -25,6 +26,18 @@ def test_two_effects_are_two_steps_each_closer_to_the_records() -> None:
     steps = gap_steps(found)
     assert sum(s.label.startswith("+ ") for s in steps) >= 2
     assert all(later.gap < earlier.gap for earlier, later in pairwise(steps))
+
+
+def test_a_law_that_changed_is_a_step_of_its_own() -> None:
+    """Of two steps that were both called refitted nobody knew what had been done."""
+    found = discovery("friction")
+    last = found.search.steps[-1]
+    (friction,) = found.fitted.model.members
+    before = replace(last, members=(replace(friction, law="duhem"),))
+    after = replace(last, members=(replace(friction, law="iwan"),))
+    search = replace(found.search, steps=(found.search.steps[0], before, after))
+    labels = [s.label for s in gap_steps(replace(found, search=search))]
+    assert labels[2:4] == ["+ steering friction", "other law of steering friction"]
 
 
 @pytest.mark.parametrize("car", ["none", "two"])
