@@ -11,6 +11,7 @@ from benchmarks.discovery.scoring import Score
 from benchmarks.discovery.statistics import Share, brier, calibration_error, reliability, share
 from benchmarks.discovery.suites import ALL_SUITES
 from benchmarks.discovery.truth import DELETED
+from doe_kc.ground.typing import FloatArray
 
 Measure = Callable[[Score], bool]
 MEASURES: dict[str, Measure] = {
@@ -115,8 +116,7 @@ def small_effect_lines(found: Sequence[Score]) -> list[str]:
     for label, approximate in (("same law", False), ("law of another shape", True)):
         z = np.abs([e.z for s in found for e in s.traces if e.approximate == approximate])
         if z.size:
-            inside = ", ".join(f"within {n} sd: {share(list(z < n))}" for n in (1, 2))
-            lines.append(f"- Numbers of those traces, {label}: {z.size}, {inside}")
+            lines.append(f"- Numbers of those traces, {label}: {z.size}, {_within(z)}")
     return [*lines, f"- Small effects of the car above their limit of exclusion: {limits} (target <= 5 %)"]
 
 
@@ -136,6 +136,11 @@ def followup_lines(found: Sequence[Score], followed: Sequence[Score]) -> list[st
     ]
 
 
+def _within(z: FloatArray) -> str:
+    """Shares of errors, in standard deviations without a sign, within one and two."""
+    return ", ".join(f"within {n} sd: {share(list(z < n))}" for n in (1, 2))
+
+
 def parameter_lines(found: Sequence[Score]) -> list[str]:
     """How good the numbers of rightly named effects are."""
     lines = []
@@ -147,10 +152,9 @@ def parameter_lines(found: Sequence[Score]) -> list[str]:
         if chosen:
             z = np.abs([e.z for e in chosen])
             relative = np.abs([e.relative for e in chosen])
-            inside = ", ".join(f"within {n} sd: {share(list(z < n))}" for n in (1, 2))
             middle, most = 100 * np.nanmedian(relative), 100 * np.nanquantile(relative, 0.9)
             lines.append(
-                f"- Parameters, {label}: {len(chosen)}, {inside} (68 % and 95 % where honest); "
+                f"- Parameters, {label}: {len(chosen)}, {_within(z)} (68 % and 95 % where honest); "
                 f"error, median {middle:.1f} %, 90 in 100 below {most:.0f} %"
             )
     return lines

@@ -134,7 +134,7 @@ class _Differentiator:
         input_gain: str = "",
     ) -> None:
         self._static, self._paths, self._moves = static, paths, moves
-        self._gain = np.array([float(bool(input_gain) and p == input_gain) for p in paths])
+        self._gain = np.array([float(p == input_gain) for p in paths])
         self._kernel = kernel(axle.topology)
         c = self._kernel.constant_values(dict(axle.values))
         p = np.array([axle.values[n] for n in self._kernel.layout.parameter_names])
