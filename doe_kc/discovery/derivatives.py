@@ -31,7 +31,7 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
     """(M, p + m) derivative of the residual to parameters, calibrations and amplitudes. residual: at z."""
     sound, out = model.axle_at(z), np.zeros((residual.size, model.linear.start + len(model.sizes)))
     axle, places = model.driven(sound, z), range(model.dimension, z.size)
-    moves, own = directions(model, z, places), z[: model.parameters]
+    moves, own = directions(model, z, sound, places), z[: model.parameters]
     gradients = linearized_curves(axle, model.solutions(axle), model.space, own, moves, GAIN_COLUMN)
     exact = _whitened(model, gradients, axle)
     out[:, : model.parameters] = exact[:, : model.parameters]
@@ -47,22 +47,23 @@ def amplitude_columns(
     model: EffectModel, z: FloatArray, residual: FloatArray, places: Sequence[int]
 ) -> FloatArray:
     """(M, k) derivative of the residual to the amplitudes at some places (k,) in z. residual: at z."""
-    known, moves = np.zeros((residual.size, 0)), directions(model, z, places)
+    sound, known = model.axle_at(z), np.zeros((residual.size, 0))
+    moves = directions(model, z, sound, places)
     if moves:
-        axle = model.driven(model.axle_at(z), z)
+        axle = model.driven(sound, z)
         solution = model.solutions(axle)
         exact = sensitivities(axle, solution, (), moves, outputs=CURVE_OUTPUTS)
         known = _whitened(model, gradients_of(solution, exact), axle)
     return _with_differences(model, z, residual, places, moves, known)
 
 
-def directions(model: EffectModel, z: FloatArray, places: Sequence[int]) -> Directions:
-    """What the amplitudes at some places change the internal values of the axle at z by.
+def directions(model: EffectModel, z: FloatArray, here: Axle, places: Sequence[int]) -> Directions:
+    """What the amplitudes at some places change the internal values of the axle at z, `here`, by.
 
     Without those that change anything else, its equations or what the rig reads, and those so small that they
     stand for none: their derivatives are differences.
     """
-    here, out = model.axle_at(z), dict[str, dict[str, float]]()
+    out: dict[str, dict[str, float]] = {}
     rig = {i for h, p in model.places() if EFFECTS[h.effect].on_rig for i in range(p.start, p.stop)}
     for i in (i for i in places if i not in rig):
         there = model.axle_at(z + DIRECTION_STEP * np.eye(z.size)[i])
