@@ -17,19 +17,35 @@ from functools import cached_property
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
-from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
 
 @dataclass(frozen=True)
+class Trace:
+    """One size of an effect, of which every car has a little."""
+
+    hypothesis: Hypothesis
+    """The effect in its place."""
+    place: int
+    """Place of the size among `hypothesis.sizes`."""
+
+    @property
+    def size(self) -> Size:
+        """The size."""
+        return self.hypothesis.sizes[self.place]
+
+
+@dataclass(frozen=True)
 class LinearNuisances:
-    """Their columns, of the sides about the axle with the set's effects, of traces about the re-tuned one."""
+    """Their columns, of the sides about the axle with the set's effects, of traces about the re-tuned one, in
+    the end those of compliances about the axle with the set's effects too."""
 
     columns: FloatArray
     """(M, l) change of the residual by each, per its standard deviation; differences between the sides first,
     then traces."""
-    traces: tuple[str, ...] = ()
-    """Name of the hypothesis of each of the last columns, which are traces."""
+    traces: tuple[Trace, ...] = ()
+    """What each of the last columns is the trace of."""
     _last: dict[bytes, FloatArray] = field(default_factory=dict, init=False, compare=False, repr=False)
     """Amounts last asked for -> their change: screenings vary nothing but the sizes of an effect."""
 
@@ -60,12 +76,12 @@ class LinearNuisances:
         """(l,) 1 for a column that counts, 0 for the trace of an effect in the model."""
         names = {h.name for h in members}
         out = np.ones(self.count)
-        out[self.count - len(self.traces) :] = [name not in names for name in self.traces]
+        out[self.count - len(self.traces) :] = [t.hypothesis.name not in names for t in self.traces]
         return out
 
-    def with_traces(self, names: Sequence[str], columns: FloatArray) -> LinearNuisances:
+    def with_traces(self, traces: Sequence[Trace], columns: FloatArray) -> LinearNuisances:
         """The same and further traces (M, k)."""
-        return LinearNuisances(np.hstack([self.columns, columns]), (*self.traces, *names))
+        return LinearNuisances(np.hstack([self.columns, columns]), (*self.traces, *traces))
 
     def with_sides(self, columns: FloatArray) -> LinearNuisances:
         """The same with other columns (M, k) of the differences between the sides."""

@@ -7,7 +7,8 @@ import pytest
 from scipy.sparse import csc_array
 
 from doe_kc.discovery.jacobian import Jacobian
-from doe_kc.discovery.linear_nuisances import LinearNuisances
+from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace
+from doe_kc.effects.hypothesis import Hypothesis
 
 ROWS, OWN, START, LINEAR = 30, 6, 4, 3
 RNG = np.random.default_rng(2)
@@ -16,7 +17,7 @@ RNG = np.random.default_rng(2)
 @pytest.fixture
 def jacobian() -> Jacobian:
     """Four parameters, three linear nuisances of which one does not count, two amplitudes."""
-    nuisances = LinearNuisances(RNG.standard_normal((ROWS, LINEAR)), ("a",))
+    nuisances = LinearNuisances(RNG.standard_normal((ROWS, LINEAR)), (Trace(Hypothesis("a", None, ()), 0),))
     return Jacobian(RNG.standard_normal((ROWS, OWN)), START, nuisances, np.array([1.0, 1.0, 0.0]))
 
 

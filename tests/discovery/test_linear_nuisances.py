@@ -9,6 +9,7 @@ import pytest
 
 from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.linear_nuisances import Trace
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import screen
 from doe_kc.discovery.search.search import tune, with_clutter
@@ -29,10 +30,10 @@ def cluttered(tuned: Fit) -> Fit:
 def test_traces_are_of_amounts_at_three_per_cent(tuned: Fit, cluttered: Fit) -> None:
     known = cluttered.model.nuisances
     assert known is not None
-    assert set(known.traces) == {"hub_compliance", "tie_rod_compliance"}
+    assert {t.hypothesis.name for t in known.traces} == {"hub_compliance", "tie_rod_compliance"}
     (rod,) = library("tie_rod_compliance")
     column = screen(tuned, rod).columns[:, 0]
-    own = known.columns[:, known.count - len(known.traces) + known.traces.index("tie_rod_compliance")]
+    own = known.columns[:, known.count - len(known.traces) + known.traces.index(Trace(rod, 0))]
     np.testing.assert_allclose(own, TRACE_SD * column)
 
 
@@ -43,11 +44,11 @@ def test_a_member_has_no_trace_beside_its_sizes(cluttered: Fit) -> None:
     known = extended.nuisances
     assert known is cluttered.model.nuisances and known is not None
     jacobian = extended.jacobian(np.zeros((extended.likelihood.size, extended.calibrations.stop + 2)))
-    for name, column in zip(known.traces, jacobian.dense[:, extended.traces].T, strict=True):
-        assert bool(np.any(column)) is (name != "hub_compliance")
+    for trace, column in zip(known.traces, jacobian.dense[:, extended.traces].T, strict=True):
+        assert bool(np.any(column)) is (trace.hypothesis != hub)
     unknown = np.concatenate([cluttered.z, [0.0, 0.0]])
     traced = unknown.copy()
-    traced[extended.traces] += [name == "hub_compliance" for name in known.traces]
+    traced[extended.traces] += [t.hypothesis == hub for t in known.traces]
     np.testing.assert_array_equal(extended.residual(traced), extended.residual(unknown))
 
 
@@ -57,7 +58,7 @@ def test_sizes_have_the_variance_of_what_is_left_out(tuned: Fit) -> None:
     (rod,) = library("tie_rod_compliance")
     column = screen(tuned, rod).columns[:, 0]
     assert tuned.model.nuisances is not None
-    traced = tuned.model.nuisances.with_traces(["tie_rod_compliance"], TRACE_SD * column[:, None])
+    traced = tuned.model.nuisances.with_traces([Trace(rod, 0)], TRACE_SD * column[:, None])
     wide: EffectModel = replace(tuned.model, nuisances=traced).extended(hub)
     z = np.concatenate([tuned.z, [0.0], [0.5, 0.5]])
     sizes = np.random.default_rng(3).standard_normal((tuned.residual.size, 2))

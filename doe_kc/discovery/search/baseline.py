@@ -1,5 +1,5 @@
-"""What the search begins with: the axle re-tuned without any effect, and traces of all of them; and its
-sides, taken anew beside the effects of each set."""
+"""What the search begins with: the axle re-tuned without any effect, and traces of all of them; its sides,
+taken anew beside the effects of each set, and traces beside those of the last."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
-from doe_kc.discovery.linear_nuisances import LinearNuisances
+from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened
@@ -56,20 +56,55 @@ def _sides(fit: Fit) -> FloatArray:
 
 def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
     """The re-tuned axle with traces of all effects, those that cannot move anything left out."""
-    names: list[str] = []
+    traces: list[Trace] = []
     columns: list[FloatArray] = []
     for s in screened:
         if s.failed or EFFECTS[s.hypothesis.effect].on_rig:
             continue
-        for size, column in zip(s.hypothesis.sizes, s.columns.T, strict=True):
+        for i, (size, column) in enumerate(zip(s.hypothesis.sizes, s.columns.T, strict=True)):
             if not size.shape and np.linalg.norm(column) * TRACE_SD > TRACE_SEEN:
-                names.append(s.hypothesis.name)
+                traces.append(Trace(s.hypothesis, i))
                 columns.append(TRACE_SD * column)
-    if not names:
+    if not traces:
         return tuned
     sides = tuned.model.nuisances or LinearNuisances(np.zeros((tuned.residual.size, 0)))
-    model = replace(tuned.model, nuisances=sides.with_traces(names, np.array(columns).T))
-    z = np.concatenate([tuned.z, np.zeros(len(names))])
+    model = replace(tuned.model, nuisances=sides.with_traces(traces, np.array(columns).T))
+    z = np.concatenate([tuned.z, np.zeros(len(traces))])
     jacobian = model.jacobian(tuned.jacobian.own)
     state = replace(tuned, model=model, z=z, jacobian=jacobian, cost=cost_of(model, z, tuned.residual))
     return chord_fit(state, model)
+
+
+def with_traces_anew(current: Fit) -> Fit:
+    """The fit, traces of absent compliances linear about the axle with its effects.
+
+    About the axle without them a mount of the rack is a softer column; beside a friction of the rack it is
+    not, and shifts that friction by 1 standard deviation.
+    """
+    model, known = current.model, current.model.nuisances
+    if known is None or not model.members:
+        return current
+    names, first = {h.name for h in model.members}, known.count - len(known.traces)
+    columns = known.columns.copy()
+    for i, trace in enumerate(known.traces, start=first):
+        spring = trace.size.growth == "compliance" and not any(s.needed for s in trace.hypothesis.sizes)
+        if trace.hypothesis.name in names or not spring:
+            continue
+        try:
+            columns[:, i] = _change_by(current, trace)
+        except NotConverged:
+            continue
+    model = replace(model, nuisances=replace(known, columns=columns))
+    jacobian, residual = model.jacobian(current.jacobian.own), model.residual(current.z)
+    return chord_fit(replace(current, model=model, residual=residual, jacobian=jacobian), model)
+
+
+def _change_by(current: Fit, trace: Trace) -> FloatArray:
+    """(M,) change of the residual by a trace of its standard deviation, about the fit."""
+    model, known = current.model.extended(trace.hypothesis), current.model.nuisances
+    amplitudes = TRACE_SD * np.eye(len(trace.hypothesis.sizes))[trace.place]
+    with_trace = model.residual(np.concatenate([current.z, amplitudes]))
+    assert known is not None
+    linear = current.z[current.model.linear]
+    own = known.moved((current.model.weights - model.weights) * linear)  # it has no trace as a member
+    return np.asarray(with_trace + own - current.residual)

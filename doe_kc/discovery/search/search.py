@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
-from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew
+from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew, with_traces_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
 from doe_kc.discovery.search.law_discrepancy import (
@@ -192,8 +192,12 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     decision = decision.without_trials
     current = with_best_laws(current, workers)
     closed, current = current.evidence, with_free_shapes(current, workers)
+    shape_loss = closed - current.evidence
+    current = with_traces_anew(current)
+    if not current.converged:
+        current = converged_fit(current, workers)
     last = tuple(_latest(screened, decision, current))
-    with_effects = refit_to_errors(current, model.likelihood)
+    with_effects = fit_to_errors(current, model.likelihood, workers)
     return EffectSearch(
         tuned,
         tuple(steps),
@@ -204,7 +208,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         shares,
         without_own,
         prior,
-        closed - current.evidence,
+        shape_loss,
     )
 
 
@@ -234,7 +238,7 @@ def _settled(
     """
     current = with_sides_anew(current)
     current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
-    exact = refit_to_errors(own_loops(current, own.axle), own.likelihood)
+    exact = fit_to_errors(own_loops(current, own.axle), own.likelihood, workers)
     signals = effect_signals(exact)
     settled, shares = fit_discrepancy(exact, signals)
     following = without_own_discrepancy(exact, signals, shares)
@@ -242,6 +246,16 @@ def _settled(
     if settled.model.likelihood is not before:
         settled = converged_fit(settled, workers)
     return settled, shares, following
+
+
+def fit_to_errors(current: Fit, likelihood: Likelihood, workers: DiscoveryWorkers) -> Fit:
+    """The fit to the same records with other errors, on new derivatives where known ones lead to no end.
+
+    A linear hub that softens by 14 % under load was left 1190 of ln likelihood times 2 above its optimum, and
+    a steering friction beside it 1 standard deviation off.
+    """
+    other = refit_to_errors(current, likelihood)
+    return other if other.converged else converged_fit(other, workers)
 
 
 def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:

@@ -13,6 +13,7 @@ from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, m
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
     DECISIVE_EVIDENCE,
+    LINEAR_TO,
     NAME_LEVEL,
     NOISE_CHANCE,
     RIVAL_LISTED,
@@ -52,14 +53,9 @@ def _finding(
     hypothesis = own.hypothesis
     logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
-    most_probable, _ = amplitude_estimates(search.with_effects, hypothesis)
+    most_probable, sd = amplitude_estimates(search.with_law_discrepancy, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = _with_law(
-        hypothesis,
-        most_probable,
-        amplitude_estimates(search.with_law_discrepancy, hypothesis)[1],
-        search.discrepancy_shares,
-    )
+    sd = _with_law(hypothesis, most_probable, sd, search.discrepancy_shares)
     sd = np.hypot(sd, spread_between_sets(hypothesis, most_probable, compared))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
@@ -92,8 +88,11 @@ def _finding(
 def _with_law(
     hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray, shares: Mapping[str, float]
 ) -> FloatArray:
-    """(m,) standard deviations; a stiffness whose law is another is not one number but a range."""
-    share = shares.get(hypothesis.name, 0.0)
+    """(m,) standard deviations; a stiffness whose law is another is not one number but a range.
+
+    One whose records show no other law is one number to `LINEAR_TO` at best.
+    """
+    share = max(shares.get(hypothesis.name, 0.0), LINEAR_TO)
     own = [
         share * a if s.growth == "compliance" else 0.0
         for s, a in zip(hypothesis.sizes, most_probable, strict=True)

@@ -7,10 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.discovery.fit import cost_of
+from doe_kc.discovery.linear_nuisances import Trace
 from doe_kc.discovery.nuisances import side_differences
-from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew
+from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew, with_traces_anew
 from doe_kc.discovery.thresholds import SIDE_ANGLE, TRACE_SD, TRACE_SEEN
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import apply_effect
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
@@ -74,7 +76,39 @@ def test_traces_are_of_the_sizes_of_effects_that_move_something() -> None:
     screened = DiscoveryWorkers().screenings(tuned, [hub, *library("rig_channel_gain")[:1]])
     found = with_clutter(tuned, screened)
     nuisances = found.model.nuisances
-    assert nuisances is not None and set(nuisances.traces) == {hub.name}
+    assert nuisances is not None and {t.hypothesis.name for t in nuisances.traces} == {hub.name}
     seen = np.linalg.norm(screened[0].columns, axis=0) * TRACE_SD > TRACE_SEEN
     assert found.z.size == tuned.z.size + int(seen.sum()) and seen.any()
     assert with_clutter(tuned, []) is tuned
+
+
+def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> None:
+    """Against solutions: a mount of the rack beside a friction of the rack is no softer column."""
+    tuned = tune(model("friction"))
+    friction, mount, bending = library("steering_friction", "rack_mount_compliance", "strut_friction")
+    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [friction, mount, bending]))
+    known, beside = traced.model.nuisances, traced.model.extended(friction)
+    assert known is not None
+    z = np.append(traced.z, [1.0, 0.0])
+    own = np.hstack([traced.jacobian.own, np.zeros((traced.residual.size, 2))])
+    before = replace(traced, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
+    found = with_traces_anew(before)
+    assert found.model.nuisances is not None and found.model.nuisances.traces == known.traces
+    first, at = known.count - len(known.traces), known.traces.index(Trace(mount, 0))
+    old, new = known.columns[:, first + at], found.model.nuisances.columns[:, first + at]
+    axle = beside.driven(beside.axle_at(z), z)
+    with_trace = apply_effect(axle, mount.effect, {"k_N_mm": mount.sizes[0].value(TRACE_SD)}, source="trace")
+    without, there = (
+        beside.likelihood.residual(curve_set(solve(a)), np.zeros(0)) for a in (axle, with_trace)
+    )
+    change = there - without
+    assert np.linalg.norm(new - change) < 1e-6 * np.linalg.norm(change)
+    assert np.linalg.norm(old - change) > 0.1 * np.linalg.norm(change)
+    others = np.delete(np.arange(known.count), first + at)
+    np.testing.assert_array_equal(found.model.nuisances.columns[:, others], known.columns[:, others])
+    assert found.cost <= cost_of(found.model, z, found.model.residual(z))
+
+
+def test_without_effects_or_traces_there_is_nothing_to_take_anew() -> None:
+    tuned = tune(model("pair"))
+    assert with_traces_anew(tuned) is tuned
