@@ -190,12 +190,11 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     if len(current.model.members) != 1:
         first = first.without_derivatives
     decision = decision.without_trials
-    current = with_best_laws(current, workers)
-    closed, current = current.evidence, with_free_shapes(current, workers)
-    shape_loss = closed - current.evidence
     current = with_traces_anew(current)
     if not current.converged:
         current = converged_fit(current, workers)
+    current = with_best_laws(current, workers)
+    closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
     with_effects = fit_to_errors(current, model.likelihood, workers)
     return EffectSearch(
@@ -208,7 +207,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         shares,
         without_own,
         prior,
-        shape_loss,
+        closed - current.evidence,
     )
 
 
