@@ -14,6 +14,7 @@ from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened
+from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.thresholds import TRACE_SD, TRACE_SEEN
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
@@ -84,11 +85,10 @@ def with_traces_anew(current: Fit) -> Fit:
     model, known = current.model, current.model.nuisances
     if known is None or not model.members:
         return current
-    names, first = {h.name for h in model.members}, known.count - len(known.traces)
-    columns = known.columns.copy()
+    columns, first = known.columns.copy(), known.count - len(known.traces)
     for i, trace in enumerate(known.traces, start=first):
         spring = trace.size.growth == "compliance" and not any(s.needed for s in trace.hypothesis.sizes)
-        if trace.hypothesis.name in names or not spring:
+        if not spring or not compatible(model, trace.hypothesis):
             continue
         try:
             columns[:, i] = _change_by(current, trace)
