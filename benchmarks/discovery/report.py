@@ -91,8 +91,7 @@ def lines(found: Sequence[Score], run: Run, followed: Sequence[Score] = ()) -> l
         *calibration_lines(found),
         "",
         "![Stated probabilities and how often they are right](discovery_reliability.png)",
-        "",
-        "![Who is taken for whom](discovery.png)",
+        *(["", "![Who is taken for whom](discovery.png)"] if confusion(found).truths else []),
     ]
 
 
@@ -108,7 +107,8 @@ def write(found: Sequence[Score], run: Run, folder: Path, followed: Sequence[Sco
             writer.writerow([_cell(getattr(s, column)) for column in COLUMNS])
     matrix = confusion(found)
     write_csv(matrix, folder / "discovery_confusion.csv")
-    draw(matrix, folder / "discovery.png")
+    if matrix.truths:  # none of cars with several effects alone
+        draw(matrix, folder / "discovery.png")
     draw_reliability([b for s in found for b in s.believed], folder / "discovery_reliability.png")
     return text
 

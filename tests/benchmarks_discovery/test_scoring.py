@@ -67,6 +67,12 @@ def test_the_perfect_analyser_is_always_right(tmp_path: Path) -> None:
     assert (tmp_path / "discovery_confusion.csv").read_text().startswith("hidden,")
 
 
+def test_cars_with_several_effects_alone_have_no_confusion(tmp_path: Path) -> None:
+    several = [s for s in _scores(pretend.perfect) if s.suite == "two"]
+    assert "discovery.png" not in "\n".join(write(several, RUN, tmp_path))
+    assert not (tmp_path / "discovery.png").exists()
+
+
 def test_finding_nothing_is_right_for_null_cars_only() -> None:
     found = _scores(pretend.always_none)
     assert [s.exact for s in found] == [True, False, False, False, False, False]
