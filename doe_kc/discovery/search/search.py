@@ -143,6 +143,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     steps, loops_known, laws_tried = list(state.steps), False, False
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
+    tried = {_laws(current)}
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
         laws_open = not laws_tried and may_open(current)
@@ -157,6 +158,8 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         instead = None
         if decision.accepted:
             instead = laws_instead(current, decision.trials[0], model.likelihood, workers)
+            if instead is not None and _laws(instead) in tried:
+                instead = None
             needless = instead is None and needless_beside_laws(
                 current, decision.trials[0], model.likelihood, workers
             )
@@ -166,6 +169,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         if instead is not None:
             steps.pop()
             current = instead
+            tried.add(_laws(current))
         elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
@@ -209,6 +213,12 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         prior,
         closed - current.evidence,
     )
+
+
+def _laws(current: Fit) -> tuple[tuple[str, str], ...]:
+    """Each member with its law: a set whose laws were exchanged goes back to none that it had, or it would
+    for ever. A friction of 299 N by a free shape went between two laws that a further effect asked for."""
+    return tuple((h.name, h.law) for h in current.model.members)
 
 
 def _with_laws(
