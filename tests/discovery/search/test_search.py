@@ -44,6 +44,15 @@ def test_a_step_whose_laws_gain_nothing_is_told_once(monkeypatch: pytest.MonkeyP
     assert [step.accepted for step in found.steps] == [True, False]
 
 
+def test_a_search_goes_back_to_no_laws_that_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A friction of 299 N went between two laws without end, each better than the effect that came next."""
+    asked = []
+    monkeypatch.setattr(search_module, "laws_instead", lambda fit, *_: asked.append(1) or fit)
+    found = search(model("pair"), library("steering_friction", "hub_compliance"), DiscoveryWorkers())
+    assert {h.effect for h in found.with_effects.model.members} == {"steering_friction", "hub_compliance"}
+    assert 1 <= len(asked) <= 6
+
+
 def test_an_effect_that_a_law_makes_needless_does_not_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
     monkeypatch.setattr(search_module, "needless_beside_laws", lambda *_: asked.append(1) or len(asked) > 1)
