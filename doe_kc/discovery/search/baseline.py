@@ -36,16 +36,20 @@ def with_sides_anew(current: Fit) -> Fit:
     About the axle without them half-widths of loops do not hang on the sides: beside a strut friction what
     unequal struts make of them was left, a contrast of 8 standard deviations that noise does not explain.
     """
-    model, known = current.model, current.model.nuisances
+    known = current.model.nuisances
     if known is None:
         return current
     try:
         sides = _sides(current)
     except NotConverged:
         return current
-    model = replace(model, nuisances=known.with_sides(sides))
-    jacobian = model.jacobian(current.jacobian.own)
-    residual = model.residual(current.z)
+    return _with_nuisances(current, known.with_sides(sides))
+
+
+def _with_nuisances(current: Fit, nuisances: LinearNuisances) -> Fit:
+    """The fit with other columns of the same linear nuisances, as far as its derivatives lead."""
+    model = replace(current.model, nuisances=nuisances)
+    jacobian, residual = model.jacobian(current.jacobian.own), model.residual(current.z)
     return chord_fit(replace(current, model=model, residual=residual, jacobian=jacobian), model)
 
 
@@ -94,9 +98,7 @@ def with_traces_anew(current: Fit) -> Fit:
             columns[:, i] = _change_by(current, trace)
         except NotConverged:
             continue
-    model = replace(model, nuisances=replace(known, columns=columns))
-    jacobian, residual = model.jacobian(current.jacobian.own), model.residual(current.z)
-    return chord_fit(replace(current, model=model, residual=residual, jacobian=jacobian), model)
+    return _with_nuisances(current, replace(known, columns=columns))
 
 
 def _change_by(current: Fit, trace: Trace) -> FloatArray:

@@ -22,8 +22,9 @@ import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, amplitude_estimates
-from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
 from doe_kc.discovery.search.refits import more_than_trace
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, FREE_TRAVELS, LAW_WINDOW, NOISE_CHANCE
@@ -85,7 +86,7 @@ def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> 
     Those of compliances count if they leave nothing that noise and their own discrepancy do not explain. Else
     the discrepancy of the linear law says as much with fewer numbers, and the effect stays named.
     """
-    exact = refit_to_errors(current, own)
+    exact = fit_to_errors(current, own, workers)
     opened = exact
     for member in frictions(exact):
         if open_laws(member) and opened.residual_map.chance < NOISE_CHANCE:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
 from doe_kc.discovery.search.laws import frictions, open_laws, with_best_law, with_most_numbers
 from doe_kc.discovery.search.refits import HypothesisFit
@@ -28,7 +29,7 @@ def laws_instead(
     members = [h for h in frictions(current) if open_laws(h)]
     if not _few_contrasts(current) or not members:
         return None
-    exact, rival = refit_to_errors(current, own), refit_to_errors(further.fit, own)
+    exact, rival = fit_to_errors(current, own, workers), refit_to_errors(further.fit, own)
     best = exact
     for member in members:
         best = with_best_law(best, member, workers)
@@ -50,13 +51,13 @@ def needless_beside_laws(
     bending = [h for h in current.model.members if h not in frictions(current) and open_laws(h)]
     if not _few_contrasts(current) or not bending or further.gain >= PROPOSAL_GAIN:
         return False
-    exact, rival = refit_to_errors(current, own), refit_to_errors(further.fit, own)
+    exact, rival = (fit_to_errors(fit, own, workers) for fit in (current, further.fit))
     starts = [with_most_numbers(fit, bending) for fit in (exact, rival)]
     bent, both = workers.fits(starts, "opening laws")
     if bent is None or both is None or bent.evidence <= rival.evidence + further.prior:
         return False
     settled, _ = fit_discrepancy(bent, effect_signals(bent))
-    beside = refit_to_errors(both, settled.model.likelihood)
+    beside = fit_to_errors(both, settled.model.likelihood, workers)
     return beside.evidence + further.prior - settled.evidence <= ACCEPTED_ODDS
 
 

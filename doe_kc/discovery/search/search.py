@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew, with_traces_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
+from doe_kc.discovery.search.convergence import at_optimum, converged_fit, fit_to_errors
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
@@ -194,9 +195,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     if len(current.model.members) != 1:
         first = first.without_derivatives
     decision = decision.without_trials
-    current = with_traces_anew(current)
-    if not current.converged:
-        current = converged_fit(current, workers)
+    current = at_optimum(with_traces_anew(current), workers)
     current = with_best_laws(current, workers)
     closed, current = current.evidence, with_free_shapes(current, workers)
     last = tuple(_latest(screened, decision, current))
@@ -216,8 +215,8 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
 
 
 def _laws(current: Fit) -> tuple[tuple[str, str], ...]:
-    """Each member with its law: a set whose laws were exchanged goes back to none that it had, or it would
-    for ever. A friction of 299 N by a free shape went between two laws that a further effect asked for."""
+    """Each member's name and law. A set whose laws were exchanged does not return to laws that it had: a free
+    shape has several optima, and what is better from one of them may not be from another."""
     return tuple((h.name, h.law) for h in current.model.members)
 
 
@@ -255,26 +254,6 @@ def _settled(
     if settled.model.likelihood is not before:
         settled = converged_fit(settled, workers)
     return settled, shares, following
-
-
-def fit_to_errors(current: Fit, likelihood: Likelihood, workers: DiscoveryWorkers) -> Fit:
-    """The fit to the same records with other errors, on new derivatives where known ones lead to no end.
-
-    A linear hub that softens by 14 % under load was left 1190 of ln likelihood times 2 above its optimum, and
-    a steering friction beside it 1 standard deviation off.
-    """
-    other = refit_to_errors(current, likelihood)
-    return other if other.converged else converged_fit(other, workers)
-
-
-def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
-    """The fit at its own optimum, on derivatives taken there.
-
-    What parameters hide almost wholly shows by what is left between two large columns, which derivatives of
-    a model nearby do not give.
-    """
-    (refit,) = workers.fits([FitStart(current.model, current.z, current)], "settling")
-    return refit or current
 
 
 def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list[Screened]:

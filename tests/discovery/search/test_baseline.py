@@ -85,8 +85,8 @@ def test_traces_are_of_the_sizes_of_effects_that_move_something() -> None:
 def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> None:
     """Against solutions: a mount of the rack beside a friction of the rack is no softer column."""
     tuned = tune(model("friction"))
-    friction, mount, bending = library("steering_friction", "rack_mount_compliance", "strut_friction")
-    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [friction, mount, bending]))
+    friction, mount, strut = library("steering_friction", "rack_mount_compliance", "strut_friction")
+    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [friction, mount, strut]))
     known, beside = traced.model.nuisances, traced.model.extended(friction)
     assert known is not None
     z = np.append(traced.z, [1.0, 0.0])

@@ -115,7 +115,7 @@ def test_a_free_law_begins_from_the_best_closed_one() -> None:
 def test_a_free_law_is_fitted_to_the_errors_of_the_records_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Errors that hold the discrepancy of the law before it took another friction for explained."""
     explained, own = agreeing(), records()
-    monkeypatch.setattr(laws_module, "refit_to_errors", lambda f, e: disagreeing() if e is own else f)
+    monkeypatch.setattr(laws_module, "fit_to_errors", lambda f, e, _: disagreeing() if e is own else f)
     freed = with_free_laws(explained, own, Answers(-50.0))
     assert freed.model.members[0].law == "backbone"
     assert with_free_laws(explained, own, Answers(10.0)) is explained

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
+from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search import convergence
 from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.thresholds import NOISE_CHANCE, PROPOSAL_GAIN
@@ -28,6 +33,33 @@ def test_where_noise_explains_what_remains_another_law_comes_before_an_effect(
     found = laws_instead(agreeing(), further, own, asked)
     assert asked.laws == [*CLOSED, ""], "all are refitted, the effect beside the law that it came in with"
     assert (found is not None and found.model.members[0].law == best) is instead
+
+
+@pytest.mark.parametrize("better", [True, False])
+def test_a_law_is_compared_with_the_present_one_at_its_optimum(
+    better: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Known derivatives left a friction of 299 N 6 of ln evidence short: each law in turn was better than the
+    one before, without end."""
+    (hub,) = library("hub_compliance")
+    optimum = agreeing()
+
+    class Settled(Answers):
+        def fits(self, starts: Sequence[FitStart], what: str, **more: Any) -> list[Fit | None]:
+            return [optimum] if what == "settling" else super().fits(starts, what, **more)
+
+        def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
+            beside = z.size > optimum.z.size
+            return super()._fit(model, z, found if beside else optimum, cost + 60.0 * beside)
+
+    def short(fit: Fit, errors: Likelihood) -> Fit:
+        return replace(fit, converged=False, cost=fit.cost + 200.0)
+
+    monkeypatch.setattr(convergence, "refit_to_errors", short)
+    further = HypothesisFit(hub, beside_a_hub(), 12.0, 3.0)
+    asked = Settled(30.0, "iwan" if better else "")
+    found = laws_instead(optimum, further, optimum.model.likelihood, asked)
+    assert (found is not None) is better
 
 
 def test_a_free_law_comes_first_where_one_contrast_alone_remains() -> None:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
 
-from doe_kc.discovery.gauss_newton import refit_to_errors
 from doe_kc.discovery.search import decision as decision_module
 from doe_kc.discovery.search import search as search_module
-from doe_kc.discovery.search.search import fit_to_errors, search
+from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
-from tests.discovery.cases import discovery, library, model
+from tests.discovery.cases import library, model
 
 
 @pytest.mark.parametrize(
@@ -67,19 +64,3 @@ def test_refits_that_lose_are_told_without_their_derivatives() -> None:
     last = found.steps[-1]
     assert [h.effect for h in last.members] == ["hub_compliance"] and not last.accepted
     assert any(c.joint and c.hypothesis.effect == "steering_ratio" for c in last.candidates)
-
-
-def test_where_known_derivatives_lead_to_no_end_a_fit_takes_new_ones() -> None:
-    """A linear hub in a car whose hub softens by 14 % was left 1190 of cost above its optimum."""
-    last = discovery("named").search.with_effects
-    z = last.z.copy()
-    z[last.model.dimension :] *= 1.5
-    own = last.jacobian.own.copy()
-    own[:, last.model.linear.start :] *= 0.4  # steps that overshoot
-    off = replace(last, z=z, residual=last.model.residual(z), jacobian=last.model.jacobian(own))
-    likelihood = replace(last.model.likelihood)
-    assert not refit_to_errors(off, likelihood).converged
-    found = fit_to_errors(off, likelihood, DiscoveryWorkers())
-    assert found.converged and found.model.likelihood is likelihood
-    assert found.cost == pytest.approx(last.cost, abs=0.1)
-    assert fit_to_errors(last, last.model.likelihood, DiscoveryWorkers()) is last

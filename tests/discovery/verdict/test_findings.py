@@ -154,15 +154,15 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws() -> None:
     large = next(h for h in found.with_law_discrepancy.model.members if h.effect == "hub_compliance")
     place = [h.name for h, _ in found.with_law_discrepancy.model.places()].index(large.name)
     amplitudes, sd = amplitude_estimates(found.with_law_discrepancy, large)
-
+    own_errors = replace(found.with_effects, z=1.1 * found.with_effects.z)  # as where the law is another
     screened = {s.hypothesis.name: s for s in found.first.screened}
     compared = []
     for member in found.with_law_discrepancy.model.members:
         refit, own = HypothesisFit(member, found.with_law_discrepancy, 1000.0), (screened[member.name],)
         compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
     for share in (0.0, 0.01, 0.1):
-        shares = {large.name: share}
-        camber, _ = findings(replace(found, discrepancy_shares=shares), compared)[place].estimates
+        searched = replace(found, with_effects=own_errors, discrepancy_shares={large.name: share})
+        camber, _ = findings(searched, compared)[place].estimates
         assert camber.value == pytest.approx(large.sizes[0].value(float(amplitudes[0])), rel=1e-3)
         assert camber.sd / camber.value == pytest.approx(
             np.hypot(sd[0] / amplitudes[0], max(share, LINEAR_TO)), rel=0.02

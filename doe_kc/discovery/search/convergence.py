@@ -1,0 +1,32 @@
+"""Fits brought to their own optimum, before anything is read off them or compared with them."""
+
+from __future__ import annotations
+
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.workers import DiscoveryWorkers
+
+
+def fit_to_errors(current: Fit, likelihood: Likelihood, workers: DiscoveryWorkers) -> Fit:
+    """The fit to the same records with other errors, at its optimum.
+
+    A linear hub that softens by 14 % under load was left 1190 of cost above it, and a steering friction
+    beside it 1 standard deviation off. Laws compared with such a fit are better than it is, each in turn.
+    """
+    return at_optimum(refit_to_errors(current, likelihood), workers)
+
+
+def at_optimum(current: Fit, workers: DiscoveryWorkers) -> Fit:
+    """The fit, gone on with new derivatives where known ones led to no end."""
+    return current if current.converged else converged_fit(current, workers)
+
+
+def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:
+    """The fit at its own optimum, on derivatives taken there.
+
+    What parameters hide almost wholly shows by what is left between two large columns, which derivatives of
+    a model nearby do not give.
+    """
+    (refit,) = workers.fits([FitStart(current.model, current.z, current)], "settling")
+    return refit or current
