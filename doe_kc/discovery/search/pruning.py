@@ -8,7 +8,8 @@ import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -32,7 +33,8 @@ def backward_elimination(
         needed = {h.name: least - _odds(fit.model.members, h, prior) for h, _ in places}
         losses = {h.name: _loss(fit, place) for h, place in places}
         members = [(h, p) for h, p in places if losses[h.name] < REMOVAL_FACTOR * needed[h.name]]
-        withs = [refit_to_errors(fit, without_own.get(h.name, fit.model.likelihood)) for h, _ in members]
+        errors = (without_own.get(h.name, fit.model.likelihood) for h, _ in members)
+        withs = [fit_to_errors(fit, likelihood, workers) for likelihood in errors]
         starts = [
             FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit)
             for w, (h, place) in zip(withs, members, strict=True)
@@ -45,7 +47,7 @@ def backward_elimination(
         least_lost = min(kept, key=lambda name: losses[name] - needed[name], default="")
         if not least_lost or losses[least_lost] > needed[least_lost]:
             break
-        fit = refit_to_errors(kept[least_lost], fit.model.likelihood)
+        fit = fit_to_errors(kept[least_lost], fit.model.likelihood, workers)
     return fit
 
 

@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.decision import threshold
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
@@ -183,7 +184,7 @@ def _is_first(search: EffectSearch) -> bool:
 def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> Alternatives:
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
     first, final = search.first, search.with_law_discrepancy
-    base = refit_to_errors(final, own_errors(search, final.model.members[0]))
+    base = fit_to_errors(final, own_errors(search, final.model.members[0]), workers)
     own = _own(base, first.before, search.prior)
     kept = [
         t

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
+from doe_kc.discovery.search import convergence
 from doe_kc.discovery.verdict import removals as removals_module
 from doe_kc.discovery.verdict.alternatives import alternatives
 from doe_kc.discovery.verdict.removals import in_groups, removals
@@ -52,3 +56,20 @@ def test_each_loses_what_its_comparison_says(monkeypatch: pytest.MonkeyPatch) ->
     assert workers.asked[4:] == [(1, True)] * 2, "one after the other, from the cache of results"
     at_once = alternatives(search, 1.0, DiscoveryWorkers())
     assert [one.loss for one in at_once] == pytest.approx([r.loss for r in found], rel=1e-12)
+
+
+def test_what_a_member_is_worth_is_taken_at_the_optimum_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A bushing's progression worth 73 of ln evidence was told as a trace, its loss -94: known derivatives had
+    left the fit with it short."""
+    search = discovery("pair").search
+    expected = [r.loss for r in removals(search, DiscoveryWorkers())]
+
+    def short(fit: Fit, errors: Likelihood) -> Fit:
+        known = refit_to_errors(fit, errors)
+        z = known.z + 0.05 * (np.arange(known.z.size) >= known.model.dimension)
+        residual = known.model.residual(z)
+        return replace(known, z=z, residual=residual, cost=cost_of(known.model, z, residual), converged=False)
+
+    monkeypatch.setattr(convergence, "refit_to_errors", short)
+    found = [r.loss for r in removals(search, DiscoveryWorkers())]
+    assert found == pytest.approx(expected, abs=0.5)
