@@ -13,7 +13,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew, with_traces_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
-from doe_kc.discovery.search.convergence import at_optimum, converged_fit, fit_to_errors
+from doe_kc.discovery.search.convergence import at_optimum, both_optima, converged_fit, fit_to_errors
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
@@ -87,7 +87,7 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
 def search_from(
     before: EffectSearch,
     start: FitStart,
-    changed: Hypothesis,
+    changed: Hypothesis | None,
     gain: float,
     library: Sequence[Hypothesis],
     workers: DiscoveryWorkers,
@@ -95,19 +95,22 @@ def search_from(
     """The search, gone on from another set than its last one; the same where that has no equilibrium.
 
     start: of a fit of that set to the records' own errors. changed: its member that the last set does not
-    have, or not by that law. gain: ln of its posterior odds against the last set.
+    have, or not by that law; None where it only has fewer. gain: ln of its posterior odds against the last
+    set.
     """
     (other,) = workers.fits([start], "exchanging effects")
     if other is None:
         return before
     last, own, prior = before.with_law_discrepancy, before.tuned.model, before.prior
-    candidates = (HypothesisGain(changed, gain, True),)
-    step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), (changed,))
-    taken, _ = _with_laws(other, step.added, own.axle, workers, loops_known=False)
+    steps, added = before.steps, (changed,) if changed else ()
+    if changed:
+        candidates = (HypothesisGain(changed, gain, True),)
+        step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), added)
+        steps = (*steps, step)
+    taken, _ = _with_laws(other, added, own.axle, workers, loops_known=False)
     following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
     errors = last.model.likelihood, following.model.likelihood
     screened = tuple(rewhitened_screenings(before.screened, *errors))
-    steps = (*before.steps, step)
     state = _SearchState(before.tuned, steps, following, screened, shares, without_own, prior)
     return _continued(state, library, workers)
 
@@ -198,8 +201,9 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     current = at_optimum(with_traces_anew(current), workers)
     current = with_best_laws(current, workers)
     closed, current = current.evidence, with_free_shapes(current, workers)
+    shape_loss = closed - current.evidence
     last = tuple(_latest(screened, decision, current))
-    with_effects = fit_to_errors(current, model.likelihood, workers)
+    current, with_effects = both_optima(current, model.likelihood, workers)
     return EffectSearch(
         tuned,
         tuple(steps),
@@ -210,7 +214,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         shares,
         without_own,
         prior,
-        closed - current.evidence,
+        shape_loss,
     )
 
 

@@ -1,17 +1,21 @@
-"""Exchanges: the last set against sets with a rival in the place of one effect, until none is more probable.
+"""Exchanges: the last set against sets with a rival or nothing in the place of one effect, until none is
+more probable.
 
 To first order an effect that is large, or that parameters at their bounds imitate, can look worse than
-another that makes nearly the same deviations. Joint refits tell, and the last set's rivals have those.
+another that makes nearly the same deviations. Joint refits tell, and the last set's rivals have those. So do
+the sets with one effect fewer: by the laws that came last an effect may be needless, or the set have another
+optimum without it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.decision import temper
 from doe_kc.discovery.search.law_exchange import with_exchanged_laws
-from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch, search_from
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
@@ -22,19 +26,19 @@ from doe_kc.effects.hypothesis import Hypothesis
 def exchanged(
     search: EffectSearch, library: Sequence[Hypothesis], workers: DiscoveryWorkers
 ) -> tuple[EffectSearch, tuple[Alternatives, ...]]:
-    """The search, gone on from sets with another law or a rival in one effect's place as long as those are
-    more probable.
+    """The search, gone on from sets with another law, or with a rival or nothing in one effect's place, as
+    long as those are more probable.
 
     With the alternatives of every member of its last set. It ends, since the probability of the last set, its
     errors its own, grows with each exchange.
     """
     search = with_exchanged_laws(search, library, workers)
     compared = alternatives(search, temper(search.with_law_discrepancy), workers)
-    while (better := better_rival(compared)) is not None:
-        own, rival, gain = better
+    while (better := better_set(compared)) is not None:
         last = search.with_effects
-        start = FitStart(last.model.without(own).extended(rival.hypothesis), rival.fit.z, last)
-        other = search_from(search, start, rival.hypothesis, gain, library, workers)
+        model = last.model.without(better.own)
+        start = FitStart(model.extended(better.rival) if better.rival else model, better.fit.z, last)
+        other = search_from(search, start, better.rival, better.gain, library, workers)
         if other.log_posterior <= search.log_posterior:
             break
         search = with_exchanged_laws(other, library, workers)
@@ -42,15 +46,32 @@ def exchanged(
     return search, compared
 
 
-def better_rival(compared: Sequence[Alternatives]) -> tuple[Hypothesis, HypothesisFit, float] | None:
-    """An effect, the rival with the largest posterior odds against it in its place, and ln of those odds.
+@dataclass(frozen=True)
+class BetterSet:
+    """The last set without one of its effects, maybe with a rival in its place."""
+
+    own: Hypothesis
+    """The effect."""
+    rival: Hypothesis | None
+    """What is in its place; None for nothing."""
+    fit: Fit
+    """Of the set, the rival as its last member."""
+    gain: float
+    """ln of its posterior odds against the last set."""
+
+
+def better_set(compared: Sequence[Alternatives]) -> BetterSet | None:
+    """The set of the largest posterior odds against the last one.
 
     None where no odds reach those at which an effect is accepted.
     """
-    rivals = [
-        (one.hypothesis, t, t.gain - one.trials[0].gain)
+    sets = [
+        (BetterSet(one.hypothesis, rival, fit, gain - one.trials[0].gain), one.temper)
         for one in compared
-        for t in one.trials[1:]
-        if (t.gain - one.trials[0].gain) / one.temper > ACCEPTED_ODDS
+        for rival, fit, gain in (
+            (None, one.without, 0.0),
+            *((t.hypothesis, t.fit, t.gain) for t in one.trials[1:]),
+        )
     ]
-    return max(rivals, key=lambda rival: rival[2], default=None)
+    better = (one for one, divisor in sets if one.gain / divisor > ACCEPTED_ODDS)
+    return max(better, key=lambda one: one.gain, default=None)

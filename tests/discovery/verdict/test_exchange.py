@@ -1,4 +1,4 @@
-"""Exchanges: a last set that a rival in one effect's place betters is not where the search ends."""
+"""Exchanges: a last set that a rival or nothing in one effect's place betters is not where a search ends."""
 
 from __future__ import annotations
 
@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
-from doe_kc.discovery.verdict.exchange import better_rival, exchanged
+from doe_kc.discovery.verdict.exchange import better_set, exchanged
 from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import discovery, known_to
 
-TRUE, WRONG = "hub_compliance", "strut_bending"
+TRUE, WRONG, NEEDLESS = "hub_compliance", "strut_bending", "tie_rod_compliance"
 
 
 def with_gains(one: Alternatives, *gains: float, temper: float = 1.0) -> Alternatives:
@@ -48,6 +49,22 @@ def test_the_search_goes_on_from_a_rival_that_is_more_probable(
     assert step.accepted and step.candidates[0].gain > 100.0
 
 
+def test_the_search_goes_on_without_an_effect_whose_removal_is_more_probable(right: EffectSearch) -> None:
+    last = right.with_effects
+    (needless,) = (h for h in known_to("named") if h.name == NEEDLESS)
+    start = FitStart(last.model.extended(needless), np.append(last.z, 0.05), last)
+    (both,) = DiscoveryWorkers().fits([start], "")
+    assert both is not None
+    shares = {TRUE: 0.0, NEEDLESS: 0.0}
+    more = replace(right, with_law_discrepancy=both, with_effects=both, discrepancy_shares=shares)
+    again, compared = exchanged(more, known_to("named"), DiscoveryWorkers())
+    assert [h.effect for h in again.with_effects.model.members] == [TRUE]
+    assert [c.hypothesis.effect for c in compared] == [TRUE]
+    np.testing.assert_allclose(again.with_effects.amplitudes, right.with_effects.amplitudes, atol=0.01)
+    following = again.steps[len(more.steps)]
+    assert [h.effect for h in following.members] == [TRUE] and not following.added
+
+
 def test_a_search_that_no_rival_betters_stays(right: EffectSearch) -> None:
     again, _ = exchanged(right, known_to("named"), DiscoveryWorkers())
     assert again is right
@@ -55,7 +72,19 @@ def test_a_search_that_no_rival_betters_stays(right: EffectSearch) -> None:
 
 def test_a_rival_needs_the_odds_of_an_effect_that_is_accepted(right: EffectSearch) -> None:
     (one,) = alternatives(right, 1.0, DiscoveryWorkers())
-    assert better_rival([with_gains(one, 4.0, -3.0)]) is None
-    assert better_rival([with_gains(one, 9.0, temper=2.0)]) is None
-    better = better_rival([with_gains(one, 5.0), with_gains(one, 4.0, 8.0)])
-    assert better is not None and better[2] == pytest.approx(8.0)
+    assert better_set([with_gains(one, 4.0, -3.0)]) is None
+    assert better_set([with_gains(one, 9.0, temper=2.0)]) is None
+    better = better_set([with_gains(one, 5.0), with_gains(one, 4.0, 8.0)])
+    assert better is not None and better.gain == pytest.approx(8.0)
+
+
+def test_nothing_in_a_place_needs_those_odds_too(right: EffectSearch) -> None:
+    (one,) = alternatives(right, 1.0, DiscoveryWorkers())
+    needless = with_gains(replace(one, trials=(replace(one.trials[0], gain=-4.0),)))
+    assert better_set([needless]) is None
+    needless = with_gains(replace(one, trials=(replace(one.trials[0], gain=-5.0),)))
+    better = better_set([needless])
+    assert better is not None and better.rival is None and better.fit is one.without
+    assert better.own == one.hypothesis and better.gain == pytest.approx(5.0)
+    better = better_set([with_gains(needless, 6.0)])
+    assert better is not None and better.rival is not None and better.gain == pytest.approx(6.0)
