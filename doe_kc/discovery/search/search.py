@@ -63,6 +63,8 @@ class EffectSearch:
     """Probabilities of sets before the records."""
     shape_loss: float
     """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any."""
+    with_closed_laws: Fit | None
+    """`with_law_discrepancy` before its frictions were given free shapes; None where they were not."""
 
     @property
     def evidence(self) -> float:
@@ -200,8 +202,10 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     decision = decision.without_trials
     current = at_optimum(with_traces_anew(current), workers)
     current = with_best_laws(current, workers)
-    closed, current = current.evidence, with_free_shapes(current, workers)
-    shape_loss = closed - current.evidence
+    closed, current = current, with_free_shapes(current, workers)
+    shape_loss = closed.evidence - current.evidence
+    before_shapes = None if current is closed else closed.without_derivatives
+    del closed
     last = tuple(_latest(screened, decision, current))
     current, with_effects = both_optima(current, model.likelihood, workers)
     return EffectSearch(
@@ -215,6 +219,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         without_own,
         prior,
         shape_loss,
+        before_shapes,
     )
 
 
