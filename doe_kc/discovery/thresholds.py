@@ -60,8 +60,8 @@ HOPELESS_SHARE = 0.5
 up where that is not enough, and by which the effects that another law asks for are trusted to bring more than
 they promise. A choice: the first steps on a car with rubber brought 0.6 to 1.0 of theirs."""
 BEYOND_DOUBT = 200.0
-"""ln evidence, behind which a removal, a rival or, at the end, another law of a friction need not be fitted
-to its end. Four times what `NAME_ALWAYS_LEVEL` asks for; odds beyond a million are not told apart."""
+"""ln evidence, behind which a removal, a rival or another closed law of a friction need not be fitted to its
+end. Four times what `NAME_ALWAYS_LEVEL` asks for; odds beyond a million are not told apart."""
 FIT_STEPS = 24
 """-, steps of a fit at most. A fit that takes more is lost: on a car with one effect 12 were enough
 for the same verdict and sizes."""
@@ -210,12 +210,11 @@ PROPOSAL_GAIN = 50.0
 deviations: what is weaker waits for better derivatives."""
 LAW_WINDOW = 10.0
 """ln evidence, that the more flexible of two laws may be behind while noise does not explain what remains,
-and ln likelihood, with priors, behind which a refit by another closed law is given up. Occam's window
-(Madigan, Raftery 1994): effects are then looked for beside the open law."""
+and that another set may be behind for its sizes to count. Occam's window (Madigan, Raftery 1994):
+effects are then looked for beside the open law."""
 FREE_SHAPE_LOSS = 10.0
 """ln likelihood, with priors, that frictions of free shape may cost before sizes are estimated beside the
-laws that were chosen, and that a closed law in the place of a free one is given beyond `LAW_WINDOW` before it
-is given up. As `LAW_WINDOW`: on a car with five effects they cost 1."""
+laws that were chosen. As `LAW_WINDOW`: on a car with five effects they cost 1."""
 FEW_CONTRASTS = 1.1
 """Mean square of the contrasts that remain, up to which single ones stand out of noise and not all: a law
 that a member lacks. Noise alone, with the discrepancy of laws among the errors, leaves 0.4 to 0.9."""

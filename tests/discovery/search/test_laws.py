@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import doe_kc.discovery.search.laws as laws_module
 from doe_kc.axle.places import places_of
 from doe_kc.axle_file import read_axle
 from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.laws import (
     open_laws,
@@ -22,7 +24,7 @@ from doe_kc.discovery.search.laws import (
     with_law,
     with_open_laws,
 )
-from doe_kc.discovery.thresholds import FREE_TRAVELS
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_TRAVELS
 from doe_kc.effects import EFFECTS
 from doe_kc.examples import example_folder
 from doe_kc.ground.typing import FloatArray
@@ -204,6 +206,21 @@ def test_beside_another_effect_a_friction_gets_the_law_of_most_evidence(cost: fl
     friction, _ = with_best_laws(beside_a_hub(), asked).model.members
     assert asked.laws == ["iwan", "duhem", "lognormal"]
     assert friction.law == law
+
+
+def test_another_closed_law_is_given_up_only_beyond_doubt() -> None:
+    """Iwan's law, 46 of cost better than Dahl's, had been given up on the way there."""
+
+    class Ceilings(Answers):
+        most: ClassVar[list[float]] = []
+
+        def fits(self, starts: Sequence[FitStart], *told: Any, **options: Any) -> list[Fit | None]:
+            self.most.extend(start.ceiling for start in starts)
+            return super().fits(starts, *told, **options)
+
+    asked = Ceilings(0.0)
+    with_best_laws(beside_a_hub(), asked)
+    assert asked.most == [pytest.approx(beside_a_hub().cost + 2.0 * BEYOND_DOUBT)] * 3
 
 
 @pytest.mark.parametrize(("cost", "law"), [(-5.0, "iwan"), (5.0, "")])
