@@ -1,10 +1,16 @@
 """Nuisances whose columns are the same at every point of a fit: differences between the sides, and clutter.
 
-Clutter are traces of every effect that is not in the model, further Gaussian unknowns of a fit. Every car has
-a little of each. Without them what they do to the records would pass for another effect, or shift the sizes
-of those in the model. With the slab prior of a member's sizes this is a spike and slab (T. J. Mitchell,
-J. J. Beauchamp, Journal of the American Statistical Association 83, 1988): the errors of all sets of effects
-are the same but for the members themselves.
+Clutter are traces of every effect that is not in the model, further Gaussian unknowns of a fit. Every car
+has a little of each. Without them what they do to the records would pass for another effect, or shift the
+sizes of those in the model. With the slab prior of a member's sizes this is a spike and slab (T. J.
+Mitchell, J. J. Beauchamp, Journal of the American Statistical Association 83, 1988): the errors of all sets
+of effects are the same but for the members themselves.
+
+Their means are zero, but for what every car is known to have: that is exponential before the records, which
+assumes least of a size that cannot be negative (E. T. Jaynes, Physical Review 106, 1957), so that the mean
+is the standard deviation. About zero, a steering friction was told 1 % too small, as the mount of every
+rack yields: 58 of 75 were below the truth. For all compliances together means are too much, as many stand
+for the same: a tyre of 89.7 N/mm became 101.6 ± 4.1 in place of 96.0 ± 3.7, and free plays 3 % less.
 """
 
 from __future__ import annotations
@@ -17,6 +23,7 @@ from functools import cached_property
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.discovery.thresholds import TRACE_SD
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
@@ -36,6 +43,11 @@ class Trace:
         return self.hypothesis.sizes[self.place]
 
 
+def trace_mean(size: Size) -> float:
+    """Mean amplitude of its trace before the records, in typical sizes."""
+    return TRACE_SD if size.present else 0.0
+
+
 @dataclass(frozen=True)
 class LinearNuisances:
     """Their columns, of the sides about the axle with the set's effects, of traces about the re-tuned one, in
@@ -53,6 +65,13 @@ class LinearNuisances:
     def count(self) -> int:
         """l, the number of columns."""
         return int(self.columns.shape[1])
+
+    @cached_property
+    def centre(self) -> FloatArray:
+        """(l,) means before the records, in standard deviations."""
+        out = np.zeros(self.count)
+        out[self.count - len(self.traces) :] = [trace_mean(t.size) / TRACE_SD for t in self.traces]
+        return out
 
     @cached_property
     def gram(self) -> FloatArray:

@@ -40,7 +40,7 @@ class EffectModel(FieldsOnly):
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides and traces of absent effects, which are linear), d together, then m
     amplitudes of all members' sizes. The priors of b and a are Gaussian with standard deviation 1, that of an
-    amplitude cut at zero where it cannot be negative.
+    amplitude cut at zero where it cannot be negative; `centre` are their means.
     """
 
     axle: Axle
@@ -125,9 +125,10 @@ class EffectModel(FieldsOnly):
 
     @cached_property
     def centre(self) -> FloatArray:
-        """(d + m,) the axle as it is in the file, the rig as it says."""
-        others = self.dimension - self.parameters + len(self.sizes)
-        return np.concatenate([self.space.start, np.zeros(others)])
+        """(d + m,) the axle as it is in the file, the rig as it says, traces as they are in the mean."""
+        linear = np.zeros(0) if self.nuisances is None else self.nuisances.centre
+        calibrations, sizes = np.zeros(len(self.cases)), np.zeros(len(self.sizes))
+        return np.concatenate([self.space.start, calibrations, linear, sizes])
 
     @cached_property
     def lower(self) -> FloatArray:

@@ -17,8 +17,9 @@ fifth."""
 NOISE_SD_SHARE = 0.02
 """-, standard deviation of the noise's own size in a prediction. Taken from three runs of every load case."""
 TRACE_SD = 0.03
-"""typical sizes, standard deviation of the trace of an effect that is not in the model. Every car has some of
-each; `RELEVANT` is 3.3 of it, so that fewer than one trace in a thousand is large enough for a name."""
+"""typical sizes, standard deviation of the trace of an effect that is not in the model, and mean of that of a
+rack's mount. Every car has some of each; `RELEVANT` is 3.3 of it, so that fewer than one trace in a thousand
+is large enough for a name."""
 
 TRACE_SEEN = 0.1
 """standard deviations of the records, below which a trace is left out. It moves nothing."""

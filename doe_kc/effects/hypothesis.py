@@ -24,7 +24,8 @@ class Size:
     number that says how and not how much, so that a = 0 is typical and a = 1 a standard deviation off; bend,
     value = typical a, a shape that may go either way and is none at 0.
     signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
-    have. needed: whether without it what is left is another effect.
+    have. needed: whether without it what is left is another effect. present: whether every car has a little
+    of it that nothing else of a model stands for, so that its trace has a mean.
     """
 
     key: str
@@ -36,6 +37,7 @@ class Size:
     power: float = 1.0
     most: float = 3.0
     needed: bool = False
+    present: bool = False
     log_sd: float = SHAPE_LOG_SD
 
     @property

@@ -41,7 +41,8 @@ class RackMountCompliance(Effect):
     mistaken_for: ClassVar[tuple[str, ...]] = ("scb.Tz", "tie_rod_compliance", "subframe_flexibility")
     shown_by: ClassVar[str] = "a dial gauge between rack housing and sub-frame under lateral force in phase"
     sizes: ClassVar[tuple[Size, ...]] = (
-        Size("k_N_mm", 6000.0, "N/mm", "compliance"),
+        # every mount yields; a softer column says so, but not beside a friction or an assist of the rack
+        Size("k_N_mm", 6000.0, "N/mm", "compliance", present=True),
         Size("stiffening", 0.15, "-", "bend", most=2.5),
     )
 

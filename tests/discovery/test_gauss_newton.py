@@ -121,3 +121,39 @@ def test_a_fit_ends_inside_what_the_axle_can_do(with_hub: Fit, monkeypatch: pyte
     found = fit(with_hub.model, start)
     assert calls[0] > 1 and np.isfinite(found.cost)
     assert found.cost <= cost_of(with_hub.model, start, with_hub.model.residual(start))
+
+
+class Stopped(EffectModel):
+    """A model whose first parameter does not show, until a stop touches below `clearance`: the cost leaps."""
+
+    clearance: ClassVar[float]
+
+    def residual(self, z: FloatArray) -> FloatArray:
+        out = super().residual(np.concatenate([[self.clearance], z[1:]]))
+        out[0] += 1e4 * max(0.0, self.clearance - z[0])
+        return out
+
+
+def test_a_stop_that_touches_does_not_hold_the_others_back(
+    with_hub: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The prior pulls its clearance into contact at every step: the others go on without it."""
+    shown = {f.name: getattr(with_hub.model, f.name) for f in fields(with_hub.model)}
+    own = gauss_newton.own_columns
+
+    def columns(model: EffectModel, *rest: object) -> FloatArray:
+        out = own(model, *rest)  # type: ignore[arg-type]
+        out[:, 0] = 0.0
+        return out
+
+    monkeypatch.setattr(gauss_newton, "own_columns", columns)
+    clearance = 0.9
+    stopped: Stopped = type("StoppedHere", (Stopped,), {"clearance": clearance})(**shown)
+    start = stopped.centre.copy()
+    start[0] = clearance + 1e-3
+    found = fit(stopped, start)
+    monkeypatch.setattr(gauss_newton, "own_columns", own)
+    free: Stopped = type("FreeHere", (Stopped,), {"clearance": clearance})(**shown)
+    assert found.converged and found.z[0] >= clearance
+    others = fit(free, np.concatenate([[clearance], with_hub.z[1:]]), known=found.jacobian.own)
+    assert found.cost < others.cost + 1.0

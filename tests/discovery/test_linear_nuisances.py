@@ -9,7 +9,8 @@ import pytest
 
 from doe_kc.correlation.likelihood import rewhitened
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.linear_nuisances import Trace
+from doe_kc.discovery.gauss_newton import chord_fit
+from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace, trace_mean
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import screen
 from doe_kc.discovery.search.search import tune, with_clutter
@@ -35,6 +36,31 @@ def test_traces_are_of_amounts_at_three_per_cent(tuned: Fit, cluttered: Fit) -> 
     column = screen(tuned, rod).columns[:, 0]
     own = known.columns[:, known.count - len(known.traces) + known.traces.index(Trace(rod, 0))]
     np.testing.assert_allclose(own, TRACE_SD * column)
+
+
+def test_what_every_car_has_some_of_is_exponential_before_the_records(cluttered: Fit) -> None:
+    """Of an exponential distribution the mean is the standard deviation; all others have a mean of zero."""
+    known = cluttered.model.nuisances
+    assert known is not None
+    np.testing.assert_array_equal(known.centre, 0.0)
+    (mount,) = library("rack_mount_compliance")
+    with_mount = known.with_traces([Trace(mount, 0)], np.ones((known.columns.shape[0], 1)))
+    np.testing.assert_array_equal(with_mount.centre, [*known.centre, 1.0])
+    assert trace_mean(mount.sizes[0]) == TRACE_SD
+    model = replace(cluttered.model, nuisances=with_mount)
+    np.testing.assert_array_equal(model.centre[model.linear], with_mount.centre)
+
+
+def test_without_records_a_trace_is_its_mean(tuned: Fit) -> None:
+    """A column that no record shows: nothing moves it from where it is before the records."""
+    (mount,) = library("rack_mount_compliance")
+    none = LinearNuisances(np.zeros((tuned.residual.size, 0)))
+    traced = replace(
+        tuned.model, nuisances=none.with_traces([Trace(mount, 0)], np.full((tuned.residual.size, 1), 1e-6))
+    )
+    start = np.concatenate([tuned.z[: traced.calibrations.stop], [0.0]])
+    state = Fit(traced, start, traced.residual(start), traced.jacobian(tuned.jacobian.own), 0.0, 1, True)
+    assert chord_fit(state, traced).z[-1] == pytest.approx(1.0, abs=1e-3)
 
 
 def test_a_member_has_no_trace_beside_its_sizes(cluttered: Fit) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.linear_nuisances import trace_mean
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.thresholds import (
     ALIKE_CORRELATION,
@@ -107,12 +108,12 @@ def _limits(screened: Screened, by_bounds: float, critical: float) -> FloatArray
         seen = trusted_detectability(
             screened.detectability, float(np.linalg.norm(screened.change)), by_bounds
         )
-        return np.array([np.nan if s.shape else _limit(seen, critical) for s in sizes])
+        return np.array([np.nan if s.shape else trace_mean(s) + _limit(seen, critical) for s in sizes])
     lengths = np.linalg.norm(screened.columns, axis=0)
     return np.array(
         [
-            _limit(trusted_detectability(v, w, 0.0), critical)
-            for v, w in zip(screened.size_detectability, lengths, strict=True)
+            trace_mean(s) + _limit(trusted_detectability(v, w, 0.0), critical)
+            for s, v, w in zip(sizes, screened.size_detectability, lengths, strict=True)
         ]
     )
 
@@ -128,16 +129,16 @@ def trusted_detectability(visible: float, before: float, by_bounds: float) -> fl
 
 
 def _limit(visible: float, critical: float) -> float:
-    """Amplitude from which a size that makes `visible` standard deviations when typical would be found.
-
-    Beside a trace of the same effect, which every car has.
-    """
+    """Amplitude, over the mean of its trace, from which a size that makes `visible` standard deviations when
+    typical would be found. Beside a trace of the same effect, which every car has."""
     return float("inf") if visible <= 0.0 else (critical + POWER) * float(np.hypot(1.0 / visible, TRACE_SD))
 
 
 def _upper(screened: Screened) -> FloatArray:
-    """(m,) amplitudes that the sizes pass with a chance of 5 %, to first order."""
-    return np.asarray(np.abs(screened.amplitudes) + ONE_SIDED * screened.sd)
+    """(m,) amplitudes that the sizes pass with a chance of 5 %, to first order. What was screened comes on
+    top of a trace."""
+    means = np.array([trace_mean(s) for s in screened.hypothesis.sizes])
+    return np.asarray(means + np.abs(screened.amplitudes) + ONE_SIDED * screened.sd)
 
 
 def _status(screened: Screened, detectable: float, *, resolved: bool) -> Status:
