@@ -93,6 +93,20 @@ def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> N
     assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
 
 
+def test_what_every_car_has_some_of_is_excluded_above_its_mean(tuned: Fit) -> None:
+    """The same columns, of an effect whose trace has a mean and of one whose trace has none."""
+    (mount,) = library("rack_mount_compliance")
+    clear = screen(tuned, mount)
+    absent = replace(mount, sizes=tuple(replace(s, present=False) for s in mount.sizes))
+    limits = [
+        hypothesis_statuses(tuned, [replace(clear, hypothesis=h)], [], 4.0, resolved=True)[0].limits
+        for h in (mount, absent)
+    ]
+    shapes = [s.shape for s in mount.sizes]
+    assert not np.isinf(limits[1]).any()
+    np.testing.assert_allclose(limits[0], np.add(limits[1], [0.0 if shape else TRACE_SD for shape in shapes]))
+
+
 @pytest.mark.parametrize(("strength", "correlation"), [(2.0, 0.5), (4.0, 0.9), (6.0, 0.95)])
 def test_wrong_name_chance_against_monte_carlo(strength: float, correlation: float) -> None:
     rng = np.random.default_rng(2)
