@@ -63,8 +63,9 @@ class EffectSearch:
     """Probabilities of sets before the records."""
     shape_loss: float
     """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any."""
-    with_closed_laws: Fit | None
-    """`with_law_discrepancy` before its frictions were given free shapes; None where they were not."""
+    with_other_laws: Fit | None
+    """`with_law_discrepancy` by closed laws of its frictions where those have free shapes, or by free shapes
+    where those fit as well but leave what closed laws explain; None where there is none."""
 
     @property
     def evidence(self) -> float:
@@ -202,10 +203,10 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     decision = decision.without_trials
     current = at_optimum(with_traces_anew(current), workers)
     current = with_best_laws(current, workers)
-    closed, current = current, with_free_shapes(current, workers)
-    shape_loss = closed.evidence - current.evidence
-    before_shapes = None if current is closed else closed.without_derivatives
-    del closed
+    before_shapes = current.evidence
+    current, other = with_free_shapes(current, workers)
+    shape_loss = before_shapes - current.evidence
+    other = None if other is None else other.without_derivatives
     last = tuple(_latest(screened, decision, current))
     current, with_effects = both_optima(current, model.likelihood, workers)
     return EffectSearch(
@@ -219,7 +220,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         without_own,
         prior,
         shape_loss,
-        before_shapes,
+        other,
     )
 
 

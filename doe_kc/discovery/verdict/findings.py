@@ -57,8 +57,8 @@ def _finding(
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
     sd = _with_law(hypothesis, most_probable, sd, search.discrepancy_shares)
     sd = np.hypot(sd, spread_between_sets(hypothesis, most_probable, compared))
-    last, closed = search.with_law_discrepancy, search.with_closed_laws
-    sd = np.hypot(sd, spread_between_laws(hypothesis, most_probable, last, closed))
+    last, other = search.with_law_discrepancy, search.with_other_laws
+    sd = np.hypot(sd, spread_between_laws(hypothesis, most_probable, last, other))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_name_chances(own, detectability)

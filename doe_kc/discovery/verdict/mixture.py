@@ -36,26 +36,25 @@ def spread_between_sets(
 
 
 def spread_between_laws(
-    member: Hypothesis, amplitudes: FloatArray, last: Fit, closed: Fit | None
+    member: Hypothesis, amplitudes: FloatArray, last: Fit, other: Fit | None
 ) -> FloatArray:
-    """(m,) root of the mean square by which a member's amplitudes differ by the closed laws of the frictions.
+    """(m,) root of the mean square by which a member's amplitudes differ by other laws of the frictions.
 
-    amplitudes: (m,) in `last`, with free shapes. closed: see `EffectSearch.with_closed_laws`. A free shape
-    comes near every closed law, so that it should fit as well; its sliders make the cost rough. One that
-    ended 8 of cost above Iwan's law had 548 +- 5 N for 452, by that law 470, and a mount of the rack a third
-    too soft beside it. So both count by how well they fit: evidence would only say which law has fewer
-    numbers.
+    amplitudes: (m,) in `last`. other: see `EffectSearch.with_other_laws`. A free shape comes near every
+    closed law, so that it should fit as well; its sliders make the cost rough. One that ended 8 of cost above
+    Iwan's law had 548 +- 5 N for 452, by that law 470, and a mount of the rack a third too soft beside it. So
+    both count by how well they fit: evidence would only say which law has fewer numbers.
     """
-    if closed is None:
+    if other is None:
         return np.zeros(amplitudes.size)
-    there = next(h for h in closed.model.members if h.name == member.name)
-    known = dict(zip((s.name for s in there.sizes), amplitude_estimates(closed, there)[0], strict=True))
+    there = next(h for h in other.model.members if h.name == member.name)
+    known = dict(zip((s.name for s in there.sizes), amplitude_estimates(other, there)[0], strict=True))
     same = [there.law == member.law or not s.shape for s in member.sizes]
     apart = [
         known.get(s.name, a) - a if counts else 0.0
         for s, a, counts in zip(member.sizes, amplitudes, same, strict=True)
     ]
-    share = float(expit(0.5 * (last.cost - closed.cost)))
+    share = float(expit(0.5 * (last.cost - other.cost)))
     return np.asarray(np.sqrt(share) * np.abs(apart))
 
 
