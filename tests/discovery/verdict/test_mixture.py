@@ -53,6 +53,6 @@ def test_numbers_of_another_law_are_not_compared(closed: Fit) -> None:
     np.testing.assert_array_equal(spread > 0.0, apart)
 
 
-def test_without_free_shapes_there_is_no_spread(closed: Fit) -> None:
+def test_without_other_laws_there_is_no_spread(closed: Fit) -> None:
     member = closed.model.members[0]
     assert not spread_between_laws(member, np.ones(2), closed, None).any()
