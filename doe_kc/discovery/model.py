@@ -39,8 +39,8 @@ class EffectModel(FieldsOnly):
 
     A point is z = (u, b, a), (d + m,): places of the parameters, nuisances (calibrations of the rig's inputs,
     then differences between the sides and traces of absent effects, which are linear), d together, then m
-    amplitudes of all members' sizes. The priors of b and a are Gaussian about `centre` with standard deviation
-    1, that of an amplitude cut at zero where it cannot be negative.
+    amplitudes of all members' sizes. The priors of b and a are Gaussian about `centre` with standard
+    deviation 1, that of an amplitude cut at zero where it cannot be negative.
     """
 
     axle: Axle
