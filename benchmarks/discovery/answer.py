@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from benchmarks.discovery.exclusions import Excluded, read_excluded
@@ -23,6 +23,8 @@ class Named:
     parameters: Mapping[str, tuple[float, float]]
     verdict: str = ""
     """Its own: `named`, `class` or `lead`."""
+    limits: Mapping[str, float] = field(default_factory=dict)
+    """Name -> what a number that is not told from none is at most, at 95 %; of a stiffness at least."""
 
 
 @dataclass(frozen=True)
@@ -114,10 +116,12 @@ def read_answer(data: Mapping[str, Any] | None) -> Answer:
 
 
 def _named(effect: Mapping[str, Any]) -> Named:
+    known = (effect.get("parameters") or {}).items()
     parameters = {
-        name: numbers
-        for key, p in (effect.get("parameters") or {}).items()
-        for name, numbers in _numbers(key, p.get("value"), p.get("sd"))
+        name: numbers for key, p in known for name, numbers in _numbers(key, p.get("value"), p.get("sd"))
+    }
+    limits = {
+        name: limit for key, p in known for name, (_, limit) in _numbers(key, p.get("value"), p.get("limit"))
     }
     probability = effect.get("probability")
     return Named(
@@ -126,13 +130,14 @@ def _named(effect: Mapping[str, Any]) -> Named:
         1.0 if probability is None else float(probability),
         parameters,
         str(effect.get("verdict") or ""),
+        limits,
     )
 
 
-def _numbers(key: str, value: Any, sd: Any) -> Iterator[tuple[str, tuple[float, float]]]:
-    """Name with value and sd; the members of a list option by their places, `LLR[1]`."""
-    if isinstance(value, list) and isinstance(sd, list):
-        for i, (one, its) in enumerate(zip(value, sd, strict=True)):
+def _numbers(key: str, value: Any, other: Any) -> Iterator[tuple[str, tuple[float, float]]]:
+    """Name with value and sd or limit, where there are both; members of a list by their places, `LLR[1]`."""
+    if isinstance(value, list) and isinstance(other, list):
+        for i, (one, its) in enumerate(zip(value, other, strict=True)):
             yield from _numbers(f"{key}[{i}]", one, its)
-    elif isinstance(value, int | float) and isinstance(sd, int | float):
-        yield key, (float(value), float(sd))
+    elif isinstance(value, int | float) and isinstance(other, int | float):
+        yield key, (float(value), float(other))

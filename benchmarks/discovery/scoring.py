@@ -14,7 +14,8 @@ from benchmarks.discovery.truth import DELETED, TrueEffect, Truth
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter of a rightly named effect. approximate: of a law of another shape."""
+    """A parameter of a rightly named effect. approximate: of a law of another shape. limit: None where the
+    answer tells it from none."""
 
     effect: str
     parameter: str
@@ -22,6 +23,12 @@ class Estimate:
     value: float
     sd: float
     approximate: bool
+    limit: float | None = None
+
+    @property
+    def within_limit(self) -> bool:
+        """Whether the true value is on the limit's side of the one told; a stiffness is at least as large."""
+        return self.limit is not None and (self.true - self.limit) * (self.value - self.limit) >= 0.0
 
     @property
     def z(self) -> float:
@@ -181,7 +188,7 @@ def _estimates(pairs: list[tuple[TrueEffect, Named]]) -> Iterator[Estimate]:
         true = numbers(t.id, {name: (value, 0.0) for name, value in t.parameters.items()})
         for name, (value, sd) in numbers(t.id, n.parameters).items():
             if name in true:
-                yield Estimate(t.id, name, true[name][0], value, sd, t.approximate)
+                yield Estimate(t.id, name, true[name][0], value, sd, t.approximate, n.limits.get(name))
 
 
 def _believed(truth: Truth, answer: Answer) -> tuple[tuple[float, bool], ...]:

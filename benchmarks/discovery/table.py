@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from benchmarks.discovery.scoring import Score
+from benchmarks.discovery.scoring import Estimate, Score
 from benchmarks.discovery.statistics import Share, brier, calibration_error, reliability, share
 from benchmarks.discovery.suites import ALL_SUITES
 from benchmarks.discovery.truth import DELETED
@@ -142,22 +142,30 @@ def _within(z: FloatArray) -> str:
 
 
 def parameter_lines(found: Sequence[Score]) -> list[str]:
-    """How good the numbers of rightly named effects are."""
+    """How good the numbers of rightly named effects are: those told as a value, those told as a limit since
+    the records do not tell them from none, and both by their standard deviations."""
     lines = []
     every = [e for s in found for e in s.estimates]
-    for label, chosen in (
-        ("same law", [e for e in every if not e.approximate]),
-        ("law of another shape", [e for e in every if e.approximate]),
-    ):
-        if chosen:
-            z = np.abs([e.z for e in chosen])
-            relative = np.abs([e.relative for e in chosen])
+    for label, approximate in (("same law", False), ("law of another shape", True)):
+        chosen = [e for e in every if e.approximate == approximate]
+        told = [e for e in chosen if e.limit is None]
+        limits = [e for e in chosen if e.limit is not None]
+        if told:
+            relative = np.abs([e.relative for e in told])
             middle, most = 100 * np.nanmedian(relative), 100 * np.nanquantile(relative, 0.9)
             lines.append(
-                f"- Parameters, {label}: {len(chosen)}, {_within(z)} (68 % and 95 % where honest); "
+                f"- Parameters, {label}, told as a value: {_z_words(told)} (68 % and 95 % where honest); "
                 f"error, median {middle:.1f} %, 90 in 100 below {most:.0f} %"
             )
+        if limits:
+            right = share([e.within_limit for e in limits])
+            lines.append(f"- Parameters, {label}, told as a limit: {right} are within it (95 % where honest)")
+            lines.append(f"- Parameters, {label}, all by value and sd: {_z_words(chosen)}")
     return lines
+
+
+def _z_words(chosen: Sequence[Estimate]) -> str:
+    return f"{len(chosen)}, {_within(np.abs([e.z for e in chosen]))}"
 
 
 def calibration_lines(found: Sequence[Score]) -> list[str]:

@@ -140,7 +140,8 @@ def _seen(fit: Fit) -> NDArray[np.bool_]:
     it.
     """
     model = fit.model
-    shown, before = np.diag(fit.jacobian.gram), model.prior_sd**-2.0
+    before = model.prior_sd**-2.0
+    shown = np.diag(fit.hessian) - before
     asked = fit.gradient - before * (fit.z - model.centre)
     out = (shown > before) | (asked**2 > FIT_DECREASE * (shown + before))
     out[model.linear] = True

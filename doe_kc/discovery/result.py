@@ -37,6 +37,9 @@ class ParameterEstimate:
     """Its standard deviation, in `unit`."""
     unit: str
     """Unit of the option; `-` without one."""
+    limit: float | None = None
+    """What a number that the records do not tell from none is at most (of a stiffness: at least), with a
+    probability of 95 %, in `unit`; None where they do tell, or where it may be of either sign."""
 
 
 @dataclass(frozen=True)

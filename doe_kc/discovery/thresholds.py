@@ -308,6 +308,9 @@ POWER = 0.84
 quantile."""
 ONE_SIDED = 1.645
 """standard deviations, one-sided 95 % limit of a size. Normal quantile."""
+SIZE_SEEN = 2.0
+"""standard deviations above zero, from which a size that cannot be negative is told from none. Below, a limit
+is told: the usual 95 %."""
 ALIKE_CORRELATION = 0.8
 """-, |correlation| after re-tuning, from which two effects are listed as alike. A choice: two thirds of the
 squares are shared."""

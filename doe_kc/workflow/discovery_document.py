@@ -24,7 +24,8 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
 
     effects: those that are named, or the most probable of a class, each with its own verdict: where the
     verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces:
-    seen, too small to matter. parameters: value, sd, unit of each option, lists for a list option.
+    seen, too small to matter. parameters: value, sd, unit of each option, lists for a list option; limit:
+    null, or what a number that the records do not tell from none is at most (a stiffness: at least), at 95 %.
     log10_odds: of each effect against the best alternative, its removal or a rival in its place, all others
     in the model; 6 says 6 or more; against: id of that rival, null for the removal.
     adequacy: how often noise alone leaves as large a disagreement as remains (map_chance), and as large an
@@ -77,13 +78,16 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
     length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
     for e in finding.estimates:
         if e.index is None:
-            parameters[e.key] = {"value": e.value, "sd": e.sd, "unit": e.unit}
+            parameters[e.key] = {"value": e.value, "sd": e.sd, "limit": e.limit, "unit": e.unit}
             continue
-        entry = parameters.setdefault(e.key, {"value": [0.0] * length, "sd": [0.0] * length, "unit": e.unit})
+        none: dict[str, Any] = {"value": [0.0] * length, "sd": [0.0] * length, "limit": [None] * length}
+        entry = parameters.setdefault(e.key, none | {"unit": e.unit})
         entry["value"][e.index], entry["sd"][e.index] = e.value, e.sd
+        entry["limit"][e.index] = e.limit
     hypothesis = finding.hypothesis
     if hypothesis.location is None:  # what is fixed then says which of several ways it is, as a technique
-        parameters |= {k: {"value": v, "sd": None, "unit": ""} for k, v in hypothesis.fixed.items()}
+        fixed = {"sd": None, "limit": None, "unit": ""}
+        parameters |= {k: {"value": v} | fixed for k, v in hypothesis.fixed.items()}
     return {
         "id": hypothesis.effect,
         "location": hypothesis.location,

@@ -16,7 +16,7 @@ from benchmarks.discovery.report import Run, write
 from benchmarks.discovery.scoring import Predicted, Score, score
 from benchmarks.discovery.statistics import brier, calibration_error, reliability, wilson
 from benchmarks.discovery.suites import ALL_SUITES
-from benchmarks.discovery.table import followup_lines, groups, small_effect_lines
+from benchmarks.discovery.table import followup_lines, groups, parameter_lines, small_effect_lines
 from benchmarks.discovery.truth import TrueEffect, Truth
 
 RUN = Run("python x", "example", 1, "abc", "a machine")
@@ -252,6 +252,34 @@ def test_location_and_numbers() -> None:
     assert found.located == (1, 1)
     assert found.estimates[0].z == pytest.approx(1.5)
     assert found.estimates[0].relative == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("true", "value", "limit", "right"),
+    [
+        (9000.0, 30000.0, 8000.0, True),
+        (7000.0, 30000.0, 8000.0, False),
+        (50.0, 40.0, 90.0, True),
+        (95.0, 40.0, 90.0, False),
+    ],
+    ids=["a stiffer joint", "a softer one", "a smaller force", "a larger one"],
+)
+def test_a_size_told_as_a_limit_is_judged_by_that(
+    true: float, value: float, limit: float, right: bool
+) -> None:
+    effect = TrueEffect("x", 1.0, "", {"size": true, "other": 1.0}, False)
+    truth = Truth("x", "single", (effect,), (), "", frozenset())
+    numbers = {
+        "size": {"value": value, "sd": value, "limit": limit},
+        "other": {"value": 1.5, "sd": 0.4, "limit": None},
+    }
+    named = {"id": "x", "location": None, "probability": 0.95, "parameters": numbers}
+    found = score(truth, read_answer({"verdict": "named", "effects": [named]}))
+    assert found.estimates[0].within_limit is right
+    told, limits, every = parameter_lines([found])
+    assert "told as a value: 1, within 1 sd: 0/1" in told
+    assert f"told as a limit: {int(right)}/1" in limits
+    assert "all by value and sd: 2, within" in every
 
 
 def test_a_stiffer_left_is_a_softer_right() -> None:

@@ -17,7 +17,13 @@ from doe_kc.discovery.screening.within_bounds import (
     nominal_fit,
 )
 from doe_kc.discovery.search.compatibility import compatible_set
-from doe_kc.discovery.search.refits import HypothesisFit, hypothesis_fit, plausible, set_fit
+from doe_kc.discovery.search.refits import (
+    HypothesisFit,
+    hypothesis_fit,
+    plausible,
+    set_fit,
+    useful_cost,
+)
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
@@ -55,12 +61,12 @@ def refits_from_nominal(
     except NotConverged:
         return []
     leading = leading_from_nominal(gains_within_bounds(nominal, screened)) if bent else []
-    starts = [_from_nominal(nominal, [one.screened.hypothesis], [one.amplitudes]) for one in leading]
     known = {one.screened.hypothesis.effect for one in leading}
-    starts += [
-        _from_nominal(nominal, [s.hypothesis], [s.amplitudes])
-        for s in first
-        if s.hypothesis.effect not in known
+    alone = [(one.screened.hypothesis, one.amplitudes) for one in leading]
+    alone += [(s.hypothesis, s.amplitudes) for s in first if s.hypothesis.effect not in known]
+    starts = [
+        _from_nominal(nominal, [h], [amplitudes], useful_cost(current, h, ACCEPTED_ODDS, prior))
+        for h, amplitudes in alone
     ]
     fits = workers.fits(starts, "refitting from the nominal axle")
     own = [hypothesis_fit(refit, current, prior) for refit in fits if refit is not None]
@@ -79,7 +85,8 @@ def refit_anew(current: Fit, workers: DiscoveryWorkers) -> Fit | None:
         nominal = nominal_fit(current)
     except NotConverged:
         return None
-    (refit,) = workers.fits([FitStart(current.model, nominal.z, nominal)], "refitting from the nominal axle")
+    start = FitStart(current.model, nominal.z, nominal, current.cost)
+    (refit,) = workers.fits([start], "refitting from the nominal axle")
     if refit is None or refit.evidence - current.evidence <= ACCEPTED_ODDS:
         return None
     return refit
@@ -137,8 +144,14 @@ def _pair_refits(
         for one, other in leading_pairs(list(best.values())[: 1 + NOMINAL_REFITS])
         if compatible_set([*before, one.hypothesis, other.hypothesis])
     ]
+    single, *_ = best.values()
     starts = [
-        _from_nominal(nominal, [t.hypothesis for t in pair], [own_amplitudes(t) for t in pair])
+        _from_nominal(
+            nominal,
+            [t.hypothesis for t in pair],
+            [own_amplitudes(t) for t in pair],
+            useful_cost(single.fit, pair[-1].hypothesis, 0.0, prior),
+        )
         for pair in pairs
     ]
     fits = workers.fits(starts, "refitting pairs")
@@ -165,9 +178,10 @@ def own_amplitudes(trial: HypothesisFit) -> FloatArray:
 
 
 def _from_nominal(
-    nominal: Fit, hypotheses: Sequence[Hypothesis], amplitudes: Sequence[FloatArray]
+    nominal: Fit, hypotheses: Sequence[Hypothesis], amplitudes: Sequence[FloatArray], ceiling: float
 ) -> FitStart:
+    """ceiling: see `fit`."""
     model = nominal.model
     for hypothesis in hypotheses:
         model = model.extended(hypothesis)
-    return FitStart(model, np.concatenate([nominal.z, *amplitudes]), nominal)
+    return FitStart(model, np.concatenate([nominal.z, *amplitudes]), nominal, ceiling)

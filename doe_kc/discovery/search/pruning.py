@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import REMOVAL_FACTOR
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
@@ -36,7 +36,7 @@ def backward_elimination(
         errors = (without_own.get(h.name, fit.model.likelihood) for h, _ in members)
         withs = [fit_to_errors(fit, likelihood, workers) for likelihood in errors]
         starts = [
-            FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit)
+            FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit, w.cost + 2.0 * BEYOND_DOUBT)
             for w, (h, place) in zip(withs, members, strict=True)
         ]
         fewer = workers.fits(starts, "taking effects out")

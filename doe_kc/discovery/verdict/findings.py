@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from scipy.special import log_ndtr, logsumexp, ndtr
+from scipy.special import logsumexp, ndtr
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.half_lines import half_line_limit, half_line_moments
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
 from doe_kc.discovery.search.search import EffectSearch
@@ -16,7 +17,9 @@ from doe_kc.discovery.thresholds import (
     LINEAR_TO,
     NAME_LEVEL,
     NOISE_CHANCE,
+    ONE_SIDED,
     RIVAL_LISTED,
+    SIZE_SEEN,
     WRONG_NAME_CHANCE,
 )
 from doe_kc.discovery.verdict.alternatives import Alternatives
@@ -124,16 +127,19 @@ def estimate(size: Size, amplitude: float, sd: float) -> ParameterEstimate:
     """A size at its value, with the standard deviation of the value to first order.
 
     A size that cannot be negative is taken at the mean of its half-line's Gaussian, so that one that the
-    data do not see is not given as exactly nothing.
+    data do not see is not given as exactly nothing, with the standard deviation of that; below `SIZE_SEEN`
+    with a limit.
     """
+    limit = None
     if not (size.signed or size.shape) and sd > 0.0:
-        inverse_mills = float(np.exp(-0.5 * (amplitude / sd) ** 2 - log_ndtr(amplitude / sd)))
-        amplitude += sd * inverse_mills / float(np.sqrt(2.0 * np.pi))
+        if size.growth != "factor" and amplitude < SIZE_SEEN * sd:
+            limit = size.value(half_line_limit(amplitude, sd, ONE_SIDED))
+        amplitude, sd = half_line_moments(amplitude, sd)
     step = min(0.01, 0.1 * sd)
     floor = 0.0 if size.signed or size.shape else step
     at = max(amplitude, floor)
     slope = (size.value(at + step) - size.value(at - step)) / (2.0 * step) if step > 0.0 else 0.0
-    return ParameterEstimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit)
+    return ParameterEstimate(size.key, size.index, size.value(amplitude), abs(slope) * sd, size.unit, limit)
 
 
 def _detectability(fit: Fit, place: slice) -> float:

@@ -14,7 +14,6 @@ from doe_kc.curves import response_name
 from doe_kc.discovery.fit import amplitude_estimates
 from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
 from doe_kc.discovery.screening.contrasts import Contrast
-from doe_kc.discovery.thresholds import ONE_SIDED
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -123,10 +122,6 @@ def typical_words(hypothesis: Hypothesis) -> str:
     return "; ".join(f"{s.key} {number(s.typical)}{unit_words(s.unit)}" for s in merged_sizes(hypothesis))
 
 
-SIZE_LEVEL = 2.0
-"""Standard deviations above zero from which a size that cannot be negative is told from none."""
-
-
 @dataclass(frozen=True)
 class FoundSize:
     """One number of a found effect. times: as a multiple of the typical size (shapes: sd off typical)."""
@@ -134,16 +129,19 @@ class FoundSize:
     size: Size
     estimate: ParameterEstimate
     times: float
-    limit: float
-    seen: bool
+
+    @property
+    def seen(self) -> bool:
+        """Whether the records tell it from none."""
+        return self.estimate.limit is None
 
     @property
     def words(self) -> str:
         """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
         unit = unit_words(self.size.unit)
-        if self.seen:
+        if self.estimate.limit is None:
             return f"{with_sd(self.estimate.value, self.estimate.sd)}{unit}"
-        limit = f"{number(self.limit)}{unit}"
+        limit = f"{number(self.estimate.limit)}{unit}"
         if self.size.growth == "compliance":
             return f"not told from rigid (above {limit}, 95 %)"
         return f"not told from none (below {limit}, 95 %)"
@@ -156,18 +154,11 @@ class FoundSize:
 
 def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
-    known = zip(*amplitude_estimates(discovery.fitted, finding.hypothesis), strict=True)
-    for size, estimate, (amplitude, sd) in zip(
-        finding.hypothesis.sizes, finding.estimates, known, strict=True
+    amplitudes, _ = amplitude_estimates(discovery.fitted, finding.hypothesis)
+    for size, own, amplitude in zip(
+        finding.hypothesis.sizes, finding.estimates, amplitudes.tolist(), strict=True
     ):
-        one_sided = not (size.signed or size.shape or size.growth == "factor")
-        yield FoundSize(
-            size,
-            estimate,
-            float(amplitude),
-            size.value(float(amplitude + ONE_SIDED * sd)),
-            bool(not one_sided or amplitude >= SIZE_LEVEL * sd),
-        )
+        yield FoundSize(size, own, amplitude)
 
 
 def size_words(discovery: Discovery, finding: Finding) -> str:

@@ -16,9 +16,11 @@ from doe_kc.discovery.verdict.alternatives import Alternatives, comparison, effe
 from doe_kc.discovery.verdict.findings import (
     NO_EFFECT,
     best_alternative,
+    estimate,
     findings,
     log_probabilities,
 )
+from doe_kc.effects.hypothesis import Size
 from tests.discovery.cases import discovery, library
 
 HUB = [1.0, 1.0]
@@ -167,3 +169,29 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws() -> None:
         assert camber.sd / camber.value == pytest.approx(
             np.hypot(sd[0] / amplitudes[0], max(share, LINEAR_TO)), rel=0.02
         )
+
+
+def test_a_size_that_the_records_do_not_tell_from_none_has_a_limit() -> None:
+    force, stiffness = Size("force_N", 100.0, "N"), Size("k_N_mm", 100.0, "N/mm", "compliance")
+    below, above = (estimate(force, a, 0.5).limit for a in (0.99, 1.01))
+    assert below == pytest.approx(99.0 + 1.655 * 50.0, rel=1e-3)
+    assert above is None
+    unseen = estimate(stiffness, 0.0, 1.0)
+    assert unseen.limit == pytest.approx(100.0 / 1.96, rel=1e-3)  # as stiff as that or stiffer
+    assert unseen.value == pytest.approx(100.0 / 0.798, rel=1e-3)
+    assert unseen.sd == pytest.approx(100.0 * 0.603 / 0.798**2, rel=2e-2)
+
+
+@pytest.mark.parametrize(
+    "size",
+    [
+        Size("offset_mm", 7.0, "mm", signed=True),
+        Size("LLR_L", 1.25, "-", "factor", signed=True),
+        Size("presliding_mm", 0.1, "mm", "shape"),
+    ],
+    ids=lambda size: size.key,
+)
+def test_a_size_of_either_sign_has_no_limit(size: Size) -> None:
+    own = estimate(size, 0.1, 0.5)
+    assert own.limit is None
+    assert own.value == size.value(0.1)
