@@ -179,9 +179,10 @@ def _leader_refits(
     """
     trials: list[HypothesisFit] = []
     left, decoy = list(screened), not current.model.members
+    useful = -np.inf if decoy else ACCEPTED_ODDS  # the verdict on a single effect asks for all to their end
     for _ in range(LEADER_ROUNDS):
         near = leaders(left, current, least / 2.0, decoy=decoy)
-        trials += joint_refits(current, near, prior, workers)
+        trials += joint_refits(current, near, prior, workers, useful)
         if not near or any(_passes(t, current) for t in trials):
             break
         done = {s.hypothesis.name for s in near}
