@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.gauss_newton import fit
+from doe_kc.discovery.gauss_newton import FitStart, fit
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.screening.within_bounds import BoundedGain, many_held
 from doe_kc.discovery.search.nominal_refits import (
@@ -18,8 +20,9 @@ from doe_kc.discovery.search.nominal_refits import (
     refit_anew,
     refits_from_nominal,
 )
-from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.search.refits import HypothesisFit, useful_cost
 from doe_kc.discovery.search.set_prior import SetPrior
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
@@ -51,6 +54,27 @@ def test_where_bounds_hold_many_a_pair_is_refitted_from_the_nominal_axle(
     singles = [t for t in trials if len(t.fit.model.members) == 1]
     assert {t.hypothesis.effect for t in singles} >= set(members)
     assert best.gain > max(t.gain for t in singles) + 100.0
+
+
+def test_refits_from_the_nominal_axle_are_given_up_where_they_cannot_gain(
+    bent: tuple[Fit, list[Screened]],
+) -> None:
+    """A single effect has to beat the set before it, a pair the best single one."""
+    current, screened = bent
+    prior, starts = SetPrior.of(library()), list[FitStart]()
+
+    class Watched(DiscoveryWorkers):
+        def fits(self, given: Sequence[FitStart], *args: Any, **more: Any) -> list[Fit | None]:
+            starts.extend(given)
+            return super().fits(given, *args, **more)
+
+    trials = refits_from_nominal(current, screened, [], [], prior, Watched())
+    single = max((t for t in trials if len(t.fit.model.members) == 1), key=lambda t: t.gain)
+    assert {len(s.model.members) for s in starts} == {1, 2}
+    for start in starts:
+        pair, last = len(start.model.members) == 2, start.model.members[-1]
+        before, least = (single.fit, 0.0) if pair else (current, ACCEPTED_ODDS)
+        assert start.ceiling == useful_cost(before, last, least, prior)
 
 
 def test_from_the_nominal_axle_effects_that_lead_between_bounds_or_by_screening_are_refitted() -> None:

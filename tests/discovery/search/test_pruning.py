@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import numpy as np
 
 from doe_kc.discovery.fit import Fit, rewhitened_fit
-from doe_kc.discovery.gauss_newton import fit, known_columns, refit_to_errors
+from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns, refit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
+from doe_kc.discovery.thresholds import BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
@@ -37,6 +41,23 @@ def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     judged = backward_elimination(found, least, DiscoveryWorkers(), own_errors, prior)
     assert hub in judged.model.members
     assert judged.model.likelihood is wide.likelihood
+
+
+def test_a_removal_beyond_doubt_is_given_up() -> None:
+    """The hub is worth thousands: its removal needs no end."""
+    exact, hub = hub_fitted()
+    assert _loss(exact, hub) > 2.0 * BEYOND_DOUBT
+    starts: list[FitStart] = []
+
+    class Watched(DiscoveryWorkers):
+        def fits(self, given: Sequence[FitStart], what: str, **more: Any) -> list[Fit | None]:
+            starts.extend(given if what == "taking effects out" else ())
+            return super().fits(given, what, **more)
+
+    least = 1e6  # so that the removal is tried
+    found = backward_elimination(exact, least, Watched(), {}, SetPrior({}))
+    assert [s.ceiling for s in starts] == [exact.cost + 2.0 * BEYOND_DOUBT]
+    assert found.model.members == ()
 
 
 def hub_fitted() -> tuple[Fit, Hypothesis]:
