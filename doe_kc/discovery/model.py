@@ -59,6 +59,9 @@ class EffectModel(FieldsOnly):
     scatter: float = 1.0
     """Standard deviation of parameters and of differences between the sides before the records, over that of
     one car: less of the mean of several."""
+    own_scatter: tuple[float, ...] | None = None
+    """(d,) standard deviations of parameters and nuisances as the records show them, over those assumed; None
+    for those."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
     """Solver of its axles, the same for all models that come of one another."""
 
@@ -120,8 +123,10 @@ class EffectModel(FieldsOnly):
     @cached_property
     def prior_sd(self) -> FloatArray:
         """(d + m,) standard deviations before the measurement."""
-        others = self.dimension - self.parameters + len(self.sizes)
-        return np.concatenate([self.scatter * self.space.prior_sd, np.ones(others)])
+        nuisances = np.ones(self.dimension - self.parameters)
+        assumed = np.concatenate([self.scatter * self.space.prior_sd, nuisances])
+        own = 1.0 if self.own_scatter is None else np.array(self.own_scatter)
+        return np.concatenate([own * assumed, np.ones(len(self.sizes))])
 
     @cached_property
     def centre(self) -> FloatArray:

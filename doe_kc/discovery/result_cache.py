@@ -156,6 +156,8 @@ def fingerprint(model: EffectModel) -> str:
     axle = model.axle
     for text in (sorted(axle.values.items()), axle.topology, axle.load_cases, model.space, model.left_out):
         digest.update(repr(text).encode())
+    if model.own_scatter is not None:
+        digest.update(repr(model.own_scatter).encode())
     if model.scatter != 1.0:
         digest.update(repr(model.scatter).encode())
     if model.nuisances is not None:

@@ -92,6 +92,11 @@ class Variable:
         """Standard deviation of u before any measurement: 1/sqrt(12) uniform, 1/6 Gaussian."""
         return 1.0 / GAUSSIAN_RANGE if self.distribution == "gaussian" else 1.0 / math.sqrt(12.0)
 
+    @property
+    def is_guess(self) -> bool:
+        """Whether its bounds are all that is said of it, so that its scatter is a guess."""
+        return self.distribution == "uniform"
+
     def drawn(self, probability: FloatArray) -> FloatArray:
         """u of cumulative probabilities in (0, 1): themselves, or a Gaussian about the start cut at 0, 1."""
         if self.distribution == "uniform":

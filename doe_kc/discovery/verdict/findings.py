@@ -9,6 +9,7 @@ from scipy.special import logsumexp, ndtr
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.half_lines import half_line_limit, half_line_moments
+from doe_kc.discovery.own_scatter import with_own_scatter
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
 from doe_kc.discovery.search.search import EffectSearch
@@ -34,8 +35,9 @@ NO_EFFECT = ""
 
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
+    sized = with_own_scatter(search.with_law_discrepancy)
     return tuple(
-        _finding(search, one, place, compared)
+        _finding(search, one, place, compared, sized)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     )
 
@@ -51,17 +53,19 @@ def _stands_out(own: Alternatives) -> bool:
 
 
 def _finding(
-    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives]
+    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives], sized: Fit
 ) -> Finding:
+    """sized: the last set's fit that its sizes are told of."""
     hypothesis = own.hypothesis
     logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
-    most_probable, sd = amplitude_estimates(search.with_law_discrepancy, hypothesis)
+    last, other = search.with_law_discrepancy, search.with_other_laws
+    assumed, _ = amplitude_estimates(last, hypothesis)
+    most_probable, sd = amplitude_estimates(sized, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
     sd = _with_law(hypothesis, most_probable, sd, search.discrepancy_shares)
-    sd = np.hypot(sd, spread_between_sets(hypothesis, most_probable, compared))
-    last, other = search.with_law_discrepancy, search.with_other_laws
-    sd = np.hypot(sd, spread_between_laws(hypothesis, most_probable, last, other))
+    sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
+    sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_name_chances(own, detectability)

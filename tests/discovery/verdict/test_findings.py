@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.own_scatter import with_own_scatter
 from doe_kc.discovery.result import Finding
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
@@ -155,7 +156,7 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws() -> None:
     found = discovery("pair").search
     large = next(h for h in found.with_law_discrepancy.model.members if h.effect == "hub_compliance")
     place = [h.name for h, _ in found.with_law_discrepancy.model.places()].index(large.name)
-    amplitudes, sd = amplitude_estimates(found.with_law_discrepancy, large)
+    amplitudes, sd = amplitude_estimates(with_own_scatter(found.with_law_discrepancy), large)
     own_errors = replace(found.with_effects, z=1.1 * found.with_effects.z)  # as where the law is another
     screened = {s.hypothesis.name: s for s in found.first.screened}
     compared = []
