@@ -25,6 +25,8 @@ class Named:
     """Its own: `named`, `class` or `lead`."""
     limits: Mapping[str, float] = field(default_factory=dict)
     """Name -> what a number that is not told from none is at most, at 95 %; of a stiffness at least."""
+    unshown: frozenset[str] = frozenset()
+    """Names of numbers that the records do not show."""
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,7 @@ def _named(effect: Mapping[str, Any]) -> Named:
         parameters,
         str(effect.get("verdict") or ""),
         limits,
+        frozenset(name for key, p in known for name in _unshown(key, p.get("shown", True))),
     )
 
 
@@ -141,3 +144,11 @@ def _numbers(key: str, value: Any, other: Any) -> Iterator[tuple[str, tuple[floa
             yield from _numbers(f"{key}[{i}]", one, its)
     elif isinstance(value, int | float) and isinstance(other, int | float):
         yield key, (float(value), float(other))
+
+
+def _unshown(key: str, shown: Any) -> Iterator[str]:
+    """The name where it is not shown; the members of a list option by their places."""
+    if isinstance(shown, list):
+        yield from (f"{key}[{i}]" for i, one in enumerate(shown) if not one)
+    elif not shown:
+        yield key

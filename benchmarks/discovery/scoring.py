@@ -15,7 +15,7 @@ from benchmarks.discovery.truth import DELETED, TrueEffect, Truth
 @dataclass(frozen=True)
 class Estimate:
     """A parameter of a rightly named effect. approximate: of a law of another shape. limit: None where the
-    answer tells it from none."""
+    answer tells it from none. shown: whether it says that the records show it."""
 
     effect: str
     parameter: str
@@ -24,6 +24,7 @@ class Estimate:
     sd: float
     approximate: bool
     limit: float | None = None
+    shown: bool = True
 
     @property
     def within_limit(self) -> bool:
@@ -188,7 +189,8 @@ def _estimates(pairs: list[tuple[TrueEffect, Named]]) -> Iterator[Estimate]:
         true = numbers(t.id, {name: (value, 0.0) for name, value in t.parameters.items()})
         for name, (value, sd) in numbers(t.id, n.parameters).items():
             if name in true:
-                yield Estimate(t.id, name, true[name][0], value, sd, t.approximate, n.limits.get(name))
+                limit, shown = n.limits.get(name), name not in n.unshown
+                yield Estimate(t.id, name, true[name][0], value, sd, t.approximate, limit, shown)
 
 
 def _believed(truth: Truth, answer: Answer) -> tuple[tuple[float, bool], ...]:

@@ -143,12 +143,12 @@ def _within(z: FloatArray) -> str:
 
 def parameter_lines(found: Sequence[Score]) -> list[str]:
     """How good the numbers of rightly named effects are: those told as a value, those told as a limit since
-    the records do not tell them from none, and both by their standard deviations."""
+    the records do not tell them from none, and all by their standard deviations, also those not shown."""
     lines = []
     every = [e for s in found for e in s.estimates]
     for label, approximate in (("same law", False), ("law of another shape", True)):
         chosen = [e for e in every if e.approximate == approximate]
-        told = [e for e in chosen if e.limit is None]
+        told = [e for e in chosen if e.limit is None and e.shown]
         limits = [e for e in chosen if e.limit is not None]
         if told:
             relative = np.abs([e.relative for e in told])
@@ -160,7 +160,12 @@ def parameter_lines(found: Sequence[Score]) -> list[str]:
         if limits:
             right = share([e.within_limit for e in limits])
             lines.append(f"- Parameters, {label}, told as a limit: {right} are within it (95 % where honest)")
-            lines.append(f"- Parameters, {label}, all by value and sd: {_z_words(chosen)}")
+        if len(chosen) > len(told):
+            unshown = sum(not e.shown for e in chosen)
+            lines.append(
+                f"- Parameters, {label}, all by value and sd, {unshown} not shown by the records among them: "
+                f"{_z_words(chosen)}"
+            )
     return lines
 
 

@@ -38,8 +38,11 @@ class ParameterEstimate:
     unit: str
     """Unit of the option; `-` without one."""
     limit: float | None = None
-    """What a number that the records do not tell from none is at most (of a stiffness: at least), with a
-    probability of 95 %, in `unit`; None where they do tell, or where it may be of either sign."""
+    """What a number that the records do not tell from none is at most (of a stiffness: at least), in `unit`,
+    by the records alone with a confidence of 95 %; None where they do tell, where it may be of either sign,
+    and where they do not show it."""
+    shown: bool = True
+    """Whether the records say more of it than what such a part has before them."""
 
 
 @dataclass(frozen=True)

@@ -311,6 +311,9 @@ POWER = 0.84
 quantile."""
 ONE_SIDED = 1.645
 """standard deviations, one-sided 95 % limit of a size. Normal quantile."""
+NOT_SHOWN = 0.9
+"""-, standard deviation of a size over that before the records, from which it is not shown by them. A choice:
+they take a fifth of the variance away at most."""
 SIZE_SEEN = 2.0
 """standard deviations above zero, from which a size that cannot be negative is told from none. Below, a limit
 is told: the usual 95 %."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate
 from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, exclusion_limit
@@ -25,7 +25,8 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
     effects: those that are named, or the most probable of a class, each with its own verdict: where the
     verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces:
     seen, too small to matter. parameters: value, sd, unit of each option, lists for a list option; limit:
-    null, or what a number that the records do not tell from none is at most (a stiffness: at least), at 95 %.
+    null, or what a number that the records do not tell from none is at most (a stiffness: at least), at 95 %;
+    shown: whether the records say more of it than was known before.
     log10_odds: of each effect against the best alternative, its removal or a rival in its place, all others
     in the model; 6 says 6 or more; against: id of that rival, null for the removal.
     adequacy: how often noise alone leaves as large a disagreement as remains (map_chance), and as large an
@@ -78,15 +79,16 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
     length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
     for e in finding.estimates:
         if e.index is None:
-            parameters[e.key] = {"value": e.value, "sd": e.sd, "limit": e.limit, "unit": e.unit}
+            parameters[e.key] = _numbers(e)
             continue
-        none: dict[str, Any] = {"value": [0.0] * length, "sd": [0.0] * length, "limit": [None] * length}
-        entry = parameters.setdefault(e.key, none | {"unit": e.unit})
-        entry["value"][e.index], entry["sd"][e.index] = e.value, e.sd
-        entry["limit"][e.index] = e.limit
+        none = {"value": 0.0, "sd": 0.0, "limit": None, "shown": True}
+        empty = {name: [of] * length for name, of in none.items()}
+        entry = parameters.setdefault(e.key, empty | {"unit": e.unit})
+        for name in none:
+            entry[name][e.index] = _numbers(e)[name]
     hypothesis = finding.hypothesis
     if hypothesis.location is None:  # what is fixed then says which of several ways it is, as a technique
-        fixed = {"sd": None, "limit": None, "unit": ""}
+        fixed = {"sd": None, "limit": None, "shown": True, "unit": ""}
         parameters |= {k: {"value": v} | fixed for k, v in hypothesis.fixed.items()}
     return {
         "id": hypothesis.effect,
@@ -98,6 +100,10 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
         "against": finding.against or None,
         "parameters": parameters,
     }
+
+
+def _numbers(e: ParameterEstimate) -> dict[str, Any]:
+    return {"value": e.value, "sd": e.sd, "limit": e.limit, "shown": e.shown, "unit": e.unit}
 
 
 def _adequacy(holds: Adequacy) -> dict[str, Any]:

@@ -267,11 +267,12 @@ def test_location_and_numbers() -> None:
 def test_a_size_told_as_a_limit_is_judged_by_that(
     true: float, value: float, limit: float, right: bool
 ) -> None:
-    effect = TrueEffect("x", 1.0, "", {"size": true, "other": 1.0}, False)
+    effect = TrueEffect("x", 1.0, "", {"size": true, "other": 1.0, "unseen": 1.0}, False)
     truth = Truth("x", "single", (effect,), (), "", frozenset())
     numbers = {
         "size": {"value": value, "sd": value, "limit": limit},
         "other": {"value": 1.5, "sd": 0.4, "limit": None},
+        "unseen": {"value": 1.5, "sd": 1.0, "limit": None, "shown": False},
     }
     named = {"id": "x", "location": None, "probability": 0.95, "parameters": numbers}
     found = score(truth, read_answer({"verdict": "named", "effects": [named]}))
@@ -279,7 +280,7 @@ def test_a_size_told_as_a_limit_is_judged_by_that(
     told, limits, every = parameter_lines([found])
     assert "told as a value: 1, within 1 sd: 0/1" in told
     assert f"told as a limit: {int(right)}/1" in limits
-    assert "all by value and sd: 2, within" in every
+    assert "all by value and sd, 1 not shown by the records among them: 3, within" in every
 
 
 def test_a_stiffer_left_is_a_softer_right() -> None:

@@ -170,16 +170,17 @@ def test_a_list_option_becomes_one_parameter() -> None:
 def test_an_index_alone_keeps_its_place() -> None:
     finding: Finding = discovery("lead").findings[0]
     one = replace(finding, estimates=(ParameterEstimate("LLR", 1, 600.0, 20.0, "N"),))
-    expected = {"value": [0.0, 600.0], "sd": [0.0, 20.0], "limit": [None, None], "unit": "N"}
-    assert effect_entry(one)["parameters"]["LLR"] == expected
+    expected = {"value": [0.0, 600.0], "sd": [0.0, 20.0], "limit": [None, None], "shown": [True, True]}
+    assert effect_entry(one)["parameters"]["LLR"] == expected | {"unit": "N"}
 
 
 def test_a_number_that_is_not_told_from_none_has_its_limit() -> None:
     finding: Finding = discovery("named").findings[0]
     camber, toe = finding.estimates
-    own = replace(finding, estimates=(camber, replace(toe, limit=20000.0)))
+    own = replace(finding, estimates=(camber, replace(toe, limit=20000.0, shown=False)))
     parameters = effect_entry(own)["parameters"]
     assert [parameters[k]["limit"] for k in ("camber_Nm_deg", "toe_Nm_deg")] == [None, 20000.0]
+    assert [parameters[k]["shown"] for k in ("camber_Nm_deg", "toe_Nm_deg")] == [True, False]
 
 
 def test_what_is_excluded_has_a_limit_for_each_size() -> None:

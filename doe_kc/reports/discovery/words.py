@@ -133,12 +133,14 @@ class FoundSize:
     @property
     def seen(self) -> bool:
         """Whether the records tell it from none."""
-        return self.estimate.limit is None
+        return self.estimate.limit is None and self.estimate.shown
 
     @property
     def words(self) -> str:
-        """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none."""
+        """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none, or that it is not shown."""
         unit = unit_words(self.size.unit)
+        if not self.estimate.shown:
+            return "not shown by these records"
         if self.estimate.limit is None:
             return f"{with_sd(self.estimate.value, self.estimate.sd)}{unit}"
         limit = f"{number(self.estimate.limit)}{unit}"

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.own_scatter import with_own_scatter
@@ -173,14 +174,26 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws() -> None:
 
 
 def test_a_size_that_the_records_do_not_tell_from_none_has_a_limit() -> None:
-    force, stiffness = Size("force_N", 100.0, "N"), Size("k_N_mm", 100.0, "N/mm", "compliance")
-    below, above = (estimate(force, a, 0.5).limit for a in (0.99, 1.01))
-    assert below == pytest.approx(99.0 + 1.655 * 50.0, rel=1e-3)
-    assert above is None
-    unseen = estimate(stiffness, 0.0, 1.0)
-    assert unseen.limit == pytest.approx(100.0 / 1.96, rel=1e-3)  # as stiff as that or stiffer
+    """By the records alone: information of 3 at 0.99 / (1 - 0.25), its share above the limit 5 %."""
+    force = Size("force_N", 100.0, "N")
+    below, above = estimate(force, 0.99, 0.5), estimate(force, 1.01, 0.5)
+    alone, sd = 0.99 / 0.75, 3.0**-0.5
+    assert below.limit is not None and above.limit is None
+    share = norm.sf(below.limit / 100.0, alone, sd) / norm.sf(0.0, alone, sd)
+    assert share == pytest.approx(0.05, rel=1e-3)
+    assert below.shown and above.shown
+
+
+def test_a_size_that_is_as_open_as_before_the_records_is_not_shown() -> None:
+    stiffness = Size("k_N_mm", 100.0, "N/mm", "compliance")
+    unseen, hardly = estimate(stiffness, 0.0, 1.0), estimate(stiffness, 0.0, 0.85)
+    assert (unseen.shown, unseen.limit) == (False, None)
     assert unseen.value == pytest.approx(100.0 / 0.798, rel=1e-3)
     assert unseen.sd == pytest.approx(100.0 * 0.603 / 0.798**2, rel=2e-2)
+    assert hardly.shown
+    assert hardly.limit == pytest.approx(100.0 / (1.96 * (0.85**-2 - 1.0) ** -0.5), rel=1e-3)
+    assert not estimate(Size("offset_mm", 7.0, "mm", signed=True), 0.1, 0.95).shown
+    assert estimate(Size("presliding_mm", 0.1, "mm", "shape"), 0.1, 0.95).shown
 
 
 @pytest.mark.parametrize(

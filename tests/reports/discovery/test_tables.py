@@ -123,7 +123,11 @@ def test_a_size_that_cannot_be_told_from_none_is_a_limit() -> None:
     found = discovery("named")  # its car's hub is rigid in toe for these load cases
     camber, toe = found_sizes(found, found.findings[0])
     assert camber.seen and "±" in camber.words
-    assert toe.seen or "not told from rigid (above" in toe.words
+    assert not toe.seen
+    limited = replace(toe, estimate=replace(toe.estimate, limit=20000.0, shown=True))
+    assert not limited.seen and limited.words == "not told from rigid (above 20000 Nm/deg, 95 %)"
+    unshown = replace(toe, estimate=replace(toe.estimate, limit=None, shown=False))
+    assert not unshown.seen and unshown.words == "not shown by these records"
     assert size_words(found, found.findings[0]).startswith("camber_Nm_deg = ")
 
 
