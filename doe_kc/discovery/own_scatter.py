@@ -24,7 +24,7 @@ from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.thresholds import SCATTER_LOG_SD
 from doe_kc.ground.typing import FloatArray
 
-STEPS = 100
+MAXIMIZATION_STEPS = 100
 """A guard: 10 to 30 are enough."""
 SETTLED = 1e-3
 """Relative change of a scatter below which it is found."""
@@ -71,7 +71,7 @@ def most_probable_scatter(fit: Fit) -> FloatArray:
     pull = pull[free] - curvature[np.ix_(free, ~free)] @ from_centre[~free]
     curvature = curvature[np.ix_(free, free)]
     groups, out = unknown_groups(fit), np.ones(fit.z.size)
-    for _ in range(STEPS):
+    for _ in range(MAXIMIZATION_STEPS):
         scattered = curvature + np.diag((precision * out**-2.0)[free])
         covariance = cho_solve(cho_factor(scattered), np.eye(pull.size))
         squares = from_centre**2
@@ -89,7 +89,7 @@ def _most_probable(square: float, count: int) -> float:
     """s with the largest -n ln s - S / (2 s^2) - (ln s / SCATTER_LOG_SD)^2 / 2, by Newton steps in ln s: it
     is concave."""
     log = 0.0
-    for _ in range(STEPS):
+    for _ in range(MAXIMIZATION_STEPS):
         spent = square * np.exp(-2.0 * log)
         step = (spent - count - log / SCATTER_LOG_SD**2) / (2.0 * spent + SCATTER_LOG_SD**-2.0)
         log += step
