@@ -18,8 +18,8 @@ from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.ground.numbers import with_sd
 from doe_kc.measurement import reduce_measurement
+from doe_kc.reports.discovery.words import size_words
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space, effect_library
 
@@ -107,9 +107,7 @@ def _check(car: str, found: Discovery) -> None:
 def _row(car: str, found: Discovery) -> tuple[str, ...]:
     inside = "unknown" if car == CUSTOMER else "; ".join(_words(i, o) for i, o in _key(car).items()) or "none"
     said = "; ".join(
-        f"{f.hypothesis.name}: "
-        + ", ".join(f"{e.key} {with_sd(e.value, e.sd)} {e.unit}" for e in f.estimates)
-        + f" (probability {f.probability:.2f})"
+        f"{f.hypothesis.name}: {size_words(found, f)} (probability {f.probability:.2f})"
         for f in found.findings
     )
     gap = found.gap
