@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 from scipy.linalg import cholesky, solve_triangular
 
 from doe_kc.axle.model import Axle
-from doe_kc.curves import TYRE_LOAD, CurveSet
+from doe_kc.curves import TYRE_LOAD, CaseCurves, CurveSet
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.solver.curve_gradient import CurveGradients, interpolated
@@ -34,7 +35,9 @@ Branches = Literal["mean", "half_width"]
 class CurveData:
     """One measured curve of one side: the mean of both branches of its loop, or their half-width.
 
-    input, value: (n,). root: (n, n) lower Cholesky factor of its error covariance.
+    input, value: (n,). root: (n, n) lower Cholesky factor of its error covariance. systematic: (n,) errors
+    that are the same in all repeats, parts of that covariance, by kind: `calibration` of the sensor,
+    `hysteresis` of the rig.
     """
 
     load_case: str
@@ -44,6 +47,7 @@ class CurveData:
     value: FloatArray
     root: FloatArray
     branches: Branches = "mean"
+    systematic: Mapping[str, FloatArray] = field(default_factory=dict)
 
     @property
     def size(self) -> int:
@@ -129,15 +133,9 @@ def mean_curve_data(axle: Axle, measurement: Measurement, calibration: float = 0
             for side in (0, 1):
                 value = case.mean[response][side]
                 extra = SOLVER_FLOOR * noise.white**2 + corner_error(value, noise.point_sd(side)) ** 2
-                covariance = noise.covariance(side=side)
-                if calibration:
-                    signal = calibration * noise.signal[side]
-                    covariance = covariance + np.outer(signal, signal)
-                covariance += np.diag(np.broadcast_to(extra, value.shape))
-                root = cholesky(covariance[np.ix_(keep, keep)], lower=True)
-                yield CurveData(
-                    case.load_case, response, side, case.input[keep], np.asarray(value[keep]), root
-                )
+                covariance = noise.covariance(side=side) + np.diag(np.broadcast_to(extra, value.shape))
+                systematic = {"calibration": calibration * noise.signal[side]} if calibration else {}
+                yield _curve_data(case, response, side, value, keep, covariance, "mean", systematic)
 
 
 def half_width_data(axle: Axle, measurement: Measurement) -> Iterator[CurveData]:
@@ -154,19 +152,35 @@ def half_width_data(axle: Axle, measurement: Measurement) -> Iterator[CurveData]
             continue
         for response in case.mean:
             noise = measurement.noise[case.load_case][response]
-            floor = SOLVER_FLOOR * noise.white**2 * np.eye(int(keep.sum()))
+            floor = SOLVER_FLOOR * noise.white**2
             for side in (0, 1):
                 value = np.asarray(case.half_width[response][side])
                 if not np.isfinite(value).all():  # a record of one branch: its loop is unknown
                     continue
-                gain = np.hypot(CALIBRATION, noise.components.gain / np.sqrt(noise.runs)) * value
+                gain = noise.components.gain / np.sqrt(noise.runs) * value
                 covariance = noise.half_width_covariance(side=side) + np.outer(gain, gain)
-                covariance += np.diag(corner_error(value, noise.point_sd(side)) ** 2)
-                own = RIG_HYSTERESIS * noise.white * (1.0 - (case.input / np.abs(case.input).max()) ** 2)
-                covariance += np.outer(own, own)
-                root = cholesky(covariance[np.ix_(keep, keep)] + floor, lower=True)
-                value = value[keep]
-                yield CurveData(case.load_case, response, side, case.input[keep], value, root, "half_width")
+                covariance += np.diag(corner_error(value, noise.point_sd(side)) ** 2 + floor)
+                parabola = 1.0 - (case.input / np.abs(case.input).max()) ** 2
+                hysteresis = RIG_HYSTERESIS * noise.white * parabola
+                systematic = {"calibration": CALIBRATION * value, "hysteresis": hysteresis}
+                yield _curve_data(case, response, side, value, keep, covariance, "half_width", systematic)
+
+
+def _curve_data(
+    case: CaseCurves,
+    response: str,
+    side: int,
+    value: FloatArray,
+    keep: NDArray[np.bool_],
+    covariance: FloatArray,
+    branches: Branches,
+    systematic: Mapping[str, FloatArray],
+) -> CurveData:
+    """keep: (n,) the points that are data. covariance: (n, n) of the errors that repeats show."""
+    parts = {kind: error[keep] for kind, error in systematic.items()}
+    total = covariance[np.ix_(keep, keep)] + sum(np.outer(error, error) for error in parts.values())
+    root = cholesky(total, lower=True)
+    return CurveData(case.load_case, response, side, case.input[keep], value[keep], root, branches, parts)
 
 
 def corner_error(curve: FloatArray, sd: FloatArray) -> FloatArray:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.correlation.likelihood import build_likelihood, rewhitened
+from doe_kc.correlation.curve_data import CALIBRATION, RIG_HYSTERESIS
+from doe_kc.correlation.likelihood import build_likelihood, record_likelihood, rewhitened
 from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
 
@@ -84,6 +85,24 @@ def test_a_static_angle_that_is_switched_off_is_no_datum() -> None:
     found = build_likelihood(case.axle, measured("car_b"), targets)
     assert "toe" in {f.response for f in case.likelihood.figures}
     assert "toe" not in {f.response for f in found.figures}
+
+
+def test_errors_that_all_repeats_share_are_parts_of_the_errors_known_by_themselves() -> None:
+    """Of the sensor's calibration a share of its reading, of the rig's hysteresis one of its white noise."""
+    case = problem("car_b")
+    measurement = measured("car_b")
+    kinds = {}
+    for curve in record_likelihood(case.axle, measurement).curves:
+        noise = measurement.noise[curve.load_case][curve.response]
+        kinds[curve.branches] = set(curve.systematic)
+        reading = np.abs(curve.value) if curve.branches == "half_width" else np.abs(noise.signal[curve.side])
+        assert np.abs(curve.systematic["calibration"]).max() <= 1.0001 * CALIBRATION * reading.max()
+        if curve.branches == "half_width":
+            largest = RIG_HYSTERESIS * noise.white
+            assert 0.8 * largest < curve.systematic["hysteresis"].max() <= largest
+        rest = curve.root @ curve.root.T - sum(np.outer(e, e) for e in curve.systematic.values())
+        assert np.linalg.eigvalsh(rest).min() > 0.0
+    assert kinds == {"mean": {"calibration"}, "half_width": {"calibration", "hysteresis"}}
 
 
 def test_rows_keep_their_curves_between_errors() -> None:

@@ -4,10 +4,12 @@ taken anew beside the effects of each set, and traces beside those of the last."
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 import numpy as np
 
+from doe_kc.discovery.derivatives import amplitude_columns
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit, fit, known_columns
 from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace
@@ -81,24 +83,43 @@ def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
 
 
 def with_traces_anew(current: Fit) -> Fit:
-    """The fit, traces of absent compliances linear about the axle with its effects.
+    """The fit, traces of absent compliances and of sizes of either sign linear about the axle with its
+    effects.
 
     About the axle without them a mount of the rack is a softer column; beside a friction of the rack it is
-    not, and shifts that friction by 1 standard deviation.
+    not, and shifts that friction by 1 standard deviation. A gain of the tyre load was 8 off, as a ride height
+    looks otherwise about an axle that has been re-tuned to hide it.
     """
     model, known = current.model, current.model.nuisances
     if known is None or not model.members:
         return current
     columns, first = known.columns.copy(), known.count - len(known.traces)
-    for i, trace in enumerate(known.traces, start=first):
-        spring = trace.size.growth == "compliance" and not any(s.needed for s in trace.hypothesis.sizes)
-        if not spring or not compatible(model, trace.hypothesis):
+    able = [(i, t) for i, t in enumerate(known.traces, start=first) if compatible(model, t.hypothesis)]
+    signed = [(i, t) for i, t in able if t.size.signed]
+    with suppress(NotConverged):
+        columns[:, [i for i, _ in signed]] = _derivatives_by(current, [t for _, t in signed])
+    for i, trace in able:
+        if trace.size.growth != "compliance" or any(s.needed for s in trace.hypothesis.sizes):
             continue
         try:
             columns[:, i] = _change_by(current, trace)
         except NotConverged:
             continue
     return _with_nuisances(current, replace(known, columns=columns))
+
+
+def _derivatives_by(current: Fit, traces: Sequence[Trace]) -> FloatArray:
+    """(M, k) change of the residual by traces of their standard deviations, by its derivatives about the fit.
+
+    All of them are absent there, so that each is what it is alone.
+    """
+    model = current.model
+    for hypothesis in {t.hypothesis.name: t.hypothesis for t in traces}.values():
+        model = model.extended(hypothesis)
+    absent = np.concatenate([current.z, np.zeros(len(model.sizes) - len(current.model.sizes))])
+    starts = {h.name: place.start for h, place in model.places()}
+    places = [starts[t.hypothesis.name] + t.place for t in traces]
+    return TRACE_SD * amplitude_columns(model, absent, model.residual(absent), places)
 
 
 def _change_by(current: Fit, trace: Trace) -> FloatArray:

@@ -9,12 +9,12 @@ from scipy.special import logsumexp, ndtr
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.half_lines import half_line_limit, half_line_moments
-from doe_kc.discovery.own_scatter import with_own_scatter
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
     DECISIVE_EVIDENCE,
+    LAW_MIDDLE,
     LINEAR_TO,
     NAME_LEVEL,
     NOISE_CHANCE,
@@ -27,6 +27,7 @@ from doe_kc.discovery.thresholds import (
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
 from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_between_sets
+from doe_kc.discovery.verdict.size_fit import size_fit
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
@@ -36,9 +37,9 @@ NO_EFFECT = ""
 
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
-    sized = with_own_scatter(search.with_law_discrepancy)
+    sized, shares = size_fit(search)
     return tuple(
-        _finding(search, one, place, compared, sized)
+        _finding(search, one, place, compared, sized, shares)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     )
 
@@ -54,9 +55,14 @@ def _stands_out(own: Alternatives) -> bool:
 
 
 def _finding(
-    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives], sized: Fit
+    search: EffectSearch,
+    own: Alternatives,
+    place: slice,
+    compared: Sequence[Alternatives],
+    sized: Fit,
+    shares: Mapping[str, float],
 ) -> Finding:
-    """sized: the last set's fit that its sizes are told of."""
+    """sized, shares: see `size_fit`."""
     hypothesis = own.hypothesis
     logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
@@ -64,7 +70,7 @@ def _finding(
     assumed, _ = amplitude_estimates(last, hypothesis)
     most_probable, sd = amplitude_estimates(sized, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = _with_law(hypothesis, most_probable, sd, search.discrepancy_shares)
+    sd = _with_law(hypothesis, most_probable, sd, shares)
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
@@ -100,9 +106,9 @@ def _with_law(
 ) -> FloatArray:
     """(m,) standard deviations; a stiffness whose law is another is not one number but a range.
 
-    One whose records show no other law is one number to `LINEAR_TO` at best.
+    Its middle is open by `LAW_MIDDLE` of that, and by `LINEAR_TO` at least.
     """
-    share = max(shares.get(hypothesis.name, 0.0), LINEAR_TO)
+    share = max(LAW_MIDDLE * shares.get(hypothesis.name, 0.0), LINEAR_TO)
     own = [
         share * a if s.growth == "compliance" else 0.0
         for s, a in zip(hypothesis.sizes, most_probable, strict=True)

@@ -44,6 +44,16 @@ class EffectRow:
         return place_of(self.finding.hypothesis)
 
     @property
+    def told(self) -> bool:
+        """Whether it is a number with a standard deviation: a limit and what is not shown are words alone."""
+        return self.size is not None and self.size.seen
+
+    @property
+    def value(self) -> float:
+        """The number, in its unit; nan without one."""
+        return self.size.estimate.value if self.size else math.nan
+
+    @property
     def sd(self) -> float:
         """Of the number, in its unit; nan without one."""
         return self.size.estimate.sd if self.size else math.nan
@@ -82,9 +92,10 @@ EFFECT_COLUMNS: tuple[Column[EffectRow], ...] = (
     Column("log10_odds", "log10 odds", lambda r: min(r.finding.log10_odds, CERTAIN), ODDS, 8),
     Column("against", "Against", lambda r: against_words(r.finding), width=22),
     Column("size", "Size", lambda r: r.size.size.name if r.size else "", width=16),
-    Column("value", "Value", lambda r: r.size.estimate.value if r.size else math.nan,
-           lambda r: sd_format(r.sd), 13),
-    Column("sd", "sd", lambda r: r.sd, lambda r: sd_format(r.sd)),
+    Column("value", "Value", lambda r: r.value, lambda r: sd_format(r.sd), 13,
+           cell=lambda r: r.value if r.told else math.nan),
+    Column("sd", "sd", lambda r: r.sd, lambda r: sd_format(r.sd),
+           cell=lambda r: r.sd if r.told else math.nan),
     Column("unit", "Unit", lambda r: r.size.size.unit if r.size else "", width=9),
     Column("typical", "Typical", lambda r: r.size.size.typical if r.size else math.nan, "0.000", 10),
     Column("times_typical", "Times typical", lambda r: r.size.times if r.size else math.nan, "0.00", 10),

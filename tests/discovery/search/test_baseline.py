@@ -109,6 +109,26 @@ def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> N
     assert found.cost <= cost_of(found.model, z, found.model.residual(z))
 
 
+def test_traces_of_either_sign_are_derivatives_about_the_axle_with_its_effects() -> None:
+    """A step of a trace's own size is not small: across a stop's contact it shifted a gain of the tyre load
+    by four standard deviations."""
+    tuned = tune(model("named"))
+    hub, height = library("hub_compliance", "ride_height_offset")
+    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [hub, height]))
+    known, beside = traced.model.nuisances, traced.model.extended(hub)
+    assert known is not None
+    z = np.append(traced.z, [1.0, 1.0])
+    own = np.hstack([traced.jacobian.own, np.zeros((traced.residual.size, 2))])
+    before = replace(traced, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
+    found = with_traces_anew(before).model.nuisances
+    assert found is not None
+    column = found.columns[:, found.count - len(found.traces) + found.traces.index(Trace(height, 0))]
+    member = beside.extended(height)
+    ahead, behind = (member.residual(np.append(z, step)) for step in (1e-4, -1e-4))
+    derivative = TRACE_SD * (ahead - behind) / 2e-4
+    assert np.linalg.norm(column - derivative) < 1e-2 * np.linalg.norm(derivative)
+
+
 def test_without_effects_or_traces_there_is_nothing_to_take_anew() -> None:
     tuned = tune(model("pair"))
     assert with_traces_anew(tuned) is tuned

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+import doe_kc.discovery.verdict.findings as findings_module
 from doe_kc.discovery.fit import Fit, amplitude_estimates
-from doe_kc.discovery.own_scatter import with_own_scatter
 from doe_kc.discovery.result import Finding
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.thresholds import LINEAR_TO
+from doe_kc.discovery.thresholds import LAW_MIDDLE, LINEAR_TO
 from doe_kc.discovery.verdict.alternatives import Alternatives, comparison, effect_change
 from doe_kc.discovery.verdict.findings import (
     NO_EFFECT,
@@ -22,6 +22,7 @@ from doe_kc.discovery.verdict.findings import (
     findings,
     log_probabilities,
 )
+from doe_kc.discovery.verdict.size_fit import size_fit
 from doe_kc.effects.hypothesis import Size
 from tests.discovery.cases import discovery, library
 
@@ -152,24 +153,26 @@ def test_odds_are_against_the_best_alternative_the_removal_among_them() -> None:
     assert best_alternative(logs, "hub_compliance") == (NO_EFFECT, pytest.approx(12.0 / np.log(10.0)))
 
 
-def test_a_size_is_that_of_the_fit_that_knows_of_other_laws() -> None:
+def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.MonkeyPatch) -> None:
     """And a joint's stiffness is one number to some percent at best."""
     found = discovery("pair").search
     large = next(h for h in found.with_law_discrepancy.model.members if h.effect == "hub_compliance")
     place = [h.name for h, _ in found.with_law_discrepancy.model.places()].index(large.name)
-    amplitudes, sd = amplitude_estimates(with_own_scatter(found.with_law_discrepancy), large)
+    sized, _ = size_fit(found)
+    amplitudes, sd = amplitude_estimates(sized, large)
     own_errors = replace(found.with_effects, z=1.1 * found.with_effects.z)  # as where the law is another
+    searched = replace(found, with_effects=own_errors)
     screened = {s.hypothesis.name: s for s in found.first.screened}
     compared = []
     for member in found.with_law_discrepancy.model.members:
         refit, own = HypothesisFit(member, found.with_law_discrepancy, 1000.0), (screened[member.name],)
         compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
-    for share in (0.0, 0.01, 0.1):
-        searched = replace(found, with_effects=own_errors, discrepancy_shares={large.name: share})
+    for share in (0.0, 0.05, 0.1):
+        monkeypatch.setattr(findings_module, "size_fit", lambda _, s=share: (sized, {large.name: s}))
         camber, _ = findings(searched, compared)[place].estimates
         assert camber.value == pytest.approx(large.sizes[0].value(float(amplitudes[0])), rel=1e-3)
         assert camber.sd / camber.value == pytest.approx(
-            np.hypot(sd[0] / amplitudes[0], max(share, LINEAR_TO)), rel=0.02
+            np.hypot(sd[0] / amplitudes[0], max(LAW_MIDDLE * share, LINEAR_TO)), rel=0.02
         )
 
 

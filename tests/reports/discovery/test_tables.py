@@ -131,6 +131,16 @@ def test_a_size_that_cannot_be_told_from_none_is_a_limit() -> None:
     assert size_words(found, found.findings[0]).startswith("camber_Nm_deg = ")
 
 
+def test_the_sheet_has_no_number_for_a_size_that_is_not_told() -> None:
+    """Beside "not shown by these records" a value with its standard deviation would be taken for one."""
+    table = effect_table(discovery("named"))
+    camber, toe = table.rows[:2]
+    for key in ("value", "sd"):
+        (column,) = (c for c in table.columns if c.key == key)
+        assert column.in_sheet(camber) == column.value(camber)
+        assert np.isnan(column.in_sheet(toe)) and np.isfinite(column.value(toe))
+
+
 def test_steps_are_ranked_and_the_last_takes_nothing() -> None:
     steps = evidence_steps(discovery("two"))
     assert [sum(c.accepted for c in s.candidates) for s in steps][-1] == 0
