@@ -245,10 +245,6 @@ LINEAR_TO = 0.02
 """-, standard deviation of a compliance's stiffness, relative, where the records show no other law. Bearings
 and bolted joints stiffen or soften by some percent from rest to full load; the shape of a curve tells a tenth
 of that. Without it a hub that softens by 2.5 % was told 3.5 standard deviations too soft."""
-LAW_MIDDLE = 0.33
-"""-, part of a law's discrepancy by which a fit is off the law's middle. A fit looks at the squares of what
-the law makes: over 41 points that is 0.33 of a smooth discrepancy of `DISCREPANCY_LENGTH` without a mean. Of
-8 hubs that stiffen by up to 15 % from end to end, with shares of 0.05, the camber was off by 0.019."""
 DISCREPANCY_LENGTH = 0.5
 """amplitudes, correlation length of that discrepancy over the input. Smooth laws differ at the ends and the
 middle."""

@@ -14,7 +14,6 @@ from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, m
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
     DECISIVE_EVIDENCE,
-    LAW_MIDDLE,
     LINEAR_TO,
     NAME_LEVEL,
     NOISE_CHANCE,
@@ -27,7 +26,7 @@ from doe_kc.discovery.thresholds import (
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
 from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_between_sets
-from doe_kc.discovery.verdict.size_fit import size_fit
+from doe_kc.discovery.verdict.size_fit import SizeFit, size_fit
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
@@ -37,9 +36,9 @@ NO_EFFECT = ""
 
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
-    sized, shares = size_fit(search)
+    sized = size_fit(search)
     return tuple(
-        _finding(search, one, place, compared, sized, shares)
+        _finding(search, one, place, compared, sized)
         for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
     )
 
@@ -55,22 +54,17 @@ def _stands_out(own: Alternatives) -> bool:
 
 
 def _finding(
-    search: EffectSearch,
-    own: Alternatives,
-    place: slice,
-    compared: Sequence[Alternatives],
-    sized: Fit,
-    shares: Mapping[str, float],
+    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives], sized: SizeFit
 ) -> Finding:
-    """sized, shares: see `size_fit`."""
+    """place: of its sizes in z of the last set's fits."""
     hypothesis = own.hypothesis
     logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
     last, other = search.with_law_discrepancy, search.with_other_laws
     assumed, _ = amplitude_estimates(last, hypothesis)
-    most_probable, sd = amplitude_estimates(sized, hypothesis)
+    most_probable, sd = amplitude_estimates(sized.fit, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = _with_law(hypothesis, most_probable, sd, shares)
+    sd = np.hypot(_with_linearity(hypothesis, most_probable, sd), sized.law_sd(place))
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
@@ -101,16 +95,10 @@ def _finding(
     )
 
 
-def _with_law(
-    hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray, shares: Mapping[str, float]
-) -> FloatArray:
-    """(m,) standard deviations; a stiffness whose law is another is not one number but a range.
-
-    Its middle is open by `LAW_MIDDLE` of that, and by `LINEAR_TO` at least.
-    """
-    share = max(LAW_MIDDLE * shares.get(hypothesis.name, 0.0), LINEAR_TO)
+def _with_linearity(hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray) -> FloatArray:
+    """(m,) standard deviations; a stiffness is one number to `LINEAR_TO` at best."""
     own = [
-        share * a if s.growth == "compliance" else 0.0
+        LINEAR_TO * a if s.growth == "compliance" else 0.0
         for s, a in zip(hypothesis.sizes, most_probable, strict=True)
     ]
     return np.asarray(np.hypot(sd, own))

@@ -13,7 +13,7 @@ from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.result import Finding
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.thresholds import LAW_MIDDLE, LINEAR_TO
+from doe_kc.discovery.thresholds import LINEAR_TO
 from doe_kc.discovery.verdict.alternatives import Alternatives, comparison, effect_change
 from doe_kc.discovery.verdict.findings import (
     NO_EFFECT,
@@ -158,8 +158,8 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
     found = discovery("pair").search
     large = next(h for h in found.with_law_discrepancy.model.members if h.effect == "hub_compliance")
     place = [h.name for h, _ in found.with_law_discrepancy.model.places()].index(large.name)
-    sized, _ = size_fit(found)
-    amplitudes, sd = amplitude_estimates(sized, large)
+    sized = size_fit(found)
+    amplitudes, sd = amplitude_estimates(sized.fit, large)
     own_errors = replace(found.with_effects, z=1.1 * found.with_effects.z)  # as where the law is another
     searched = replace(found, with_effects=own_errors)
     screened = {s.hypothesis.name: s for s in found.first.screened}
@@ -168,11 +168,12 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
         refit, own = HypothesisFit(member, found.with_law_discrepancy, 1000.0), (screened[member.name],)
         compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
     for share in (0.0, 0.05, 0.1):
-        monkeypatch.setattr(findings_module, "size_fit", lambda _, s=share: (sized, {large.name: s}))
+        shifts = share * np.outer(sized.fit.z, [0.6, 0.8])
+        monkeypatch.setattr(findings_module, "size_fit", lambda _, s=shifts: replace(sized, law_shifts=s))
         camber, _ = findings(searched, compared)[place].estimates
         assert camber.value == pytest.approx(large.sizes[0].value(float(amplitudes[0])), rel=1e-3)
         assert camber.sd / camber.value == pytest.approx(
-            np.hypot(sd[0] / amplitudes[0], max(LAW_MIDDLE * share, LINEAR_TO)), rel=0.02
+            np.sqrt((sd[0] / amplitudes[0]) ** 2 + share**2 + LINEAR_TO**2), rel=0.02
         )
 
 

@@ -1,24 +1,27 @@
-"""The fit that sizes are told of: its errors, its scatter and what it grants the laws."""
+"""The fit that sizes are told of: its errors, its scatter and what other laws would make of it."""
 
 from __future__ import annotations
 
-import numpy as np
-import pytest
+from dataclasses import replace
 
-from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, LAW_MIDDLE
-from doe_kc.discovery.verdict.size_fit import size_fit
+import numpy as np
+
+from doe_kc.discovery.fit import cost_of
+from doe_kc.discovery.gauss_newton import chord_fit
+from doe_kc.discovery.search.law_discrepancy import effect_signals
+from doe_kc.discovery.verdict.size_fit import GRID, MODES, law_shifts, size_fit
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales
-from doe_kc.measurement.noise import smooth_correlation
 from tests.discovery.cases import discovery
+
+SHARE = 0.05
 
 
 def test_it_has_the_errors_and_the_scatter_of_the_records() -> None:
     search = discovery("pair").search
     last = search.with_law_discrepancy
-    found, shares = size_fit(search)
+    found = size_fit(search).fit
     assert found.converged
     assert found.model.members == last.model.members
-    assert set(shares) == {h.name for h in last.model.members}
     assert found.model.own_scatter is not None
     scales = systematic_scales(last)
     assert min(scales.values()) < 0.5, "records made without a rig's hysteresis"
@@ -32,17 +35,43 @@ def test_it_has_the_errors_and_the_scatter_of_the_records() -> None:
 def test_sizes_stay_within_what_was_assumed() -> None:
     """Narrower errors of the same records: no size moves by more than it was open by, each gets sharper."""
     search = discovery("pair").search
-    last = search.with_law_discrepancy
-    found, _ = size_fit(search)
+    last, found = search.with_law_discrepancy, size_fit(search).fit
     before, after = (np.sqrt(np.diag(f.covariance))[f.model.dimension :] for f in (last, found))
     assert np.all(np.abs(found.amplitudes - last.amplitudes) < 2.0 * before)
     assert np.all(after < 1.05 * before)
 
 
-def test_the_middle_of_a_law_is_off_by_its_share_of_the_discrepancy() -> None:
-    """A fit weighs a law by the square of what it makes, which grows with the input; its middle is a mean."""
-    at = np.linspace(-1.0, 1.0, 41)
-    centred = np.eye(at.size) - 1.0 / at.size
-    balanced = centred @ smooth_correlation(at, DISCREPANCY_LENGTH) @ centred
-    weights = at**2 / np.sum(at**2)
-    assert np.sqrt(weights @ balanced @ weights) == pytest.approx(LAW_MIDDLE, rel=0.02)
+def test_laws_that_fit_shift_nothing() -> None:
+    search = discovery("pair").search
+    found, signals = size_fit(search).fit, effect_signals(search.with_effects)
+    none = dict.fromkeys((h.name for h in found.model.members), 0.0)
+    assert law_shifts(found, signals, none).shape == (found.z.size, 0)
+
+
+def test_shifts_are_those_of_records_that_follow_another_law() -> None:
+    """Of a hub that is stiffer under load in every curve alike, against the fit to such records."""
+    search = discovery("pair").search
+    last, signals = search.with_law_discrepancy, effect_signals(search.with_effects)
+    model = last.model
+    hub = next(i for i, h in enumerate(model.members) if h.effect == "hub_compliance")
+    shares = {h.name: SHARE * (i == hub) for i, h in enumerate(model.members)}
+    shifts = law_shifts(last, signals, shares)
+    assert shifts.shape == (last.z.size, MODES)
+    stiffer = 0.5 - np.abs(GRID)
+    bent = []
+    for curve, change in zip(model.likelihood.curves, signals[hub].changes, strict=True):
+        relative = np.abs(curve.input) / np.abs(curve.input).max()
+        bent.append(replace(curve, value=curve.value + SHARE * change * (0.5 - relative)))
+    other = replace(model, likelihood=replace(model.likelihood, curves=tuple(bent)))
+    residual = other.residual(last.z)
+    refit = chord_fit(
+        replace(last, model=other, residual=residual, cost=cost_of(other, last.z, residual)), other
+    )
+    moved = refit.z - chord_fit(last, model).z
+    assert np.std(stiffer) < 0.72, "a deviation of one share or less"
+    sd = np.sqrt(np.diag(last.covariance))
+    expected = np.linalg.norm(shifts, axis=1)
+    large = np.abs(moved) > 0.05 * sd
+    assert large.any()
+    assert np.all(np.abs(moved[large]) < 2.0 * expected[large])
+    assert np.median(np.abs(moved[large]) / expected[large]) > 0.1
