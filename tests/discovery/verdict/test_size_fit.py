@@ -9,7 +9,8 @@ import numpy as np
 from doe_kc.discovery.fit import cost_of
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals
-from doe_kc.discovery.verdict.size_fit import GRID, MODES, law_shifts, size_fit
+from doe_kc.discovery.thresholds import LINEAR_TO
+from doe_kc.discovery.verdict.size_fit import MODES, law_shifts, size_fit
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales
 from tests.discovery.cases import discovery
 
@@ -41,11 +42,18 @@ def test_sizes_stay_within_what_was_assumed() -> None:
     assert np.all(after < 1.05 * before)
 
 
-def test_laws_that_fit_shift_nothing() -> None:
+def test_a_compliance_is_not_linear_even_where_its_law_fits() -> None:
+    """A friction whose law fits shifts nothing."""
     search = discovery("pair").search
-    found, signals = size_fit(search).fit, effect_signals(search.with_effects)
-    none = dict.fromkeys((h.name for h in found.model.members), 0.0)
-    assert law_shifts(found, signals, none).shape == (found.z.size, 0)
+    sized, signals = size_fit(search).fit, effect_signals(search.with_effects)
+    names = [h.name for h in sized.model.members]
+    assert names == ["hub_compliance", "steering_friction"]
+    fits = law_shifts(sized, signals, {"hub_compliance": 0.0, "steering_friction": 0.0})
+    open_laws = law_shifts(sized, signals, {"hub_compliance": LINEAR_TO, "steering_friction": 0.1})
+    assert fits.shape == (sized.z.size, MODES) and np.any(fits)
+    np.testing.assert_array_equal(fits, open_laws)
+    twice = law_shifts(sized, signals, {"hub_compliance": 2.0 * LINEAR_TO, "steering_friction": 0.0})
+    np.testing.assert_allclose(twice, 2.0 * fits)
 
 
 def test_shifts_are_those_of_records_that_follow_another_law() -> None:
@@ -57,18 +65,15 @@ def test_shifts_are_those_of_records_that_follow_another_law() -> None:
     shares = {h.name: SHARE * (i == hub) for i, h in enumerate(model.members)}
     shifts = law_shifts(last, signals, shares)
     assert shifts.shape == (last.z.size, MODES)
-    stiffer = 0.5 - np.abs(GRID)
     bent = []
     for curve, change in zip(model.likelihood.curves, signals[hub].changes, strict=True):
         relative = np.abs(curve.input) / np.abs(curve.input).max()
         bent.append(replace(curve, value=curve.value + SHARE * change * (0.5 - relative)))
     other = replace(model, likelihood=replace(model.likelihood, curves=tuple(bent)))
     residual = other.residual(last.z)
-    refit = chord_fit(
-        replace(last, model=other, residual=residual, cost=cost_of(other, last.z, residual)), other
-    )
+    cost = cost_of(other, last.z, residual)
+    refit = chord_fit(replace(last, model=other, residual=residual, cost=cost), other)
     moved = refit.z - chord_fit(last, model).z
-    assert np.std(stiffer) < 0.72, "a deviation of one share or less"
     sd = np.sqrt(np.diag(last.covariance))
     expected = np.linalg.norm(shifts, axis=1)
     large = np.abs(moved) > 0.05 * sd
