@@ -16,7 +16,7 @@ from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.own_scatter import with_own_scatter
 from doe_kc.discovery.search.law_discrepancy import EffectSignal, effect_signals, fit_discrepancy
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, LINEAR_TO
+from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, LAW_OPEN
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import smooth_correlation
@@ -61,12 +61,12 @@ def law_shifts(fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, f
 
     The law is the member's own and the same in every curve: errors curve by curve let it be hidden by what
     tells the curves apart. A mount that stiffens by 12 % made a hub beside it 4 standard deviations softer.
-    A compliance is linear to `LINEAR_TO` at best.
+    A compliance's law is open by `LAW_OPEN` at least.
     """
     changes = []
     for member, signal in zip(fit.model.members, signals, strict=True):
         compliant = any(s.growth == "compliance" for s in member.sizes)
-        share = max(shares[member.name], LINEAR_TO * compliant)
+        share = max(shares[member.name], LAW_OPEN * compliant)
         if share and not signal.friction:
             changes += [_bent(fit, signal, share * mode) for mode in _modes()]
     if not changes:

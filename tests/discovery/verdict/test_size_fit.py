@@ -9,7 +9,7 @@ import numpy as np
 from doe_kc.discovery.fit import cost_of
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals
-from doe_kc.discovery.thresholds import LINEAR_TO
+from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.size_fit import MODES, law_shifts, size_fit
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales
 from tests.discovery.cases import discovery
@@ -49,10 +49,10 @@ def test_a_compliance_is_not_linear_even_where_its_law_fits() -> None:
     names = [h.name for h in sized.model.members]
     assert names == ["hub_compliance", "steering_friction"]
     fits = law_shifts(sized, signals, {"hub_compliance": 0.0, "steering_friction": 0.0})
-    open_laws = law_shifts(sized, signals, {"hub_compliance": LINEAR_TO, "steering_friction": 0.1})
+    open_laws = law_shifts(sized, signals, {"hub_compliance": LAW_OPEN, "steering_friction": 0.1})
     assert fits.shape == (sized.z.size, MODES) and np.any(fits)
     np.testing.assert_array_equal(fits, open_laws)
-    twice = law_shifts(sized, signals, {"hub_compliance": 2.0 * LINEAR_TO, "steering_friction": 0.0})
+    twice = law_shifts(sized, signals, {"hub_compliance": 2.0 * LAW_OPEN, "steering_friction": 0.0})
     np.testing.assert_allclose(twice, 2.0 * fits)
 
 
