@@ -11,7 +11,13 @@ from scipy.optimize import nnls
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.effects._friction import BACKBONE_SHARES
-from doe_kc.solver.elements.friction import IWAN_ELEMENTS, add_friction, dahl_force, iwan_yields
+from doe_kc.solver.elements.friction import (
+    IWAN_ELEMENTS,
+    add_friction,
+    dahl_force,
+    duhem_force,
+    iwan_yields,
+)
 from tests.solver.elements.mini import builder
 
 LEVEL, PRE = 250.0, 0.05
@@ -176,6 +182,19 @@ def test_duhem_is_its_differential_equation(exponent: float) -> None:
             f += LEVEL / PRE * max(1 - sign * f / LEVEL, 0.0) ** exponent * dx
         assert law.to(end) == pytest.approx(f, rel=2e-4)
         x = end
+
+
+def test_duhem_leaves_dahl_s_exponent() -> None:
+    """Its force has a derivative there, against differences: a fit that begins at Dahl's law moves on."""
+    symbols = [ca.SX.sym(name) for name in ("x", "x0", "f0", "level", "presliding", "exponent")]
+    force = duhem_force(*symbols)
+    slope = ca.Function("slope", symbols, [ca.jacobian(force, symbols[-1])])
+    value = ca.Function("force", symbols, [force])
+    for x, start in ((0.02, 0.0), (0.1, 0.0), (0.1, -200.0), (-0.05, 200.0)):
+        at = (x, 0.0, start, LEVEL, PRE)
+        differences = (float(value(*at, 1.01)) - float(value(*at, 0.99))) / 0.02
+        assert abs(differences) > 1.0
+        assert float(slope(*at, 1.0)) == pytest.approx(differences, rel=1e-3)
 
 
 def test_duhem_with_exponent_one_is_dahl_and_two_loads_as_berg() -> None:
