@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from doe_kc.discovery.fit import cost_of
+import doe_kc.discovery.verdict.size_fit as size_fit_module
+from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals
 from doe_kc.discovery.thresholds import LAW_OPEN
@@ -40,6 +42,22 @@ def test_sizes_stay_within_what_was_assumed() -> None:
     before, after = (np.sqrt(np.diag(f.covariance))[f.model.dimension :] for f in (last, found))
     assert np.all(np.abs(found.amplitudes - last.amplitudes) < 2.0 * before)
     assert np.all(after < 1.05 * before)
+
+
+def test_a_fit_that_known_derivatives_do_not_end_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    search = discovery("pair").search
+    ended = size_fit(search).fit
+
+    def stopped(fit: Fit) -> Fit:
+        away = ended.z.copy()
+        away[ended.model.dimension] += 0.3
+        return replace(ended, z=away, converged=False)
+
+    monkeypatch.setattr(size_fit_module, "with_own_scatter", stopped)
+    sized = size_fit(search).fit
+    assert sized.converged
+    sd = np.sqrt(np.diag(ended.covariance))[ended.model.dimension :]
+    assert np.all(np.abs(sized.amplitudes - ended.amplitudes) < 0.1 * sd)
 
 
 def test_a_compliance_is_not_linear_even_where_its_law_fits() -> None:
