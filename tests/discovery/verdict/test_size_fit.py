@@ -57,7 +57,8 @@ def test_a_fit_that_known_derivatives_do_not_end_goes_on(monkeypatch: pytest.Mon
     sized = size_fit(search).fit
     assert sized.converged
     sd = np.sqrt(np.diag(ended.covariance))[ended.model.dimension :]
-    assert np.all(np.abs(sized.amplitudes - ended.amplitudes) < 0.1 * sd)
+    assert sized.cost < ended.cost + 0.1
+    assert np.all(np.abs(sized.amplitudes - ended.amplitudes) < 0.3 * sd)
 
 
 def test_a_compliance_is_not_linear_even_where_its_law_fits() -> None:
