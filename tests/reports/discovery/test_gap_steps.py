@@ -24,8 +24,11 @@ def test_steps_begin_with_the_axle_handed_in_and_end_with_the_one_handed_over(ca
 def test_two_effects_are_two_steps_each_closer_to_the_records() -> None:
     found = discovery("two")
     steps = gap_steps(found)
-    assert sum(s.label.startswith("+ ") for s in steps) >= 2
-    assert all(later.gap < earlier.gap for earlier, later in pairwise(steps))
+    effects = [pair for pair in pairwise(steps) if pair[1].label.startswith("+ ")]
+    assert len(effects) >= 2
+    assert all(later.gap < 0.95 * earlier.gap for earlier, later in effects)
+    # a law of fewer numbers takes over in the end, by what its numbers followed of the noise
+    assert all(later.gap < 1.001 * earlier.gap for earlier, later in pairwise(steps))
 
 
 def test_a_law_that_changed_is_a_step_of_its_own() -> None:
