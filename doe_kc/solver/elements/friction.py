@@ -45,7 +45,7 @@ def duhem_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX,
     sign = ca.if_else(x >= x0, 1, -1)
     before = ca.fmax(1 - sign * f0 / level, LEAST_REST)
     over = exponent - 1
-    # beside 0, where there is no force, but with a derivative: fits begin at Dahl's own exponent
+    # beside 0, by which nothing divides, but with a derivative: fits begin at Dahl's own exponent
     power = ca.if_else(ca.fabs(over) < NEARLY_DAHL, over + 2 * NEARLY_DAHL, over)
     far = power * before**power * sign * (x - x0) / presliding
     # an exponent below 1 meets the limit at a finite distance
