@@ -138,6 +138,13 @@ def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
     return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
 
 
+def balanced_correlation(relative: FloatArray) -> FloatArray:
+    """(n, n) of the discrepancy of an elastic law, smooth and without a mean. relative: (n,) input over its
+    amplitude."""
+    centred = np.eye(relative.size) - 1.0 / relative.size
+    return np.asarray(centred @ smooth_correlation(relative, DISCREPANCY_LENGTH) @ centred)
+
+
 def _widened(
     group: CurveGroup, at: slice, signals: Sequence[EffectSignal], shares: Sequence[float]
 ) -> Iterator[CurveData]:
@@ -145,8 +152,7 @@ def _widened(
     first = group.first
     relative = first.input / np.abs(first.input).max()
     smooth = smooth_correlation(relative, DISCREPANCY_LENGTH)
-    centred = np.eye(first.size) - 1.0 / first.size
-    balanced = centred @ smooth @ centred
+    balanced = balanced_correlation(relative)
     shape = 1.0 - relative**2 if first.branches == "half_width" else relative
     roots = np.array([curve.root for curve in group.curves])
     covariance = roots @ roots.transpose(0, 2, 1)

@@ -15,12 +15,16 @@ from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
 from doe_kc.discovery.own_scatter import with_own_scatter
-from doe_kc.discovery.search.law_discrepancy import EffectSignal, effect_signals, fit_discrepancy
+from doe_kc.discovery.search.law_discrepancy import (
+    EffectSignal,
+    balanced_correlation,
+    effect_signals,
+    fit_discrepancy,
+)
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, LAW_OPEN
+from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement.noise import smooth_correlation
 
 MODES = 4
 """Shapes of a discrepancy over the input that hold 99 % of its square."""
@@ -67,12 +71,13 @@ def law_shifts(fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, f
     tells the curves apart. A mount that stiffens by 12 % made a hub beside it 4 standard deviations softer.
     A compliance's law is open by `LAW_OPEN` at least.
     """
-    changes = []
+    changes: list[FloatArray] = []
+    modes = _modes()
     for member, signal in zip(fit.model.members, signals, strict=True):
         compliant = any(s.growth == "compliance" for s in member.sizes)
         share = max(shares[member.name], LAW_OPEN * compliant)
         if share and not signal.friction:
-            changes += [_bent(fit, signal, share * mode) for mode in _modes()]
+            changes += [_bent(fit, signal, share * mode) for mode in modes]
     if not changes:
         return np.zeros((fit.z.size, 0))
     return np.asarray(fit.covariance @ fit.jacobian.pulled(np.array(changes).T))
@@ -89,6 +94,5 @@ def _bent(fit: Fit, signal: EffectSignal, mode: FloatArray) -> FloatArray:
 def _modes() -> FloatArray:
     """(MODES, 41) independent shapes of a smooth discrepancy without a mean, at GRID, each in its standard
     deviation."""
-    centred = np.eye(GRID.size) - 1.0 / GRID.size
-    squares, shapes = np.linalg.eigh(centred @ smooth_correlation(GRID, DISCREPANCY_LENGTH) @ centred)
+    squares, shapes = np.linalg.eigh(balanced_correlation(GRID))
     return np.asarray((np.sqrt(squares[-MODES:]) * shapes[:, -MODES:]).T)
