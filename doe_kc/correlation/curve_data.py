@@ -29,6 +29,8 @@ MEDIAN_WINDOW = 7
 """Second differences of which the median is the curve's own."""
 
 Branches = Literal["mean", "half_width"]
+SystematicError = Literal["hysteresis", "calibration"]
+"""Of the rig and of a sensor."""
 
 
 @dataclass(frozen=True)
@@ -36,8 +38,7 @@ class CurveData:
     """One measured curve of one side: the mean of both branches of its loop, or their half-width.
 
     input, value: (n,). root: (n, n) lower Cholesky factor of its error covariance. systematic: (n,) errors
-    that are the same in all repeats, parts of that covariance, by kind: `calibration` of the sensor,
-    `hysteresis` of the rig.
+    that are the same in all repeats, parts of that covariance.
     """
 
     load_case: str
@@ -47,7 +48,7 @@ class CurveData:
     value: FloatArray
     root: FloatArray
     branches: Branches = "mean"
-    systematic: Mapping[str, FloatArray] = field(default_factory=dict)
+    systematic: Mapping[SystematicError, FloatArray] = field(default_factory=dict)
 
     @property
     def size(self) -> int:
@@ -134,7 +135,9 @@ def mean_curve_data(axle: Axle, measurement: Measurement, calibration: float = 0
                 value = case.mean[response][side]
                 extra = SOLVER_FLOOR * noise.white**2 + corner_error(value, noise.point_sd(side)) ** 2
                 covariance = noise.covariance(side=side) + np.diag(np.broadcast_to(extra, value.shape))
-                systematic = {"calibration": calibration * noise.signal[side]} if calibration else {}
+                systematic: dict[SystematicError, FloatArray] = {}
+                if calibration:
+                    systematic["calibration"] = calibration * noise.signal[side]
                 yield _curve_data(case, response, side, value, keep, covariance, "mean", systematic)
 
 
@@ -162,7 +165,10 @@ def half_width_data(axle: Axle, measurement: Measurement) -> Iterator[CurveData]
                 covariance += np.diag(corner_error(value, noise.point_sd(side)) ** 2 + floor)
                 parabola = 1.0 - (case.input / np.abs(case.input).max()) ** 2
                 hysteresis = RIG_HYSTERESIS * noise.white * parabola
-                systematic = {"calibration": CALIBRATION * value, "hysteresis": hysteresis}
+                systematic: dict[SystematicError, FloatArray] = {
+                    "calibration": CALIBRATION * value,
+                    "hysteresis": hysteresis,
+                }
                 yield _curve_data(case, response, side, value, keep, covariance, "half_width", systematic)
 
 
@@ -174,7 +180,7 @@ def _curve_data(
     keep: NDArray[np.bool_],
     covariance: FloatArray,
     branches: Branches,
-    systematic: Mapping[str, FloatArray],
+    systematic: Mapping[SystematicError, FloatArray],
 ) -> CurveData:
     """keep: (n,) the points that are data. covariance: (n, n) of the errors that repeats show."""
     parts = {kind: error[keep] for kind, error in systematic.items()}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,14 +62,21 @@ def linearized_curves(
     point: FloatArray,
     directions: Mapping[str, Mapping[str, float]],
     input_gain: str,
+    pool: Executor | None = None,
 ) -> CurveGradients:
     """Curves of the axle at `point` (d,) to first order: d variables, ties followed, then `directions`, then
     the gain of each curve's own load case.
 
-    solution: of that axle. directions, input_gain: see `sensitivities`.
+    solution: of that axle. directions, input_gain, pool: see `sensitivities`.
     """
     exact = sensitivities(
-        there, solution, _moved_paths(space), directions, outputs=CURVE_OUTPUTS, input_gain=input_gain
+        there,
+        solution,
+        _moved_paths(space),
+        directions,
+        outputs=CURVE_OUTPUTS,
+        input_gain=input_gain,
+        pool=pool,
     )
     return _chained(gradients_of(solution, exact), space, point, (*space.paths, *directions, input_gain))
 

@@ -32,7 +32,8 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
     sound, out = model.axle_at(z), np.zeros((residual.size, model.linear.start + len(model.sizes)))
     axle, places = model.driven(sound, z), range(model.dimension, z.size)
     moves, own = directions(model, z, sound, places), z[: model.parameters]
-    gradients = linearized_curves(axle, model.solutions(axle), model.space, own, moves, GAIN_COLUMN)
+    solution, pool = model.solutions(axle), model.solutions.pool
+    gradients = linearized_curves(axle, solution, model.space, own, moves, GAIN_COLUMN, pool)
     exact = _whitened(model, gradients, axle)
     out[:, : model.parameters] = exact[:, : model.parameters]
     for curve, place in model.likelihood.slices():  # each calibration moves its own load case alone
@@ -52,7 +53,7 @@ def amplitude_columns(
     if moves:
         axle = model.driven(sound, z)
         solution = model.solutions(axle)
-        exact = sensitivities(axle, solution, (), moves, outputs=CURVE_OUTPUTS)
+        exact = sensitivities(axle, solution, (), moves, outputs=CURVE_OUTPUTS, pool=model.solutions.pool)
         known = _whitened(model, gradients_of(solution, exact), axle)
     return _with_differences(model, z, residual, places, moves, known)
 

@@ -7,7 +7,9 @@ where the residual has just been.
 from __future__ import annotations
 
 from collections import OrderedDict
+from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import cached_property
 
 from doe_kc.axle.model import Axle
 from doe_kc.load_cases import LoadCase
@@ -31,10 +33,19 @@ class _Solved:
 
 
 class Solutions:
-    """Solutions of an axle by its values, topology and load cases; each process has its own."""
+    """Solutions of an axle by its values, topology and load cases; each process has its own.
 
-    def __init__(self) -> None:
+    threads: that solve load cases side by side, and that take their derivatives.
+    """
+
+    def __init__(self, threads: int = 1) -> None:
+        self._threads = threads
         self._axles: OrderedDict[tuple[object, ...], _Solved] = OrderedDict()
+
+    @cached_property
+    def pool(self) -> Executor | None:
+        """See `suite.solve`; None for one thread."""
+        return ThreadPoolExecutor(self._threads, "load case") if self._threads > 1 else None
 
     def __call__(self, axle: Axle) -> Solution:
         """As `solve`: NotConverged when a load case has no equilibrium."""
@@ -43,7 +54,7 @@ class Solutions:
         wanted = axle.load_cases
         missing = [i for i, case in wanted.items() if known is None or case not in known.cases]
         if known is None or missing:
-            solved = solve(axle, missing)
+            solved = solve(axle, missing, pool=self.pool)
             if known is None:
                 known = _Solved(solved.output_names, solved.static, solved.half_track, OrderedDict())
             known.cases.update({wanted[i]: solved.cases[i] for i in missing})
@@ -58,5 +69,5 @@ class Solutions:
             self._axles.popitem(last=False)
         return Solution(axle.name, known.output_names, known.static, cases, None, known.half_track)
 
-    def __reduce__(self) -> tuple[type[Solutions], tuple[()]]:
-        return Solutions, ()
+    def __reduce__(self) -> tuple[type[Solutions], tuple[int]]:
+        return Solutions, (self._threads,)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -61,6 +62,15 @@ class Size:
         if self.growth == "factor":
             return float(self.typical**amplitude)
         return float(self.typical * 2.718281828459045 ** (self.log_sd * amplitude))
+
+    def over_typical(self, value: float) -> float:
+        """How much of the effect a value, in `unit`, is over its typical size: of a stiffness, > 0, by its
+        compliance, of a factor, > 0, by its logarithm."""
+        if self.growth == "compliance":
+            return float((self.typical / value) ** self.power)
+        if self.growth == "factor":
+            return math.log(value) / math.log(self.typical)
+        return value / self.typical
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ through the path, z_next = g(x, c, u, z), so they are carried along with their d
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,13 +23,14 @@ from doe_kc.load_cases import LoadCase
 from doe_kc.solver.blocks import Block
 from doe_kc.solver.datum import control_gradient, gradient_between
 from doe_kc.solver.derivatives import (
+    CompiledDerivatives,
     StateDerivatives,
     StateSequence,
     constants_gradient,
     derivatives_of,
 )
 from doe_kc.solver.kernel import kernel
-from doe_kc.solver.result import BranchSolution, Solution, StaticState
+from doe_kc.solver.result import BranchSolution, CaseSolution, Solution, StaticState
 
 TAIL = ("pad_L", "pad_R", "preload")
 """Controls that the static state decides."""
@@ -63,13 +65,14 @@ def sensitivities(
     outputs: Sequence[str] | None = None,
     *,
     input_gain: str = "",
+    pool: Executor | None = None,
 ) -> Sensitivities:
     """Derivatives of every output in every equilibrium of `solution` to the parameters `paths`.
 
     To a flexibility at 0, where its bound is and the topology changes, the one-sided derivative. directions:
     further ones by name, behind the paths: what each changes the axle's internal values by, per unit.
     outputs: those that are kept of the branches, default all. input_gain: name of a last column, to the gain
-    of each branch's own load case, nothing at rest; default none.
+    of each branch's own load case, nothing at rest; default none. pool: see `suite.solve`.
     ValueError when the solution has no static state; cases that it lacks are left out.
     """
     if solution.static is None:
@@ -79,14 +82,15 @@ def sensitivities(
     if input_gain:
         names, moves = (*names, input_gain), [*moves, {}]
     columns = solution.output_names if outputs is None else tuple(outputs)
-    exact = _Differentiator(axle, solution.static, names, moves, columns, input_gain).run(solution)
+    exact = _Differentiator(axle, solution.static, names, moves, columns, input_gain).run(solution, pool)
     soft = [i for i, path in enumerate(paths) if switched_topology(axle, path) != axle.topology]
     if soft:
         bent = replace(axle, topology=switched_topology(axle, paths[soft[0]]))
         lifted = in_topology(solution, axle.topology, bent.topology)
         assert lifted.static is not None
         own = tuple(paths[i] for i in soft)
-        bending = _Differentiator(bent, lifted.static, own, [moves[i] for i in soft], columns).run(lifted)
+        moved = [moves[i] for i in soft]
+        bending = _Differentiator(bent, lifted.static, own, moved, columns).run(lifted, pool)
         exact.static[:, soft] = bending.static
         for ident, branches in bending.branches.items():
             for rows, other in zip(exact.branches[ident], branches, strict=True):
@@ -153,12 +157,15 @@ class _Differentiator:
                     out[names[internal], column] = weight
         return out
 
-    def run(self, solution: Solution) -> Sensitivities:
+    def run(self, solution: Solution, pool: Executor | None) -> Sensitivities:
         dy, dz, datum = self._static_state()
-        branches = {
-            ident: self._case(case.load_case, case.branches, dy, dz, datum)
-            for ident, case in solution.cases.items()
-        }
+
+        def along(case: CaseSolution) -> tuple[FloatArray, ...]:
+            return self._case(case.load_case, case.branches, dy, dz, datum)
+
+        compiled = isinstance(self._derivatives, CompiledDerivatives)
+        side_by_side = map if pool is None or not compiled else pool.map
+        branches = dict(zip(solution.cases, side_by_side(along, solution.cases.values()), strict=True))
         return Sensitivities(self._paths, dy, branches, self._columns)
 
     def _at_rest(

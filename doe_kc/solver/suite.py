@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -17,7 +19,7 @@ from doe_kc.load_cases import CASE_ORDER, LoadCase
 from doe_kc.solver.builder import LOAD_CASE
 from doe_kc.solver.compiled import MarchLibrary, adaptive_kernel, compiled_kernel
 from doe_kc.solver.diagnosis import sweep_failure
-from doe_kc.solver.equilibria import Start
+from doe_kc.solver.equilibria import March, Start
 from doe_kc.solver.kernel import Kernel, kernel
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError
 from doe_kc.solver.march import march
@@ -44,11 +46,13 @@ def solve(
     compiled: bool | None = None,
     settings: NewtonSettings | None = None,
     throw: bool = True,
+    pool: Executor | None = None,
 ) -> Solution:
     """All equilibria of the axle's load cases (all, or those named in `cases`).
 
     compiled: None takes compiled code when a C compiler is there, False Python. throw=False returns a failure
-    as `Solution.failure`; throw=True raises NotConverged.
+    as `Solution.failure`; throw=True raises NotConverged. pool: threads in which compiled code solves load
+    cases side by side, to the same digits; default one after the other.
     """
     chosen = _chosen(axle, cases)
     k = kernel(axle.topology)
@@ -58,11 +62,15 @@ def solve(
     static = static_state(k, library, c, axle, options)
     if isinstance(static, Failure):
         return _ended(axle, k, None, {}, static, throw)
+
+    def solve_case(case: LoadCase) -> CaseSolution | _UnfinishedBranch:
+        return _solve_case(k, library, c, static, case, options)
+
+    side_by_side = map if pool is None or library is None else pool.map
     solved: dict[str, CaseSolution] = {}
-    for ident, case in chosen.items():
-        result = _solve_case(k, library, c, static, case, options)
-        if isinstance(result, Failure):
-            return _ended(axle, k, static, solved, result, throw)
+    for ident, result in zip(chosen, side_by_side(solve_case, chosen.values()), strict=True):
+        if isinstance(result, _UnfinishedBranch):
+            return _ended(axle, k, static, solved, result.failure(k, c), throw)
         solved[ident] = result
     return _ended(axle, k, static, solved, None, throw)
 
@@ -131,6 +139,24 @@ def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
     return {"init": up, **before, "unload": falling, "load": rising}
 
 
+@dataclass(frozen=True)
+class _UnfinishedBranch:
+    """A march that ended before its end; its failure is looked for in one thread."""
+
+    case: LoadCase
+    branch: str
+    start: Start
+    path: March
+    input: FloatArray
+    u: FloatArray
+    full: bool
+
+    def failure(self, k: Kernel, c: FloatArray) -> Failure:
+        """See `sweep_failure`."""
+        names = (self.case.id, self.branch, self.case.unit)
+        return sweep_failure(k, c, self.start, self.path, self.input, self.u, names, full=self.full)
+
+
 def _solve_case(
     k: Kernel,
     library: MarchLibrary | None,
@@ -138,7 +164,7 @@ def _solve_case(
     static: StaticState,
     case: LoadCase,
     settings: NewtonSettings,
-) -> CaseSolution | Failure:
+) -> CaseSolution | _UnfinishedBranch:
     loop = k.topology.frictional
     done: list[BranchSolution] = []
     full = False
@@ -149,7 +175,7 @@ def _solve_case(
         start, origin = _start(static, done, u, inputs, loop=loop)
         path = march(k, library, c, start, inputs[1:], u[1:], full=full, settings=settings)
         if path.failed is not None:
-            return sweep_failure(k, c, start, path, inputs[1:], u[1:], (case.id, name, case.unit), full=full)
+            return _UnfinishedBranch(case, name, start, path, inputs[1:], u[1:], full)
         x0, y0, z0 = origin
         done.append(
             BranchSolution(

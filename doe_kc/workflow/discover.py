@@ -18,6 +18,7 @@ from doe_kc.discovery.mean_car import mean_car_likelihood
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.result_cache import ResultCache
+from doe_kc.discovery.solutions import Solutions
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -57,8 +58,9 @@ def discover_study(
             f"{study.source}: no load case of the records is among the axle's; "
             f"expected one of {', '.join(study.axle.load_cases)}."
         )
-    model = EffectModel(axle, discovery_space(axle, study.variables, str(study.source)), likelihood)
     count = workers or available_cores()
+    space = discovery_space(axle, study.variables, str(study.source))
+    model = EffectModel(axle, space, likelihood, solutions=Solutions(count))
     done, total = 0, expected_steps(study)
     if measurement.cars:
         progress("re-tuning every car", done, total)
@@ -148,7 +150,8 @@ def discover_folder(
     axle = recorded(axle, measurement)
     library = effect_library(axle, exclude)
     space = discovery_space(axle, variables or VariableOptions(), str(axle_path))
-    model, _ = mean_car(EffectModel(axle, space, record_likelihood(axle, measurement)), measurement)
+    likelihood, solutions = record_likelihood(axle, measurement), Solutions(workers)
+    model, _ = mean_car(EffectModel(axle, space, likelihood, solutions=solutions), measurement)
     with processes(workers) as executor, ResultCache(out / "discovery.sqlite") as cache:
         discovery = discover(model, library, DiscoveryWorkers(executor, cache, workers=workers))
     return dict(discovery_document(discovery, None))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from dataclasses import replace
 
 import numpy as np
@@ -22,9 +23,9 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Ids of the load cases that were solved."""
     done: list[str] = []
 
-    def counted(axle: Axle, cases: Sequence[str]) -> Solution:
+    def counted(axle: Axle, cases: Sequence[str], pool: Executor | None = None) -> Solution:
         done.extend(cases)
-        return solve(axle, cases)
+        return solve(axle, cases, pool=pool)
 
     monkeypatch.setattr(solutions, "solve", counted)
     return done
@@ -52,6 +53,10 @@ def test_a_solution_is_the_solver_s_and_is_not_computed_again(solved: list[str])
     assert sorted(solved) == sorted(LOAD_CASES)
     assert same(first, again)
     assert same(first, solve(nominal(), list(nominal().load_cases)))
+
+
+def test_load_cases_side_by_side_are_the_same_to_the_last_digit() -> None:
+    assert same(Solutions(threads=3)(nominal()), Solutions()(nominal()))
 
 
 def test_another_input_of_one_load_case_solves_that_alone(solved: list[str]) -> None:

@@ -168,6 +168,21 @@ def test_values_of_sizes() -> None:
     assert Size("z", 0.3, "mm", "shape").value(0.0) == 0.3
 
 
+@pytest.mark.parametrize(
+    ("size", "value", "times"),
+    [
+        (Size("k", 6000.0, "N/mm", "compliance"), 3000.0, 2.0),
+        (Size("r", 14.0, "mm", "compliance", power=4.0), 7.0, 16.0),
+        (Size("f", 1.2, "-", "factor", signed=True), 1.0 / 1.2, -1.0),
+        (Size("g", 0.2, "mm", signed=True), -0.4, -2.0),
+        (Size("z", 0.3, "mm", "shape"), 0.6, 2.0),
+        (Size("b", 0.5, "-", "bend"), -0.25, -0.5),
+    ],
+)
+def test_a_value_over_the_typical_size(size: Size, value: float, times: float) -> None:
+    assert size.over_typical(value) == pytest.approx(times)
+
+
 def test_variants_of_a_friction_are_its_laws() -> None:
     (own,) = EFFECTS["strut_friction"].hypotheses()
     variants = EFFECTS["strut_friction"].variants(own)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -62,6 +63,16 @@ def test_what_was_solved_before_the_failure_is_kept() -> None:
     found = solve(far_steer(), ["vertical", "steer", "drive"], compiled=False, throw=False)
     assert set(found.cases) == {"vertical"}
     assert found.static is not None
+
+
+def test_a_failure_beside_other_load_cases_is_the_one_that_comes_first() -> None:
+    cases = ["vertical", "steer", "drive"]
+    with ThreadPoolExecutor(3) as pool:
+        beside = solve(far_steer(), cases, throw=False, pool=pool)
+    alone = solve(far_steer(), cases, throw=False)
+    assert beside.failure is not None
+    assert str(beside.failure) == str(alone.failure)
+    assert list(beside.cases) == list(alone.cases) == ["vertical"]
 
 
 def test_throw_raises_not_converged_with_the_failure() -> None:

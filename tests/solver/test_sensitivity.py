@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import lru_cache
 
@@ -252,6 +253,17 @@ def test_outputs_that_are_asked_for_are_the_same_columns(free: tuple[Axle, Sensi
             np.testing.assert_array_equal(own, row)
         for one, turned in zip(branches, some.along(ident, wanted[::-1]), strict=True):
             np.testing.assert_array_equal(one, turned[:, ::-1])
+
+
+def test_load_cases_side_by_side_have_the_same_derivatives(free: tuple[Axle, Sensitivities]) -> None:
+    axle, every = free
+    with ThreadPoolExecutor(3) as pool:
+        beside = sensitivities(axle, tight(axle), every.paths, pool=pool)
+    np.testing.assert_array_equal(beside.static, every.static)
+    assert list(beside.branches) == list(every.branches)
+    for ident, branches in every.branches.items():
+        for own, other in zip(branches, beside.branches[ident], strict=True):
+            np.testing.assert_array_equal(own, other)
 
 
 @pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")

@@ -14,7 +14,6 @@ import numpy as np
 from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
-from doe_kc.discovery.own_scatter import with_own_scatter
 from doe_kc.discovery.search.law_discrepancy import (
     EffectSignal,
     balanced_correlation,
@@ -23,6 +22,7 @@ from doe_kc.discovery.search.law_discrepancy import (
 )
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import LAW_OPEN
+from doe_kc.discovery.verdict.own_scatter import with_own_scatter
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors
 from doe_kc.ground.typing import FloatArray
 

@@ -13,22 +13,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.correlation.curve_data import CurveData
+from doe_kc.correlation.curve_data import CurveData, SystematicError
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.search.law_discrepancy import marginal
 
-SYSTEMATIC_ERRORS = ("hysteresis", "calibration")
-"""Kinds of them, the one that shows most first."""
+SYSTEMATIC_ERRORS: tuple[SystematicError, ...] = ("hysteresis", "calibration")
+"""The one that shows most first."""
 SCALES = (2.0, 1.0, 0.5, 0.35, 0.25, 0.18, 0.13, 0.09, 0.06, 0.03)
 """Of such an error, over what is assumed of it, falling. The evidence has one maximum along them."""
 
 
-def systematic_scales(fit: Fit) -> dict[str, float]:
+def systematic_scales(fit: Fit) -> dict[SystematicError, float]:
     """Kind of systematic error -> its scale with the largest evidence, over what the fit's errors hold."""
-    scales = dict.fromkeys(SYSTEMATIC_ERRORS, 1.0)
+    scales: dict[SystematicError, float] = dict.fromkeys(SYSTEMATIC_ERRORS, 1.0)
 
-    def evidence(scales: Mapping[str, float]) -> float:
+    def evidence(scales: Mapping[SystematicError, float]) -> float:
         errors = with_systematic_errors(fit.model.likelihood, scales)
         return marginal(rewhitened_fit(fit, fit.model.with_likelihood(errors)))
 
@@ -46,12 +46,12 @@ def systematic_scales(fit: Fit) -> dict[str, float]:
     return scales
 
 
-def with_systematic_errors(likelihood: Likelihood, scales: Mapping[str, float]) -> Likelihood:
+def with_systematic_errors(likelihood: Likelihood, scales: Mapping[SystematicError, float]) -> Likelihood:
     """The same records, each kind of systematic error at a scale of what their errors hold of it."""
     return replace(likelihood, curves=tuple(_scaled(c, scales) for c in likelihood.curves))
 
 
-def _scaled(curve: CurveData, scales: Mapping[str, float]) -> CurveData:
+def _scaled(curve: CurveData, scales: Mapping[SystematicError, float]) -> CurveData:
     covariance = curve.root @ curve.root.T
     systematic = {kind: scales.get(kind, 1.0) * error for kind, error in curve.systematic.items()}
     for kind, error in curve.systematic.items():

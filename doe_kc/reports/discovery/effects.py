@@ -21,12 +21,13 @@ ODDS = '[>=6]"> 6";0.0'
 @dataclass(frozen=True)
 class EffectRow:
     """One number of one effect; size is None for an effect that is there or not. kind: as `kind_of`.
-    mistaken: what looks alike on the axle."""
+    mistaken: what looks alike on the axle. first: whether it is the effect's first one."""
 
     finding: Finding
     kind: str
     size: FoundSize | None
     mistaken: str
+    first: bool
 
     @property
     def effect(self) -> str:
@@ -58,6 +59,11 @@ class EffectRow:
         """Of the number, in its unit; nan without one."""
         return self.size.estimate.sd if self.size else math.nan
 
+    @property
+    def times_typical(self) -> float:
+        """The number over its typical size, see `Size.over_typical`; nan where none is told."""
+        return self.size.size.over_typical(self.value) if self.size and self.told else math.nan
+
 
 def effect_rows(discovery: Discovery) -> list[EffectRow]:
     """Findings, largest first, then traces."""
@@ -66,7 +72,7 @@ def effect_rows(discovery: Discovery) -> list[EffectRow]:
         own = kind_of(discovery, finding)
         sizes: list[FoundSize | None] = list(found_sizes(discovery, finding))
         alike = mistaken_words(finding.hypothesis.effect, discovery.fitted.model.axle)
-        out += [EffectRow(finding, own, size, alike) for size in sizes or [None]]
+        out += [EffectRow(finding, own, size, alike, i == 0) for i, size in enumerate(sizes or [None])]
     return out
 
 
@@ -98,15 +104,18 @@ EFFECT_COLUMNS: tuple[Column[EffectRow], ...] = (
            cell=lambda r: r.sd if r.told else math.nan),
     Column("unit", "Unit", lambda r: r.size.size.unit if r.size else "", width=9),
     Column("typical", "Typical", lambda r: r.size.size.typical if r.size else math.nan, "0.000", 10),
-    Column("times_typical", "Times typical", lambda r: r.size.times if r.size else math.nan, "0.00", 10),
+    Column("times_typical", "Times typical", lambda r: r.times_typical, "0.00", 10),
     Column("in_words", "In words", lambda r: r.size.words if r.size else "present", width=34),
     Column("gain_ln_evidence", "ln evidence", lambda r: r.finding.gain, "0.0", 12),
     Column("detectability_sd", "Detectability, sd", lambda r: r.finding.detectability, "0.0", 13),
     Column("wrong_name_chance", "Chance of a wrong name", lambda r: r.finding.wrong_name, "0.00%", 12),
     Column("rivals", "Rivals", lambda r: rival_words(r.finding), width=34),
-    Column("physics", "What happens in the car", lambda r: physics_words(r.finding), width=44),
-    Column("shown_by", "Shown by", lambda r: EFFECTS[r.effect].shown_by, width=44),
-    Column("mistaken_for", "Mistaken for", lambda r: r.mistaken, width=34),
+    Column("physics", "What happens in the car", lambda r: physics_words(r.finding), width=44,
+           cell=lambda r: physics_words(r.finding) if r.first else ""),
+    Column("shown_by", "Shown by", lambda r: EFFECTS[r.effect].shown_by, width=44,
+           cell=lambda r: EFFECTS[r.effect].shown_by if r.first else ""),
+    Column("mistaken_for", "Mistaken for", lambda r: r.mistaken, width=34,
+           cell=lambda r: r.mistaken if r.first else ""),
 )  # fmt: skip
 
 

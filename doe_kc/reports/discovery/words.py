@@ -11,7 +11,6 @@ from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle.model import Axle
 from doe_kc.axle.places import places_of
 from doe_kc.curves import response_name
-from doe_kc.discovery.fit import amplitude_estimates
 from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
 from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
@@ -124,11 +123,10 @@ def typical_words(hypothesis: Hypothesis) -> str:
 
 @dataclass(frozen=True)
 class FoundSize:
-    """One number of a found effect. times: as a multiple of the typical size (shapes: sd off typical)."""
+    """One number of a found effect."""
 
     size: Size
     estimate: ParameterEstimate
-    times: float
 
     @property
     def seen(self) -> bool:
@@ -156,11 +154,8 @@ class FoundSize:
 
 def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
     """The numbers of a finding in the order of its hypothesis."""
-    amplitudes, _ = amplitude_estimates(discovery.fitted, finding.hypothesis)
-    for size, own, amplitude in zip(
-        finding.hypothesis.sizes, finding.estimates, amplitudes.tolist(), strict=True
-    ):
-        yield FoundSize(size, own, amplitude)
+    for size, own in zip(finding.hypothesis.sizes, finding.estimates, strict=True):
+        yield FoundSize(size, own)
 
 
 def size_words(discovery: Discovery, finding: Finding) -> str:

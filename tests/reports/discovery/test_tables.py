@@ -139,6 +139,18 @@ def test_the_sheet_has_no_number_for_a_size_that_is_not_told() -> None:
         (column,) = (c for c in table.columns if c.key == key)
         assert column.in_sheet(camber) == column.value(camber)
         assert np.isnan(column.in_sheet(toe)) and np.isfinite(column.value(toe))
+    assert camber.size is not None
+    assert camber.times_typical == pytest.approx(camber.size.size.typical / camber.value)
+    assert np.isnan(toe.times_typical)
+
+
+def test_the_sheet_says_once_what_an_effect_is() -> None:
+    table = effect_table(discovery("named"))
+    for key in ("physics", "shown_by", "mistaken_for"):
+        (column,) = (c for c in table.columns if c.key == key)
+        first, second = table.rows[:2]
+        assert column.in_sheet(first) == column.value(first) == column.value(second)
+        assert column.in_sheet(second) == ""
 
 
 def test_steps_are_ranked_and_the_last_takes_nothing() -> None:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit
-from doe_kc.discovery.own_scatter import most_probable_scatter, unknown_groups, with_own_scatter
 from doe_kc.discovery.result_cache import fingerprint
 from doe_kc.discovery.thresholds import SCATTER_LOG_SD
+from doe_kc.discovery.verdict.own_scatter import most_probable_scatter, unknown_groups, with_own_scatter
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery
 
