@@ -34,10 +34,13 @@ def search() -> EffectSearch:
     return discovery("named").search
 
 
-def trial(effect: str, sizes: list[float], gain: float, apart: float = 0.0) -> HypothesisFit:
+def trial(
+    effect: str, sizes: list[float], gain: float, apart: float = 0.0, prior: float = 0.0
+) -> HypothesisFit:
     """A refit whose sizes are known to a hundredth of the typical one.
 
-    apart: distance of what it predicts from the prediction without an effect, in standard deviations.
+    apart: distance of what it predicts from the prediction without an effect, in standard deviations. prior:
+    part of the gain.
     """
     tuned = search().tuned
     (hypothesis,) = [h for h in library(effect) if h.location in (None, "ROB")]
@@ -53,6 +56,7 @@ def trial(effect: str, sizes: list[float], gain: float, apart: float = 0.0) -> H
             tuned, model=model, z=z, residual=residual, jacobian=model.jacobian(np.hstack([tuning, columns]))
         ),
         gain,
+        prior,
     )
 
 
@@ -86,6 +90,12 @@ def test_effects_that_predict_the_same_are_mistaken_for_each_other() -> None:
     assert near.alike == ("tie_rod_compliance",)
     assert far.wrong_name < 0.002
     assert far.alike == ()
+
+
+@pytest.mark.parametrize(("prior", "alike"), [(-5.0, ("tie_rod_compliance",)), (0.0, ())])
+def test_what_is_rarer_is_not_told_apart_by_that(prior: float, alike: tuple[str, ...]) -> None:
+    rival = trial("tie_rod_compliance", [0.5], 95.0, 1.0, prior)
+    assert judged(rival).alike == alike
 
 
 @pytest.mark.parametrize(("gap", "counted"), [(0.0, False), (0.005, False), (0.1, True)])
