@@ -213,9 +213,8 @@ PROPOSAL_GAIN = 50.0
 """ln posterior odds to first order, that each effect of several added at once must bring. Ten standard
 deviations: what is weaker waits for better derivatives."""
 LAW_WINDOW = 10.0
-"""ln evidence, that the more flexible of two laws may be behind while noise does not explain what remains,
-and that another set may be behind for its sizes to count. Occam's window (Madigan, Raftery 1994):
-effects are then looked for beside the open law."""
+"""ln evidence, that another set or law may be behind for its sizes to count. Occam's window (Madigan,
+Raftery 1994)."""
 FREE_SHAPE_LOSS = 10.0
 """ln likelihood, with priors, that frictions of free shape may cost before sizes are estimated beside the
 laws that were chosen. As `LAW_WINDOW`: on a car with five effects they cost 1."""

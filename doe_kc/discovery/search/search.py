@@ -27,7 +27,7 @@ from doe_kc.discovery.search.laws import (
     with_best_laws,
     with_free_laws,
     with_free_shapes,
-    with_open_laws,
+    with_friction_laws,
 )
 from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.nominal_refits import refit_anew
@@ -110,7 +110,7 @@ def search_from(
         candidates = (HypothesisGain(changed, gain, True),)
         step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), added)
         steps = (*steps, step)
-    taken, _ = _with_laws(other, added, own.axle, workers, loops_known=False)
+    taken, _ = _with_loops(other, added, own.axle, workers, known=False)
     following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
     errors = last.model.likelihood, following.model.likelihood
     screened = tuple(rewhitened_screenings(before.screened, *errors))
@@ -179,13 +179,19 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             tried.add(_laws(current))
         elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
-            current, loops_known = _with_laws(current, added, model.axle, workers, loops_known=loops_known)
+            current, loops_known = _with_loops(current, added, model.axle, workers, known=loops_known)
             laws_tried = False
         elif (anew := refit_anew(current, workers)) is not None:
             current = anew
             del anew
-        elif laws_open:
-            opened, laws_tried = with_free_laws(current, model.likelihood, workers), True
+        elif not laws_tried:
+            laws_tried = True
+            if laws_open:
+                opened = with_free_laws(current, model.likelihood, workers)
+            else:
+                opened = with_friction_laws(current, model.likelihood, shares, workers)
+            if opened is current and not laws_open:
+                break
             if opened is current:  # the same step again, now with every other effect
                 steps.pop()
                 continue
@@ -230,14 +236,14 @@ def _laws(current: Fit) -> tuple[tuple[str, str], ...]:
     return tuple((h.name, h.law) for h in current.model.members)
 
 
-def _with_laws(
-    taken: Fit, added: Sequence[Hypothesis], own: Axle, workers: DiscoveryWorkers, *, loops_known: bool
+def _with_loops(
+    taken: Fit, added: Sequence[Hypothesis], own: Axle, workers: DiscoveryWorkers, *, known: bool
 ) -> tuple[Fit, bool]:
-    """A set that was taken, with the loops and the laws that the records ask for, and whether the loops are
-    settled. own: the axle as given."""
-    if not loops_known and any(is_friction(taken, h) for h in added):
-        taken, loops_known = with_conditioning(taken, own, workers)
-    return with_open_laws(taken, workers), loops_known
+    """A set that was taken, with the loops before the record that the records ask for, and whether those are
+    known. own: the axle as given."""
+    if known or not any(is_friction(taken, h) for h in added):
+        return taken, known
+    return with_conditioning(taken, own, workers)
 
 
 def _settled(
