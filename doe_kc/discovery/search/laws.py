@@ -67,7 +67,8 @@ def may_open(current: Fit) -> bool:
 def with_friction_laws(
     current: Fit, own: Likelihood, shares: Mapping[str, float], workers: DiscoveryWorkers
 ) -> Fit:
-    """The fit with the best laws, closed or free, of the frictions whose law has a discrepancy.
+    """The fit with the best laws of the frictions whose law has a discrepancy: closed ones, and free ones of
+    those that `with_free_shapes` leaves.
 
     own: the records' own errors, see `with_free_laws`. shares: member's name -> its law's discrepancy among
     the errors of the fit. Asked once nothing else comes in: a friction of two stages, 268 N, was 211 +- 7 N
@@ -78,7 +79,11 @@ def with_friction_laws(
     if not members:
         return current
     exact = fit_to_errors(current, own, workers)
-    opened = _with_best_laws(exact, members, workers)
+    later = {h.name for h in _frictions_to_free(exact)}
+    opened = _with_best_laws(exact, [h for h in members if h.name not in later], workers)
+    for member in (h for h in members if h.name in later):
+        if opened.residual_map.chance < NOISE_CHANCE:
+            opened = _with_closed_law(opened, member, other_laws(member), workers)
     return current if opened is exact else opened
 
 

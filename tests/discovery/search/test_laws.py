@@ -79,6 +79,17 @@ def test_a_friction_whose_law_has_a_discrepancy_gets_the_best_law(
     assert asked.laws[: len(CLOSED)] == (CLOSED if opened else [])
 
 
+def test_a_friction_whose_shape_sizes_wait_for_is_asked_for_closed_laws_alone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    current, asked = beside_a_hub(), Answers(50.0)
+    remains = current.residual.copy()
+    remains[:60] += 5.0
+    monkeypatch.setattr(laws_module, "fit_to_errors", lambda f, *_: replace(f, residual=remains))
+    found = with_friction_laws(current, records(), {h.name: 0.1 for h in current.model.members}, asked)
+    assert found is current and asked.laws == CLOSED
+
+
 @pytest.mark.parametrize(("cost", "opened"), [(-50.0, True), (10.0, False)])
 def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> None:
     asked = Answers(cost)
