@@ -59,6 +59,18 @@ def test_load_cases_side_by_side_are_the_same_to_the_last_digit() -> None:
     assert same(Solutions(threads=3)(nominal()), Solutions()(nominal()))
 
 
+def test_several_threads_share_the_load_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    kept, shared = Solutions(threads=2), list[str]()
+    assert Solutions().pool is None and kept.pool is not None
+    whole = kept.pool.map
+    monkeypatch.setattr(
+        kept.pool, "map", lambda f, cases: shared.extend(c.id for c in cases) or whole(f, cases)
+    )
+    kept(nominal())
+    assert sorted(shared) == sorted(LOAD_CASES)
+    assert pickle.loads(pickle.dumps(kept)).pool is not None
+
+
 def test_another_input_of_one_load_case_solves_that_alone(solved: list[str]) -> None:
     kept = Solutions()
     kept(nominal())
