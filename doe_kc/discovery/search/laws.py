@@ -80,7 +80,7 @@ def with_friction_laws(
         return current
     exact = fit_to_errors(current, own, workers)
     later = {h.name for h in _frictions_to_free(exact)}
-    opened = _with_best_laws(exact, [h for h in members if h.name not in later], workers)
+    opened = _until_explained(exact, [h for h in members if h.name not in later], workers)
     for member in (h for h in members if h.name in later):
         if opened.residual_map.chance < NOISE_CHANCE:
             opened = _with_closed_law(opened, member, other_laws(member), workers)
@@ -98,14 +98,14 @@ def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> 
     the discrepancy of the linear law says as much with fewer numbers, and the effect stays named.
     """
     exact = fit_to_errors(current, own, workers)
-    opened = _with_best_laws(exact, [h for h in frictions(exact) if open_laws(h)], workers)
+    opened = _until_explained(exact, [h for h in frictions(exact) if open_laws(h)], workers)
     bent = _bent(opened, workers)
     if bent is not opened and _explained(bent):
         return bent
     return current if opened is exact else opened
 
 
-def _with_best_laws(exact: Fit, members: Sequence[Hypothesis], workers: DiscoveryWorkers) -> Fit:
+def _until_explained(exact: Fit, members: Sequence[Hypothesis], workers: DiscoveryWorkers) -> Fit:
     """The fit with the best law of each of its frictions, one after the other, until noise explains the
     rest."""
     for member in members:

@@ -190,10 +190,10 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
                 opened = with_free_laws(current, model.likelihood, workers)
             else:
                 opened = with_friction_laws(current, model.likelihood, shares, workers)
-            if opened is current and not laws_open:
-                break
-            if opened is current:  # the same step again, now with every other effect
-                steps.pop()
+            if opened is current:
+                if not laws_open:
+                    break
+                steps.pop()  # the same step again, now with every other effect
                 continue
             current = opened
             del opened
