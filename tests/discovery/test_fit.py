@@ -16,9 +16,12 @@ from doe_kc.discovery.derivatives import (
     directions,
     own_columns,
 )
-from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.fit import Fit, amplitude_estimates, cost_of
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.baseline import tune, with_clutter
+from doe_kc.discovery.thresholds import TRACE_SD
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import library, model
@@ -145,3 +148,26 @@ def test_without_derivatives_size_covariance_and_evidence_are_those_of_the_fit(w
     np.testing.assert_array_equal(short.covariance, with_hub.covariance)
     np.testing.assert_array_equal(short.held, with_hub.held)
     np.testing.assert_array_equal(short.without_derivatives.gradient, with_hub.gradient)
+
+
+def test_the_size_of_an_effect_on_both_sides_is_its_mean() -> None:
+    """Moved from a free play to its traces on either side, nothing changes but the prior's cost."""
+    bare = tune(model("named"))
+    both, left, right = library("tie_rod_free_play")
+    traced = with_clutter(bare, DiscoveryWorkers().screenings(bare, [both, left, right]))
+    beside = traced.model.extended(both)
+    assert traced.model.nuisances is not None
+    names = [f"{t.hypothesis.name} {t.size.name}" for t in traced.model.nuisances.traces]
+    sides = [beside.traces.start + names.index(f"{h.name} gap_mm") for h in (left, right)]
+    z = np.append(traced.z, [0.5, 1.0])
+    moved = z.copy()
+    moved[-2] -= TRACE_SD
+    moved[sides] += 1.0
+    change = beside.residual(z) - bare.residual
+    assert np.linalg.norm(beside.residual(moved) - beside.residual(z)) < 0.03 * np.linalg.norm(change)
+    blank = Jacobian(np.zeros((bare.residual.size, z.size)))
+    sizes = [
+        amplitude_estimates(Fit(beside, at, bare.residual, blank, 0.0, 1, True), both)[0] for at in (z, moved)
+    ]
+    np.testing.assert_allclose(sizes[0], sizes[1])
+    assert sizes[0][0] == pytest.approx(0.5 + TRACE_SD * z[sides].mean())

@@ -49,10 +49,12 @@ def with_sides_anew(current: Fit) -> Fit:
 
 
 def _with_nuisances(current: Fit, nuisances: LinearNuisances) -> Fit:
-    """The fit with other columns of the same linear nuisances, as far as its derivatives lead."""
+    """The fit with other columns of its linear nuisances and further ones behind them, as far as its
+    derivatives lead."""
     model = replace(current.model, nuisances=nuisances)
-    jacobian, residual = model.jacobian(current.jacobian.own), model.residual(current.z)
-    return chord_fit(replace(current, model=model, residual=residual, jacobian=jacobian), model)
+    z = np.insert(current.z, current.model.dimension, np.zeros(model.dimension - current.model.dimension))
+    jacobian, residual = model.jacobian(current.jacobian.own), model.residual(z)
+    return chord_fit(replace(current, model=model, z=z, residual=residual, jacobian=jacobian), model)
 
 
 def _sides(fit: Fit) -> FloatArray:
@@ -106,6 +108,37 @@ def with_traces_anew(current: Fit) -> Fit:
         except NotConverged:
             continue
     return _with_nuisances(current, replace(known, columns=columns))
+
+
+def with_friction_traces(current: Fit) -> Fit:
+    """The fit, traces of absent frictions about the axle with its effects, by each law of as few numbers as
+    the default one, alike in size.
+
+    A friction that only presses is a spring, as stiff as its law says. By Dahl's law about the axle without
+    effects, 4 N in a strut by Prandtl-Iwan's left 1.1 to 1.7 standard deviations in the lateral stiffness of
+    the tyres, of six cars always towards stiffer ones.
+    """
+    model, known = current.model, current.model.nuisances
+    if known is None or not model.members:
+        return current
+    columns, first = known.columns.copy(), known.count - len(known.traces)
+    traces: list[Trace] = []
+    further: list[FloatArray] = []
+    for i, trace in enumerate(known.traces, start=first):
+        effect = EFFECTS[trace.hypothesis.effect]
+        if not effect.frictional or not compatible(model, trace.hypothesis):
+            continue
+        laws = [v for v in effect.variants(trace.hypothesis) if len(v.sizes) == len(trace.hypothesis.sizes)]
+        by_law = [replace(trace, hypothesis=law) for law in laws]
+        try:
+            changes = [_change_by(current, one) / np.sqrt(len(laws)) for one in by_law]
+        except NotConverged:
+            continue
+        columns[:, i] = changes[0]
+        traces += by_law[1:]
+        further += changes[1:]
+    anew = replace(known, columns=columns)
+    return _with_nuisances(current, anew.with_traces(traces, np.array(further).T) if traces else anew)
 
 
 def _derivatives_by(current: Fit, traces: Sequence[Trace]) -> FloatArray:

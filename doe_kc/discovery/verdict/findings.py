@@ -64,7 +64,7 @@ def _finding(
     assumed, _ = amplitude_estimates(last, hypothesis)
     most_probable, sd = amplitude_estimates(sized.fit, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = np.hypot(_with_linearity(hypothesis, most_probable, sd), sized.law_sd(place))
+    sd = np.hypot(_with_linearity(hypothesis, most_probable, sd), sized.law_sd(hypothesis))
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability

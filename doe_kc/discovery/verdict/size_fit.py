@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit, rewhitened_fit
+from doe_kc.discovery.fit import Fit, rewhitened_fit, size_weights
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
+from doe_kc.discovery.search.baseline import with_friction_traces
 from doe_kc.discovery.search.law_discrepancy import (
     EffectSignal,
     balanced_correlation,
@@ -24,7 +25,9 @@ from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.own_scatter import with_own_scatter
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.result import NotConverged
 
 MODES = 4
 """Shapes of a discrepancy over the input that hold 99 % of its square."""
@@ -42,9 +45,10 @@ class SizeFit:
     """(d + m, k) by how much the unknowns shift for each shape that the law of a member may have besides,
     one standard deviation of it."""
 
-    def law_sd(self, place: slice) -> FloatArray:
+    def law_sd(self, member: Hypothesis) -> FloatArray:
         """(s,) standard deviations of a member's sizes by the laws of all members."""
-        return np.asarray(np.linalg.norm(self.law_shifts[place], axis=1))
+        shifts = size_weights(self.fit.model, member) @ self.law_shifts
+        return np.asarray(np.linalg.norm(shifts, axis=1))
 
 
 def size_fit(search: EffectSearch) -> SizeFit:
@@ -54,7 +58,7 @@ def size_fit(search: EffectSearch) -> SizeFit:
     shares of the discrepancies are raised anew. Derivatives of the last fit lead to it but where sizes and
     factors of theirs trade places, as with rubber: a share of 0.12 was told as 0.08.
     """
-    last, exact = search.with_law_discrepancy, search.with_effects
+    last, exact = with_friction_traces(search.with_law_discrepancy), search.with_effects
     signals, scales = effect_signals(exact), systematic_scales(last)
     own = last.model.with_likelihood(with_systematic_errors(exact.model.likelihood, scales))
     settled, shares = fit_discrepancy(rewhitened_fit(last, own), signals)
@@ -69,24 +73,40 @@ def law_shifts(fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, f
 
     The law is the member's own and the same in every curve: errors curve by curve let it be hidden by what
     tells the curves apart. A mount that stiffens by 12 % made a hub beside it 4 standard deviations softer.
-    A compliance's law is open by `LAW_OPEN` at least.
+    A compliance's law is open by `LAW_OPEN` at least, of what yields: the gap of a free play has none.
     """
     changes: list[FloatArray] = []
     modes = _modes()
     for member, signal in zip(fit.model.members, signals, strict=True):
-        compliant = any(s.growth == "compliance" for s in member.sizes)
-        share = max(shares[member.name], LAW_OPEN * compliant)
-        if share and not signal.friction:
-            changes += [_bent(fit, signal, share * mode) for mode in modes]
+        if not signal.friction:
+            law = _law_changes(fit, member, signal, shares[member.name])
+            changes += [_bent(fit, law, mode) for mode in modes] if law else []
     if not changes:
         return np.zeros((fit.z.size, 0))
     return np.asarray(fit.covariance @ fit.jacobian.pulled(np.array(changes).T))
 
 
-def _bent(fit: Fit, signal: EffectSignal, mode: FloatArray) -> FloatArray:
-    """(M,) change of the residual where a member's law is another by a mode (41,) at GRID, in relation."""
+def _law_changes(fit: Fit, member: Hypothesis, signal: EffectSignal, share: float) -> list[FloatArray]:
+    """Change (n,) of every curve by one standard deviation of a member's law; none where its law fits."""
+    compliant = np.array([size.growth == "compliance" for size in member.sizes], dtype=bool)
+    if share >= LAW_OPEN or not compliant.any():
+        return [share * change for change in signal.changes] if share else []
+    if all(size.growth == "compliance" or size.shape for size in member.sizes):
+        return [LAW_OPEN * change for change in signal.changes]
+    place = next(p for h, p in fit.model.places() if h == member)
+    rigid = fit.z.copy()
+    rigid[place] = np.where(compliant, 0.0, rigid[place])
+    try:
+        yielding = fit.residual - fit.model.residual(rigid)
+    except NotConverged:
+        return [LAW_OPEN * change for change in signal.changes]
+    return [LAW_OPEN * (curve.root @ yielding[at]) for curve, at in fit.model.likelihood.slices()]
+
+
+def _bent(fit: Fit, changes: Sequence[FloatArray], mode: FloatArray) -> FloatArray:
+    """(M,) change of the residual where changes of curves go by a mode (41,) at GRID over the input."""
     out = np.zeros(fit.residual.size)
-    for (curve, at), change in zip(fit.model.likelihood.slices(), signal.changes, strict=True):
+    for (curve, at), change in zip(fit.model.likelihood.slices(), changes, strict=True):
         out[at] = curve.whitened(change * np.interp(curve.input / np.abs(curve.input).max(), GRID, mode))
     return np.where(fit.model.used, out, 0.0)
 

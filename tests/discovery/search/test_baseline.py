@@ -9,7 +9,13 @@ import numpy as np
 from doe_kc.discovery.fit import cost_of
 from doe_kc.discovery.linear_nuisances import Trace
 from doe_kc.discovery.nuisances import side_differences
-from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew, with_traces_anew
+from doe_kc.discovery.search.baseline import (
+    tune,
+    with_clutter,
+    with_friction_traces,
+    with_sides_anew,
+    with_traces_anew,
+)
 from doe_kc.discovery.thresholds import SIDE_ANGLE, TRACE_SD, TRACE_SEEN
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import apply_effect
@@ -132,3 +138,34 @@ def test_traces_of_either_sign_are_derivatives_about_the_axle_with_its_effects()
 def test_without_effects_or_traces_there_is_nothing_to_take_anew() -> None:
     tuned = tune(model("pair"))
     assert with_traces_anew(tuned) is tuned
+
+
+def test_traces_of_frictions_are_by_both_laws_about_the_axle_with_its_effects() -> None:
+    """Against solutions, of the one that is absent; a law that only presses is a spring of its own."""
+    tuned = tune(model("pair"))
+    steering, strut = library("steering_friction", "strut_friction")
+    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [steering, strut]))
+    known, beside = traced.model.nuisances, traced.model.extended(steering)
+    assert known is not None
+    z = np.append(traced.z, [1.0, 0.0])
+    z[beside.traces] = 0.0
+    own = np.hstack([traced.jacobian.own, np.zeros((traced.residual.size, 2))])
+    before = replace(traced, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
+    found = with_friction_traces(before)
+    anew = found.model.nuisances
+    assert anew is not None
+    by_law = [Trace(strut, 0), Trace(replace(strut, law="iwan"), 0)]
+    assert anew.traces == (*known.traces, by_law[1])
+    assert found.z.size == z.size + 1
+    there = np.insert(z, beside.dimension, 0.0)
+    assert found.cost <= cost_of(found.model, there, found.model.residual(there))
+    first, bare = anew.count - len(anew.traces), beside.residual(z)
+    columns = [anew.columns[:, first + anew.traces.index(trace)] for trace in by_law]
+    for trace, column in zip(by_law, columns, strict=True):
+        member = beside.extended(trace.hypothesis)
+        change = member.residual(np.append(z, [TRACE_SD, 0.0])) - bare
+        np.testing.assert_allclose(column, change / np.sqrt(2.0), atol=1e-9)
+    assert np.linalg.norm(columns[1] - columns[0]) > 0.1 * np.linalg.norm(columns[0])
+    others = np.delete(np.arange(known.count), first + anew.traces.index(by_law[0]))
+    np.testing.assert_array_equal(anew.columns[:, others], known.columns[:, others])
+    assert with_friction_traces(tuned) is tuned

@@ -14,7 +14,8 @@ from doe_kc.discovery.search.law_discrepancy import effect_signals
 from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.size_fit import MODES, law_shifts, size_fit
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales
-from tests.discovery.cases import discovery
+from doe_kc.ground.typing import FloatArray
+from tests.discovery.cases import discovery, library
 
 SHARE = 0.05
 
@@ -99,3 +100,19 @@ def test_shifts_are_those_of_records_that_follow_another_law() -> None:
     assert large.any()
     assert np.all(np.abs(moved[large]) < 2.0 * expected[large])
     assert np.median(np.abs(moved[large]) / expected[large]) > 0.1
+
+
+def test_the_gap_of_a_free_play_has_no_law() -> None:
+    """With rigid contacts nothing of it yields; with soft ones that part alone is open."""
+    last = discovery("pair").search.with_law_discrepancy
+    (play, *_) = library("tie_rod_free_play")
+    model = replace(last.model, members=(play,))
+
+    def shifts(contact: float) -> FloatArray:
+        z = np.append(last.z[: model.dimension], [1.0, contact])
+        own = np.hstack([last.jacobian.own[:, : -last.amplitudes.size], np.zeros((last.residual.size, 2))])
+        at = replace(last, model=model, z=z, residual=model.residual(z), jacobian=model.jacobian(own))
+        return law_shifts(at, effect_signals(at), {play.name: 0.0})
+
+    assert not np.any(shifts(0.0))
+    assert np.any(shifts(1.0))
