@@ -51,7 +51,8 @@ def trace_mean(size: Size) -> float:
 @dataclass(frozen=True)
 class LinearNuisances:
     """Their columns, of the sides about the axle with the set's effects, of traces about the re-tuned one, in
-    the end those of compliances and of sizes of either sign about the axle with the set's effects too."""
+    the end those of compliances and of sizes of either sign about the axle with the set's effects too, for
+    the sizes also those of frictions."""
 
     columns: FloatArray
     """(M, l) change of the residual by each, per its standard deviation; differences between the sides first,
