@@ -7,9 +7,11 @@ Sets are compared under what is assumed of errors and scatter, the same for all.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from doe_kc.discovery.fit import Fit, rewhitened_fit, size_weights
 from doe_kc.discovery.gauss_newton import chord_fit
@@ -91,16 +93,20 @@ def _law_changes(fit: Fit, member: Hypothesis, signal: EffectSignal, share: floa
     compliant = np.array([size.growth == "compliance" for size in member.sizes], dtype=bool)
     if share >= LAW_OPEN or not compliant.any():
         return [share * change for change in signal.changes] if share else []
-    if all(size.growth == "compliance" or size.shape for size in member.sizes):
-        return [LAW_OPEN * change for change in signal.changes]
+    changes = signal.changes
+    if not all(size.growth == "compliance" or size.shape for size in member.sizes):
+        with suppress(NotConverged):
+            changes = _yielding(fit, member, compliant)
+    return [LAW_OPEN * change for change in changes]
+
+
+def _yielding(fit: Fit, member: Hypothesis, compliant: NDArray[np.bool_]) -> tuple[FloatArray, ...]:
+    """Change (n,) of every curve by those sizes of a member alone. NotConverged without an equilibrium."""
     place = next(p for h, p in fit.model.places() if h == member)
     rigid = fit.z.copy()
     rigid[place] = np.where(compliant, 0.0, rigid[place])
-    try:
-        yielding = fit.residual - fit.model.residual(rigid)
-    except NotConverged:
-        return [LAW_OPEN * change for change in signal.changes]
-    return [LAW_OPEN * (curve.root @ yielding[at]) for curve, at in fit.model.likelihood.slices()]
+    yielding = fit.residual - fit.model.residual(rigid)
+    return tuple(curve.root @ yielding[at] for curve, at in fit.model.likelihood.slices())
 
 
 def _bent(fit: Fit, changes: Sequence[FloatArray], mode: FloatArray) -> FloatArray:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.discovery.fit import cost_of
+from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.linear_nuisances import Trace
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.search.baseline import (
@@ -19,10 +20,18 @@ from doe_kc.discovery.search.baseline import (
 from doe_kc.discovery.thresholds import SIDE_ANGLE, TRACE_SD, TRACE_SEEN
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import apply_effect
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from tests.discovery.cases import discovery, library, model
+
+
+def with_effect(bare: Fit, effect: Hypothesis, sizes: Sequence[float]) -> Fit:
+    """At the same point with an effect of these sizes, whose derivatives are blank."""
+    beside, z = bare.model.extended(effect), np.append(bare.z, sizes)
+    own = np.hstack([bare.jacobian.own, np.zeros((bare.residual.size, len(sizes)))])
+    return replace(bare, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
 
 
 def test_the_axle_is_tuned_with_sides_that_differ() -> None:
@@ -35,9 +44,8 @@ def test_sides_are_linear_about_the_axle_with_its_effects() -> None:
     """Against differences of solutions: what unequal camber makes of the loops of a strut friction too."""
     bare = tune(model("pair"))
     (friction,) = library("strut_friction")
-    beside, z = bare.model.extended(friction), np.append(bare.z, [1.0, 0.0])
-    known = np.hstack([bare.jacobian.own, np.zeros((bare.residual.size, 2))])
-    before = replace(bare, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(known))
+    before = with_effect(bare, friction, [1.0, 0.0])
+    beside, z = before.model, before.z
     found = with_sides_anew(before)
     assert bare.model.nuisances is not None and found.model.nuisances is not None
     sides, anew = bare.model.nuisances.columns, found.model.nuisances.columns
@@ -93,11 +101,9 @@ def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> N
     tuned = tune(model("friction"))
     friction, mount, strut = library("steering_friction", "rack_mount_compliance", "strut_friction")
     traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [friction, mount, strut]))
-    known, beside = traced.model.nuisances, traced.model.extended(friction)
+    before = with_effect(traced, friction, [1.0, 0.0])
+    known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
-    z = np.append(traced.z, [1.0, 0.0])
-    own = np.hstack([traced.jacobian.own, np.zeros((traced.residual.size, 2))])
-    before = replace(traced, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
     found = with_traces_anew(before)
     assert found.model.nuisances is not None and found.model.nuisances.traces == known.traces
     first, at = known.count - len(known.traces), known.traces.index(Trace(mount, 0))
@@ -121,11 +127,9 @@ def test_traces_of_either_sign_are_derivatives_about_the_axle_with_its_effects()
     tuned = tune(model("named"))
     hub, height = library("hub_compliance", "ride_height_offset")
     traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [hub, height]))
-    known, beside = traced.model.nuisances, traced.model.extended(hub)
+    before = with_effect(traced, hub, [1.0, 1.0])
+    known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
-    z = np.append(traced.z, [1.0, 1.0])
-    own = np.hstack([traced.jacobian.own, np.zeros((traced.residual.size, 2))])
-    before = replace(traced, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
     found = with_traces_anew(before).model.nuisances
     assert found is not None
     column = found.columns[:, found.count - len(found.traces) + found.traces.index(Trace(height, 0))]
@@ -145,12 +149,11 @@ def test_traces_of_frictions_are_by_both_laws_about_the_axle_with_its_effects() 
     tuned = tune(model("pair"))
     steering, strut = library("steering_friction", "strut_friction")
     traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [steering, strut]))
-    known, beside = traced.model.nuisances, traced.model.extended(steering)
+    untraced = traced.z.copy()
+    untraced[traced.model.traces] = 0.0
+    before = with_effect(replace(traced, z=untraced), steering, [1.0, 0.0])
+    known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
-    z = np.append(traced.z, [1.0, 0.0])
-    z[beside.traces] = 0.0
-    own = np.hstack([traced.jacobian.own, np.zeros((traced.residual.size, 2))])
-    before = replace(traced, model=beside, z=z, residual=beside.residual(z), jacobian=beside.jacobian(own))
     found = with_friction_traces(before)
     anew = found.model.nuisances
     assert anew is not None
