@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -9,6 +10,7 @@ from typing import Literal
 
 from doe_kc.axle.model import BUSHING_AXES, BUSHINGS, EXTRA_HARDPOINTS, HARDPOINTS
 from doe_kc.axle.sliders import BACKBONE_YIELDS
+from doe_kc.ground.errors import InputError
 
 Group = Literal["HARDPOINTS", "BUSHINGS", "OTHER"]
 Quantity = Literal[
@@ -190,3 +192,17 @@ def must_be_positive(name: str) -> bool:
 def is_lateral(name: str) -> bool:
     """Whether the right side has the opposite sign: y of a point."""
     return name.partition(".")[2] == "y"
+
+
+def check_value(path: str, value: float, source: str) -> None:
+    """InputError for a value that no axle can have."""
+    if not math.isfinite(value):
+        raise InputError(f"{source}: {path} = {value}, expected a finite number.")
+    name = path.removeprefix(side_prefix(path))
+    if value < 0 and not_below_zero(name):
+        raise InputError(f"{source}: {path} = {value:g}, expected a number >= 0.")
+    if value <= 0 and must_be_positive(name):
+        raise InputError(
+            f"{source}: {path} = {value:g}, expected a number > 0; "
+            "a zero or negative stiffness, load or radius has no equilibrium."
+        )

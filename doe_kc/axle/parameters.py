@@ -19,6 +19,7 @@ from doe_kc.axle.parameter_kinds import (
     PATHS,
     SIDE_PREFIXES,
     SWITCHES,
+    check_value,
     is_lateral,
     must_be_positive,
     not_below_zero,
@@ -53,6 +54,21 @@ def with_values(axle: Axle, values: Mapping[str, float], *, source: str = "param
     stiffness, factor or radius that is not positive.
     """
     return ParameterMap(axle, tuple(values), source=source).axle(tuple(values.values()))
+
+
+def names_touched(axle: Axle, paths: Sequence[str], *, source: str = "parameter") -> frozenset[str]:
+    """Internal values that `with_values` reads or moves for some paths; InputError for an unknown path."""
+    return _names_touched(tuple(paths), tuple(axle.values), tuple(axle.follow.items()), source)
+
+
+@lru_cache(maxsize=READINGS)
+def _names_touched(
+    paths: tuple[str, ...], names: tuple[str, ...], follow: tuple[tuple[str, str], ...], source: str
+) -> frozenset[str]:
+    readings = _readings(paths, names, follow, source)
+    moved = {internal for reading in readings for internal, _, _ in reading.moves}
+    switching = {f"{path}@{side}" for path in SWITCHES for side in "LR"}
+    return frozenset({reading.reference for reading in readings} | moved | switching)
 
 
 class ParameterMap:
@@ -249,20 +265,6 @@ def _moves(
         if leader == point:
             for each in sides:
                 yield f"{follower}.{axis}@{each}", True
-
-
-def check_value(path: str, value: float, source: str) -> None:
-    """InputError for a value that no axle can have."""
-    if not math.isfinite(value):
-        raise InputError(f"{source}: {path} = {value}, expected a finite number.")
-    name = path.removeprefix(side_prefix(path))
-    if value < 0 and not_below_zero(name):
-        raise InputError(f"{source}: {path} = {value:g}, expected a number >= 0.")
-    if value <= 0 and must_be_positive(name):
-        raise InputError(
-            f"{source}: {path} = {value:g}, expected a number > 0; "
-            "a zero or negative stiffness, load or radius has no equilibrium."
-        )
 
 
 def _split(known: Set[str], path: str, source: str) -> tuple[str, str | None]:

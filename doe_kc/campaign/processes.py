@@ -16,6 +16,7 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Any, ParamSpec, TypeVar
 
+from doe_kc.campaign.shared_arguments import called_with, shared_arguments
 from doe_kc.ground.threads import find_libraries, limit_process
 
 P = ParamSpec("P")
@@ -53,7 +54,12 @@ class Processes(Executor):
         with warnings.catch_warnings():
             # Python 3.12 and later warn of a fork beside threads; a progress bar's holds nothing a task needs
             warnings.filterwarnings("ignore", r"This process .* is multi-threaded", DeprecationWarning)
-            return self._pool.submit(partial(_guarded, fn), *args, **kwargs)
+            arguments = shared_arguments(args, kwargs)
+            if arguments is None:
+                return self._pool.submit(partial(_guarded, fn), *args, **kwargs)
+            future = self._pool.submit(partial(_guarded, called_with), fn, arguments)
+        future.add_done_callback(lambda _: arguments.close())
+        return future
 
     def renew(self) -> None:
         """Other workers for the next task."""

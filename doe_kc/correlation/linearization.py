@@ -52,42 +52,36 @@ def linearize(
     exact = sensitivities(there, solution, paths)
     slopes = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
     curves = _chained(gradients_of(solution, exact), space, point, space.paths)
-    return Linearization(_to_places(slopes, space, space.slopes(point)), curves)
+    return Linearization(to_places(slopes, space, point), curves)
 
 
-def linearized_curves(
+def value_gradients(
     there: Axle,
     solution: Solution,
     space: Space,
-    point: FloatArray,
     directions: Mapping[str, Mapping[str, float]],
     input_gain: str,
     pool: Executor | None = None,
 ) -> CurveGradients:
-    """Curves of the axle at `point` (d,) to first order: d variables, ties followed, then `directions`, then
-    the gain of each curve's own load case.
+    """Curves of the axle to first order: the values of d variables and of what follows them, for `to_places`,
+    then `directions`, then the gain of each curve's own load case.
 
     solution: of that axle. directions, input_gain, pool: see `sensitivities`.
     """
+    paths = _moved_paths(space)
     exact = sensitivities(
-        there,
-        solution,
-        _moved_paths(space),
-        directions,
-        outputs=CURVE_OUTPUTS,
-        input_gain=input_gain,
-        pool=pool,
+        there, solution, paths, directions, outputs=CURVE_OUTPUTS, input_gain=input_gain, pool=pool
     )
-    return _chained(gradients_of(solution, exact), space, point, (*space.paths, *directions, input_gain))
+    return gradients_of(solution, exact)
 
 
 def _moved_paths(space: Space) -> list[str]:
     return [*space.paths, *(tie.follower for tie in space.ties)]
 
 
-def _to_places(gradient: FloatArray, space: Space, slopes: FloatArray) -> FloatArray:
+def to_places(gradient: FloatArray, space: Space, point: FloatArray) -> FloatArray:
     """(..., d and others) derivatives to the places u, from those to the values of d paths, of their
-    followers and of others, which stay what they are. slopes: (d,) dvalue/du.
+    followers and of others, which stay what they are. point: (d,) places.
 
     Column by column: products with the matrix of all dvalue/du, which is all but diagonal, took an eighth of
     the time of all derivatives.
@@ -97,17 +91,15 @@ def _to_places(gradient: FloatArray, space: Space, slopes: FloatArray) -> FloatA
     places = {path: i for i, path in enumerate(space.paths)}
     for i, tie in enumerate(space.ties, start=count):
         out[..., places[tie.leader]] += tie.slope * gradient[..., i]
-    out[..., :count] *= slopes
+    out[..., :count] *= space.slopes(point)
     return out
 
 
 def _chained(
     gradients: CurveGradients, space: Space, point: FloatArray, paths: tuple[str, ...]
 ) -> CurveGradients:
-    slopes = space.slopes(point)
-
     def chained(responses: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        return {response: _to_places(g, space, slopes) for response, g in responses.items()}
+        return {response: to_places(g, space, point) for response, g in responses.items()}
 
     return replace(
         gradients,

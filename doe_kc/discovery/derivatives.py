@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.correlation.linearization import linearized_curves
+from doe_kc.correlation.linearization import to_places, value_gradients
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import AMPLITUDE_STEP, DIRECTION_STEP, INPUT_GAIN
 from doe_kc.effects import EFFECTS
@@ -33,8 +33,8 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
     axle, places = model.driven(sound, z), range(model.dimension, z.size)
     moves, own = directions(model, z, sound, places), z[: model.parameters]
     solution, pool = model.solutions(axle), model.solutions.pool
-    gradients = linearized_curves(axle, solution, model.space, own, moves, GAIN_COLUMN, pool)
-    exact = _whitened(model, gradients, axle)
+    gradients = value_gradients(axle, solution, model.space, moves, GAIN_COLUMN, pool)
+    exact = to_places(_whitened(model, gradients, axle), model.space, own)
     out[:, : model.parameters] = exact[:, : model.parameters]
     for curve, place in model.likelihood.slices():  # each calibration moves its own load case alone
         at = model.calibrations.start + model.cases.index(curve.load_case)
@@ -66,8 +66,7 @@ def directions(model: EffectModel, z: FloatArray, here: Axle, places: Sequence[i
     """
     out: dict[str, dict[str, float]] = {}
     rig = {i for h, p in model.places() if EFFECTS[h.effect].on_rig for i in range(p.start, p.stop)}
-    for i in (i for i in places if i not in rig):
-        there = model.axle_at(z + DIRECTION_STEP * np.eye(z.size)[i])
+    for i, there in model.axles_beside(z, here, [i for i in places if i not in rig], DIRECTION_STEP):
         change = {
             name: (value - here.values[name]) / DIRECTION_STEP
             for name, value in there.values.items()

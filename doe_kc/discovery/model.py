@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import with_values
+from doe_kc.axle.parameters import names_touched, with_values
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.jacobian import Jacobian
@@ -177,8 +177,12 @@ class EffectModel(FieldsOnly):
         """The nominal axle with the members at their amplitudes."""
         axle = self.axle
         for h in self.members:
-            axle = apply_effect(axle, h.effect, h.options(self.sizes_at(z, h)), source=h.name)
+            axle = self._with(axle, h, z)
         return axle
+
+    def _with(self, axle: Axle, member: Hypothesis, z: FloatArray) -> Axle:
+        options = member.options(self.sizes_at(z, member))
+        return apply_effect(axle, member.effect, options, source=member.name)
 
     def sizes_at(self, z: FloatArray, hypothesis: Hypothesis) -> dict[str, float]:
         """Amplitudes of a member by `Size.name`."""
@@ -188,6 +192,25 @@ class EffectModel(FieldsOnly):
     def axle_at(self, z: FloatArray) -> Axle:
         """The axle at a point, its load cases driven as the rig says."""
         return with_values(self.with_effects(z), self.space.values(z[: self.parameters]))
+
+    def axles_beside(
+        self, z: FloatArray, here: Axle, places: Sequence[int], step: float
+    ) -> Iterator[tuple[int, Axle]]:
+        """Each place of an amplitude, and the axle at z, `here`, with that amplitude larger by a step."""
+        values, before, plain = self.space.values(z[: self.parameters]), self.axle, self.with_effects(z)
+        tuned, members = names_touched(plain, tuple(values)), list(self.places())
+        for k, (member, own) in enumerate(members):
+            for i in (i for i in places if own.start <= i < own.stop):
+                axle = self._with(before, member, z + step * np.eye(z.size)[i])
+                for other, _ in members[k + 1 :]:
+                    axle = self._with(axle, other, z)
+                same = axle.topology == plain.topology and axle.load_cases == plain.load_cases
+                moved = {n: v for n, v in axle.values.items() if v != plain.values.get(n)}
+                if same and axle.values.keys() == plain.values.keys() and tuned.isdisjoint(moved):
+                    yield i, here.changed(moved)  # what tuning sets it sets alike
+                else:
+                    yield i, with_values(axle, values)
+            before = self._with(before, member, z)
 
     def curves(self, z: FloatArray) -> CurveSet:
         """What the rig would read; NotConverged when the axle has no equilibrium."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
-from doe_kc.axle.parameters import check_value
+from doe_kc.axle.parameter_kinds import check_value
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.live import messages as says
 from doe_kc.live.effect_switches import EffectSizes, effect_switches, effective_axle

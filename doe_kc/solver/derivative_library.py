@@ -55,7 +55,7 @@ def _derivative_functions(topology: Topology) -> dict[str, ca.Function]:
     blocks = interpreted_blocks(topology)
     symbols = blocks["R_x"].sx_in()
     names = [n for n in block_names(kernel(topology).nz > 0) if n != "constants"]
-    joint = ca.Function("derivatives", symbols, [blocks[n](*symbols) for n in names], {"cse": True})
+    joint = ca.Function("derivatives", symbols, [blocks[n](*symbols) for n in names])
     return {"derivatives": joint, "constants_block": blocks["constants"]}
 
 

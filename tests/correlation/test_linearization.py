@@ -7,7 +7,7 @@ import numpy as np
 from doe_kc.axle import with_values
 from doe_kc.axle.parameters import internal_gradient
 from doe_kc.characteristics import reduce_all
-from doe_kc.correlation.linearization import linearize, linearized_curves
+from doe_kc.correlation.linearization import linearize, to_places, value_gradients
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
@@ -43,12 +43,13 @@ def test_a_direction_of_internal_values_is_the_path_that_moves_them() -> None:
         "rate": internal_gradient(there, "spring.rate"),
         "height": internal_gradient(there, "ROB.z"),
     }
-    curves = linearized_curves(there, solve(there), space, space.start, directions, "gain")
+    curves = value_gradients(there, solve(there), space, directions, "gain")
     order = [curves.paths.index(path) for path in ("spring.rate", "ROB.z")]
     assert curves.paths[2:] == ("rate", "height", "gain")
     slopes = space.slopes(space.start)[order]
     for case in curves.cases.values():
-        for columns in case.values():
+        for values in case.values():
+            columns = to_places(values, space, space.start)
             np.testing.assert_allclose(columns[..., 2:4] * slopes, columns[..., order], atol=1e-12)
 
 
@@ -61,14 +62,15 @@ def test_what_follows_a_variable_moves_with_it() -> None:
     assert len(space.ties) == 1 and space.ties[0].slope == 1.0
     axle, solution = nominal(), solve(nominal())
     free = build_space(nominal(), VariableOptions(use=["spring.rate", "ROB.z", "RIB.z"]), "test")
-    own = linearized_curves(axle, solution, space, space.start, {}, "gain")
-    alone = linearized_curves(axle, solution, free, free.start, {}, "gain")
+    own = value_gradients(axle, solution, space, {}, "gain")
+    alone = value_gradients(axle, solution, free, {}, "gain")
     rob, rib = (alone.paths.index(path) for path in ("ROB.z", "RIB.z"))
     slopes = free.slopes(free.start)
     share = slopes[rob] / slopes[rib]
     for case, responses in own.cases.items():
-        for response, columns in responses.items():
-            expected = alone.cases[case][response]
+        for response, values in responses.items():
+            columns = to_places(values, space, space.start)
+            expected = to_places(alone.cases[case][response], free, free.start)
             both = expected[..., rob] + share * expected[..., rib]
             np.testing.assert_allclose(columns[..., own.paths.index("ROB.z")], both, atol=1e-9)
             np.testing.assert_allclose(columns[..., -1], expected[..., -1], atol=1e-12)

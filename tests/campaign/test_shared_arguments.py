@@ -1,0 +1,78 @@
+"""Large arrays of a task by way of shared memory, and all else through the pipe."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import doe_kc.campaign.processes as processes_module
+from doe_kc.campaign.processes import Processes
+from doe_kc.campaign.shared_arguments import SHARED_FROM, SharedArguments, called_with, shared_arguments
+from doe_kc.ground.typing import FloatArray
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere arguments go through the pipe")
+LARGE = np.arange(SHARED_FROM // 4, dtype=float).reshape(-1, 4)
+
+
+def told(large: FloatArray, rest: Mapping[str, Any], *, offset: float = 0.0) -> tuple[FloatArray, Any, int]:
+    large += offset  # of its own
+    return large[::1000].copy(), {k: np.asarray(v).tolist() for k, v in rest.items()}, os.getpid()
+
+
+REST = {"small": np.arange(3), "middle": np.ones(2000), "columns": np.asfortranarray(LARGE[:9]), "word": "a"}
+
+
+def test_a_task_gets_the_arguments_that_it_was_given() -> None:
+    shared = shared_arguments((LARGE, REST), {"offset": 2.0})
+    assert shared is not None and len(shared.rest) < SHARED_FROM // 100
+    part, rest, _ = called_with(told, shared)
+    np.testing.assert_array_equal(part, LARGE[::1000] + 2.0)
+    assert rest == told(LARGE.copy(), REST)[1]
+    assert LARGE[0, 0] == 0.0
+    shared.close()
+    assert not Path(shared.path).exists()
+
+
+def test_small_arguments_and_such_as_cannot_be_sent_are_left_to_the_pool() -> None:
+    assert shared_arguments((REST,), {}) is None
+    assert shared_arguments((LARGE, lambda: 0), {}) is None
+
+
+def test_where_there_is_no_memory_the_pipe_serves(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(_name: str) -> int:
+        raise OSError(28, "no space")
+
+    monkeypatch.setattr(os, "memfd_create", full)
+    assert shared_arguments((LARGE,), {}) is None
+    executor = Processes(1)
+    assert executor.submit(told, LARGE, REST).result()[2] != os.getpid()
+    executor.shutdown()
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_the_memory_of_a_task_goes_with_it(fails: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a worker process, whether the task ends well or not."""
+    made: list[SharedArguments] = []
+
+    def noted(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> SharedArguments | None:
+        shared = shared_arguments(args, kwargs)
+        made.extend([shared] if shared else [])
+        return shared
+
+    monkeypatch.setattr(processes_module, "shared_arguments", noted)
+    executor = Processes(2)
+    futures = [executor.submit(told, LARGE, REST, offset="x" if fails else float(i)) for i in range(5)]
+    for i, future in enumerate(futures):
+        if fails:
+            assert future.exception() is not None
+        else:
+            np.testing.assert_array_equal(future.result()[0], LARGE[::1000] + i)
+    executor.shutdown()
+    assert len(made) == 5
+    assert not any(Path(shared.path).exists() for shared in made)
