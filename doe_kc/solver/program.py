@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from itertools import pairwise
 from pathlib import Path
 
 import casadi as ca
 import numpy as np
+from numpy.typing import NDArray
 
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import EXPRESSIONS, SCALAR, Dialect
@@ -24,8 +23,7 @@ from doe_kc.solver.library import CompileError
 
 INTERPRETER = Path(__file__).with_name("program.c")
 COMMUTATIVE = frozenset({ca.OP_ADD, ca.OP_MUL})
-_Operation = tuple[int, int, int]
-"""CasADi's number, and two operands: from 0 on that operation's value, below it an argument or constant."""
+IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -62,118 +60,110 @@ def program_of(function: ca.Function) -> Program:
     """The program of a function; CompileError for an operation that `c_source.EXPRESSIONS` lacks."""
     sizes = [function.nnz_in(i) for i in range(function.n_in())]
     operations, constants, results = _operations(function, sizes)
-    runs, order = _runs(operations)
-    fixed = sum(sizes) + len(constants)
-    place, places = _places(operations, results, runs, order, fixed)
+    order, starts = _runs(operations)
+    place, places = _places(operations, results[:, 2], order, starts, sum(sizes) + len(constants))
 
-    def at(value: int) -> int:
-        return place[value] if value >= 0 else -1 - value
+    def at(values: IntArray) -> IntArray:
+        out = -1 - values
+        own = values >= 0
+        out[own] = place[values[own]]
+        return out
 
     patterns = [function.sparsity_out(i).compress() for i in range(function.n_out())]
+    in_order = operations[order]
     return Program(
         sizes=np.array(sizes, dtype=np.int32),
         constants=np.array(constants, dtype=float),
-        runs=np.array(runs, dtype=np.int32).reshape(-1, 2),
-        operands=np.array(
-            [(place[i], at(operations[i][1]), at(operations[i][2])) for i in order], dtype=np.int32
-        ).reshape(-1, 3),
-        results=np.array([(r, k, at(value)) for r, k, value in results], dtype=np.int32).reshape(-1, 3),
+        runs=np.column_stack([in_order[starts[:-1], 0], np.diff(starts)]).astype(np.int32),
+        operands=np.column_stack([place[order], at(in_order[:, 1]), at(in_order[:, 2])]).astype(np.int32),
+        results=np.column_stack([results[:, :2], at(results[:, 2])]).astype(np.int32),
         patterns=np.array([number for pattern in patterns for number in pattern], dtype=np.int64),
         pattern_starts=np.cumsum([0, *(len(pattern) for pattern in patterns[:-1])]).astype(np.int32),
         places=np.array([places], dtype=np.int32),
     )
 
 
-def _operations(
-    function: ca.Function, sizes: list[int]
-) -> tuple[list[_Operation], list[float], list[tuple[int, int, int]]]:
-    """Operations, none of them twice, constants, and results: (result, nonzero, operand)."""
+def _operations(function: ca.Function, sizes: list[int]) -> tuple[IntArray, list[float], IntArray]:
+    """(n, 4) operations, none of them twice: CasADi's number, two operands, from 0 on that operation's value,
+    below it an argument or constant, and how many operations must come before it, one after the other; then
+    constants, and results (m, 3): result, nonzero, operand."""
     starts = np.cumsum([0, *sizes]).tolist()
+    code_of, operands_of, places_of = (
+        function.instruction_id,
+        function.instruction_input,
+        function.instruction_output,
+    )
     held: dict[int, int] = {}  # what CasADi's memory holds at each place
-    operations: list[_Operation] = []
-    number: dict[_Operation, int] = {}
+    number: dict[tuple[int, int, int], int] = {}
+    levels: list[int] = []
     constants: list[float] = []
-    results = []
+    results: list[tuple[int, int, int]] = []
     for k in range(function.n_instructions()):
-        code, to = function.instruction_id(k), function.instruction_output(k)
+        code, to = code_of(k), places_of(k)
         if code == ca.OP_CONST:
             held[to[0]] = -1 - starts[-1] - len(constants)
             constants.append(function.instruction_constant(k))
             continue
-        operands = function.instruction_input(k)
+        operands = operands_of(k)
         if code == ca.OP_INPUT:
             held[to[0]] = -1 - starts[operands[0]] - operands[1]
         elif code == ca.OP_OUTPUT:
             results.append((to[0], to[1], held[operands[0]]))
         elif code in EXPRESSIONS:
             a, b = held[operands[0]], held[operands[-1]]
-            operation = (code, b, a) if code in COMMUTATIVE and b < a else (code, a, b)
-            if operation not in number:
-                number[operation] = len(operations)
-                operations.append(operation)
-            held[to[0]] = number[operation]
+            operation = (code, b, a) if b < a and code in COMMUTATIVE else (code, a, b)
+            at = number.setdefault(operation, len(levels))
+            if at == len(levels):
+                levels.append(1 + max(levels[a] if a >= 0 else -1, levels[b] if b >= 0 else -1))
+            held[to[0]] = at
         else:
             raise CompileError(f"operation {code} of {function.name()} has no C expression in EXPRESSIONS")
-    return operations, constants, results
+    operations = np.array(list(number), dtype=np.int64).reshape(-1, 3)
+    rows = np.array(results, dtype=np.int64).reshape(-1, 3)
+    return np.column_stack([operations, np.array(levels, dtype=np.int64)]), constants, rows
 
 
-def _runs(operations: list[_Operation]) -> tuple[list[tuple[int, int]], list[int]]:
-    """Runs of one operation whose operands are known, the longest one first, and the order that follows."""
-    readers: list[list[int]] = [[] for _ in operations]
-    missing = []
-    ready = defaultdict[int, list[int]](list)
-    for i, (code, a, b) in enumerate(operations):
-        needed = {v for v in (a, b) if v >= 0}
-        missing.append(len(needed))
-        for value in needed:
-            readers[value].append(i)
-        if not needed:
-            ready[code].append(i)
-    runs, order = [], list[int]()
-    while ready:
-        code = max(ready, key=lambda c: len(ready[c]))
-        run = ready.pop(code)
-        runs.append((code, len(run)))
-        order += run
-        for i in run:
-            for reader in readers[i]:
-                missing[reader] -= 1
-                if not missing[reader]:
-                    ready[operations[reader][0]].append(reader)
-    return runs, order
+def _runs(operations: IntArray) -> tuple[IntArray, IntArray]:
+    """An order of the operations (n,) in which the operands of a run of one operation come before it, and
+    where each run begins there, then the end."""
+    code, level = operations[:, 0], operations[:, 3]
+    order = np.lexsort((code, level))
+    new = (np.diff(code[order]) != 0) | (np.diff(level[order]) != 0)
+    starts = np.concatenate([[0], np.flatnonzero(new) + 1, [len(order)]]) if len(order) else np.zeros(1)
+    return order, starts.astype(np.int64)
 
 
 def _places(
-    operations: list[_Operation],
-    results: list[tuple[int, int, int]],
-    runs: list[tuple[int, int]],
-    order: list[int],
-    fixed: int,
-) -> tuple[list[int], int]:
-    """Place of every value, free again after the run that reads it last, and how many places there are."""
-    run_of, last = [0] * len(operations), [0] * len(operations)
-    starts = np.cumsum([0, *(count for _, count in runs)]).tolist()
-    for run, (start, end) in enumerate(pairwise(starts)):
-        for i in order[start:end]:
-            run_of[i] = last[i] = run
-            for value in operations[i][1:]:
-                if value >= 0:
-                    last[value] = run
-    for _, _, value in results:
-        if value >= 0:
-            last[value] = len(runs)
-    leaving = defaultdict[int, list[int]](list)
-    free, place, places = list[int](), [0] * len(operations), fixed
-    for run, (start, end) in enumerate(pairwise(starts)):
-        for i in order[start:end]:
-            if free:
-                place[i] = free.pop()
-            else:
-                place[i] = places
-                places += 1
-            leaving[last[i]].append(place[i])
-        free += leaving.pop(run, [])
+    operations: IntArray, results: IntArray, order: IntArray, starts: IntArray, fixed: int
+) -> tuple[IntArray, int]:
+    """Place of every value, free again after the run that reads it last, and how many places there are.
+
+    fixed: places of arguments and constants, before them. results: (m,) operands that are read at the end.
+    """
+    count, runs = len(operations), len(starts) - 1
+    run = np.empty(count, dtype=np.int64)
+    run[order] = np.repeat(np.arange(runs), np.diff(starts))
+    last = run.copy()
+    for operand in operations[:, 1:3].T:
+        np.maximum.at(last, operand[operand >= 0], run[operand >= 0])
+    last[results[results >= 0]] = runs
+    leaving = _by_run(last, runs)
+    place, free, places = np.empty(count, dtype=np.int64), np.empty(0, dtype=np.int64), fixed
+    for k in range(runs):
+        own = order[starts[k] : starts[k + 1]]
+        again = min(len(free), len(own))
+        split = len(free) - again
+        place[own[:again]] = free[split:]
+        place[own[again:]] = np.arange(places, places + len(own) - again)
+        places += len(own) - again
+        free = np.concatenate([free[:split], place[leaving[k]]])
     return place, places
+
+
+def _by_run(last: IntArray, runs: int) -> list[IntArray]:
+    """Values by the run that reads them last."""
+    order = np.argsort(last, kind="stable")
+    return np.split(order, np.searchsorted(last[order], np.arange(1, runs + 1)))
 
 
 def interpreter_source(dialect: Dialect = SCALAR) -> str:
