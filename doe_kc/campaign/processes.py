@@ -57,7 +57,11 @@ class Processes(Executor):
             arguments = shared_arguments(args, kwargs)
             if arguments is None:
                 return self._pool.submit(partial(_guarded, fn), *args, **kwargs)
-            future = self._pool.submit(partial(_guarded, called_with), fn, arguments)
+            try:
+                future = self._pool.submit(partial(_guarded, called_with), fn, arguments)
+            except BaseException:
+                arguments.close()
+                raise
         future.add_done_callback(lambda _: arguments.close())
         return future
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Mapping
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 
 import doe_kc.campaign.processes as processes_module
+import doe_kc.campaign.shared_arguments as shared_module
 from doe_kc.campaign.processes import Processes
 from doe_kc.campaign.shared_arguments import SHARED_FROM, SharedArguments, called_with, shared_arguments
 from doe_kc.ground.typing import FloatArray
@@ -44,11 +47,17 @@ def test_small_arguments_and_such_as_cannot_be_sent_are_left_to_the_pool() -> No
     assert shared_arguments((LARGE, lambda: 0), {}) is None
 
 
-def test_where_there_is_no_memory_the_pipe_serves(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("lacks", ["memory", "/proc"])
+def test_where_there_is_no_memory_to_share_the_pipe_serves(
+    lacks: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     def full(_name: str) -> int:
         raise OSError(28, "no space")
 
-    monkeypatch.setattr(os, "memfd_create", full)
+    if lacks == "memory":
+        monkeypatch.setattr(os, "memfd_create", full)
+    else:
+        monkeypatch.setattr(shared_module, "OPEN_FILES", str(tmp_path / "{}"))
     assert shared_arguments((LARGE,), {}) is None
     executor = Processes(1)
     assert executor.submit(told, LARGE, REST).result()[2] != os.getpid()
@@ -76,3 +85,27 @@ def test_the_memory_of_a_task_goes_with_it(fails: bool, monkeypatch: pytest.Monk
     executor.shutdown()
     assert len(made) == 5
     assert not any(Path(shared.path).exists() for shared in made)
+
+
+def leave(_: FloatArray) -> None:
+    os._exit(1)
+
+
+def test_the_memory_goes_where_a_worker_was_lost() -> None:
+    """Of the task that it did, and of the one that the broken pool refuses."""
+    before, executor = open_files(), Processes(1)
+    with pytest.raises(BrokenProcessPool):
+        executor.submit(leave, LARGE).result()
+    with pytest.raises(BrokenProcessPool):
+        executor.submit(told, LARGE, REST)
+    executor.shutdown()
+    assert open_files() <= before
+
+
+def open_files() -> set[str]:
+    """Of this process, those that are shared arguments."""
+    links = set()
+    for path in Path("/proc/self/fd").iterdir():
+        with suppress(OSError):  # of the folder itself
+            links.add(str(path.readlink()))
+    return {link for link in links if "arguments" in link}
