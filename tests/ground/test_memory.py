@@ -55,3 +55,30 @@ assert resident() - before < 15e6
 def test_holes_between_small_arrays_are_given_back() -> None:
     done = subprocess.run([sys.executable, "-c", TRIMMED], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+KEPT = """
+import resource
+import numpy as np
+from doe_kc.ground.memory import return_large_arrays
+
+def pages() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+
+def used() -> None:
+    [np.ones(100_000) for _ in range(20)]  # 16 MB, each less than a large array
+
+return_large_arrays()
+used()
+before = pages()
+for _ in range(10):
+    used()
+assert pages() - before < 3000, pages() - before  # 16 MB are 4000
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="asks glibc")
+def test_free_memory_at_the_end_of_the_heap_is_used_again() -> None:
+    """Given back after each array it was asked for again, 8 million pages in a search of five effects."""
+    done = subprocess.run([sys.executable, "-c", KEPT], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
