@@ -77,7 +77,6 @@ def called_with(fn: Callable[..., T], arguments: SharedArguments) -> T:
         for array in arrays:
             file.readinto(array.data)
     args, kwargs = ForkingPickler.loads(arguments.rest, buffers=arrays)
-    del arrays
     return fn(*args, **kwargs)
 
 

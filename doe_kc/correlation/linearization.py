@@ -52,7 +52,7 @@ def linearize(
     exact = sensitivities(there, solution, paths)
     slopes = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
     curves = _chained(gradients_of(solution, exact), space, point, space.paths)
-    return Linearization(to_places(slopes, space, point), curves)
+    return Linearization(to_places(slopes, space, space.slopes(point)), curves)
 
 
 def value_gradients(
@@ -79,9 +79,9 @@ def _moved_paths(space: Space) -> list[str]:
     return [*space.paths, *(tie.follower for tie in space.ties)]
 
 
-def to_places(gradient: FloatArray, space: Space, point: FloatArray) -> FloatArray:
+def to_places(gradient: FloatArray, space: Space, slopes: FloatArray) -> FloatArray:
     """(..., d and others) derivatives to the places u, from those to the values of d paths, of their
-    followers and of others, which stay what they are. point: (d,) places.
+    followers and of others, which stay what they are. slopes: (d,) dvalue/du.
 
     Column by column: products with the matrix of all dvalue/du, which is all but diagonal, took an eighth of
     the time of all derivatives.
@@ -91,15 +91,17 @@ def to_places(gradient: FloatArray, space: Space, point: FloatArray) -> FloatArr
     places = {path: i for i, path in enumerate(space.paths)}
     for i, tie in enumerate(space.ties, start=count):
         out[..., places[tie.leader]] += tie.slope * gradient[..., i]
-    out[..., :count] *= space.slopes(point)
+    out[..., :count] *= slopes
     return out
 
 
 def _chained(
     gradients: CurveGradients, space: Space, point: FloatArray, paths: tuple[str, ...]
 ) -> CurveGradients:
+    slopes = space.slopes(point)
+
     def chained(responses: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
-        return {response: to_places(g, space, point) for response, g in responses.items()}
+        return {response: to_places(g, space, slopes) for response, g in responses.items()}
 
     return replace(
         gradients,

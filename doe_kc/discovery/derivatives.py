@@ -31,10 +31,10 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
     """(M, p + m) derivative of the residual to parameters, calibrations and amplitudes. residual: at z."""
     sound, out = model.axle_at(z), np.zeros((residual.size, model.linear.start + len(model.sizes)))
     axle, places = model.driven(sound, z), range(model.dimension, z.size)
-    moves, own = directions(model, z, sound, places), z[: model.parameters]
+    moves, slopes = directions(model, z, sound, places), model.space.slopes(z[: model.parameters])
     solution, pool = model.solutions(axle), model.solutions.pool
     gradients = value_gradients(axle, solution, model.space, moves, GAIN_COLUMN, pool)
-    exact = to_places(_whitened(model, gradients, axle), model.space, own)
+    exact = to_places(_whitened(model, gradients, axle), model.space, slopes)
     out[:, : model.parameters] = exact[:, : model.parameters]
     for curve, place in model.likelihood.slices():  # each calibration moves its own load case alone
         at = model.calibrations.start + model.cases.index(curve.load_case)

@@ -15,15 +15,13 @@ from pathlib import Path
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
-from doe_kc.ground.typing import FloatArray
+from doe_kc.ground.typing import FloatArray, IntArray
 from doe_kc.solver.c_source import EXPRESSIONS, SCALAR, Dialect
 from doe_kc.solver.library import CompileError
 
 INTERPRETER = Path(__file__).with_name("program.c")
 COMMUTATIVE = frozenset({ca.OP_ADD, ca.OP_MUL})
-IntArray = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -88,23 +86,18 @@ def _operations(function: ca.Function, sizes: list[int]) -> tuple[IntArray, list
     below it an argument or constant, and how many operations must come before it, one after the other; then
     constants, and results (m, 3): result, nonzero, operand."""
     starts = np.cumsum([0, *sizes]).tolist()
-    code_of, operands_of, places_of = (
-        function.instruction_id,
-        function.instruction_input,
-        function.instruction_output,
-    )
     held: dict[int, int] = {}  # what CasADi's memory holds at each place
     number: dict[tuple[int, int, int], int] = {}
     levels: list[int] = []
     constants: list[float] = []
     results: list[tuple[int, int, int]] = []
     for k in range(function.n_instructions()):
-        code, to = code_of(k), places_of(k)
+        code, to = function.instruction_id(k), function.instruction_output(k)
         if code == ca.OP_CONST:
             held[to[0]] = -1 - starts[-1] - len(constants)
             constants.append(function.instruction_constant(k))
             continue
-        operands = operands_of(k)
+        operands = function.instruction_input(k)
         if code == ca.OP_INPUT:
             held[to[0]] = -1 - starts[operands[0]] - operands[1]
         elif code == ca.OP_OUTPUT:
@@ -129,8 +122,7 @@ def _runs(operations: IntArray) -> tuple[IntArray, IntArray]:
     code, level = operations[:, 0], operations[:, 3]
     order = np.lexsort((code, level))
     new = (np.diff(code[order]) != 0) | (np.diff(level[order]) != 0)
-    starts = np.concatenate([[0], np.flatnonzero(new) + 1, [len(order)]]) if len(order) else np.zeros(1)
-    return order, starts.astype(np.int64)
+    return order, np.unique(np.concatenate([[0], np.flatnonzero(new) + 1, [len(order)]]))
 
 
 def _places(

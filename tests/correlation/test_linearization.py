@@ -49,7 +49,7 @@ def test_a_direction_of_internal_values_is_the_path_that_moves_them() -> None:
     slopes = space.slopes(space.start)[order]
     for case in curves.cases.values():
         for values in case.values():
-            columns = to_places(values, space, space.start)
+            columns = to_places(values, space, space.slopes(space.start))
             np.testing.assert_allclose(columns[..., 2:4] * slopes, columns[..., order], atol=1e-12)
 
 
@@ -69,8 +69,8 @@ def test_what_follows_a_variable_moves_with_it() -> None:
     share = slopes[rob] / slopes[rib]
     for case, responses in own.cases.items():
         for response, values in responses.items():
-            columns = to_places(values, space, space.start)
-            expected = to_places(alone.cases[case][response], free, free.start)
+            columns = to_places(values, space, space.slopes(space.start))
+            expected = to_places(alone.cases[case][response], free, free.slopes(free.start))
             both = expected[..., rob] + share * expected[..., rib]
             np.testing.assert_allclose(columns[..., own.paths.index("ROB.z")], both, atol=1e-9)
             np.testing.assert_allclose(columns[..., -1], expected[..., -1], atol=1e-12)
