@@ -113,17 +113,26 @@ class Likelihood(FieldsOnly):
             start += curve.size
 
 
-def rewhitened(rows: FloatArray, before: Likelihood, after: Likelihood) -> FloatArray:
-    """(M, ...) of the same data, from units of one likelihood's errors to those of another."""
-    if before is after:
-        return rows
-    out = rows.copy()
-    for old, new in zip(before.groups, after.groups, strict=True):
-        if any(a is not b for a, b in zip(old.curves, new.curves, strict=True)):
-            change = new.inverses @ np.array([c.root for c in old.curves])
+class Rewhitening:
+    """From units of one likelihood's errors to those of another of the same data: L'^-1 L of every curve."""
+
+    def __init__(self, before: Likelihood, after: Likelihood) -> None:
+        pairs = zip(before.groups, after.groups, strict=True) if before is not after else ()
+        self._changes = [
+            (old.place, new.inverses @ np.array([c.root for c in old.curves]))
+            for old, new in pairs
+            if any(a is not b for a, b in zip(old.curves, new.curves, strict=True))
+        ]
+
+    def __call__(self, rows: FloatArray) -> FloatArray:
+        """(M, ...) of rows (M, ...); the same array where no error is another."""
+        if not self._changes:
+            return rows
+        out = rows.copy()
+        for place, change in self._changes:
             k, n, _ = change.shape
-            out[old.place] = (change @ rows[old.place].reshape(k, n, -1)).reshape(k * n, *rows.shape[1:])
-    return out
+            out[place] = (change @ rows[place].reshape(k, n, -1)).reshape(k * n, *rows.shape[1:])
+        return out
 
 
 def record_likelihood(axle: Axle, measurement: Measurement) -> Likelihood:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import log_ndtr
 
-from doe_kc.correlation.likelihood import rewhitened
+from doe_kc.correlation.likelihood import Likelihood, Rewhitening
 from doe_kc.discovery.half_lines import log_kept
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
@@ -170,11 +170,12 @@ def cost_of(model: EffectModel, z: FloatArray, residual: FloatArray) -> float:
     return float(seen @ seen + np.sum(((z - model.centre) / model.prior_sd) ** 2))
 
 
-def rewhitened_fit(fit: Fit, model: EffectModel) -> Fit:
-    """The fit's point against the same records with other errors, those of `model`; nothing is solved."""
-    errors = fit.model.likelihood, model.likelihood
-    residual = rewhitened(fit.residual, *errors)
-    jacobian = model.jacobian(rewhitened(fit.jacobian.own, *errors))
+def rewhitened_fit(fit: Fit, likelihood: Likelihood) -> Fit:
+    """The fit's point against the same records with other errors; nothing is solved."""
+    units = Rewhitening(fit.model.likelihood, likelihood)
+    model = fit.model.with_likelihood(likelihood, units)
+    residual = units(fit.residual)
+    jacobian = model.jacobian(units(fit.jacobian.own))
     return replace(
         fit, model=model, residual=residual, jacobian=jacobian, cost=cost_of(model, fit.z, residual)
     )

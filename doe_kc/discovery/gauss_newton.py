@@ -162,8 +162,8 @@ def refit_to_errors(fit: Fit, likelihood: Likelihood) -> Fit:
     """The fit to the same records with other errors, by the chord method from where it is."""
     if fit.model.likelihood is likelihood:
         return fit
-    model = fit.model.with_likelihood(likelihood)
-    return chord_fit(rewhitened_fit(fit, model), model)
+    rewhitened = rewhitened_fit(fit, likelihood)
+    return chord_fit(rewhitened, rewhitened.model)
 
 
 def known_columns(fit: Fit, model: EffectModel) -> FloatArray:

@@ -22,7 +22,7 @@ from functools import cached_property
 
 import numpy as np
 
-from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.correlation.likelihood import Rewhitening
 from doe_kc.discovery.thresholds import TRACE_SD
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
@@ -113,6 +113,6 @@ class LinearNuisances:
         """The same nuisances without their columns: how many there are, and of what."""
         return replace(self, columns=self.columns[:0].copy())
 
-    def rewhitened(self, before: Likelihood, after: Likelihood) -> LinearNuisances:
+    def rewhitened(self, units: Rewhitening) -> LinearNuisances:
         """The same in units of other errors of the same records."""
-        return replace(self, columns=rewhitened(self.columns, before, after))
+        return replace(self, columns=units(self.columns))

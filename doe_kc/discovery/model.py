@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
 from doe_kc.axle.parameters import names_touched, with_values
-from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.likelihood import Likelihood, Rewhitening
 from doe_kc.curves import CurveSet
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.linear_nuisances import LinearNuisances
@@ -160,11 +160,12 @@ class EffectModel(FieldsOnly):
         """The model with another hypothesis in a member's place."""
         return replace(self, members=tuple(other if h == member else h for h in self.members))
 
-    def with_likelihood(self, likelihood: Likelihood) -> EffectModel:
-        """The model against the same records with other errors."""
-        known = self.nuisances
-        after = None if known is None else known.rewhitened(self.likelihood, likelihood)
-        return replace(self, likelihood=likelihood, nuisances=after)
+    def with_likelihood(self, likelihood: Likelihood, units: Rewhitening | None = None) -> EffectModel:
+        """The model against the same records with other errors. units: from its own to those, if known."""
+        if self.nuisances is None:
+            return replace(self, likelihood=likelihood)
+        units = units or Rewhitening(self.likelihood, likelihood)
+        return replace(self, likelihood=likelihood, nuisances=self.nuisances.rewhitened(units))
 
     def places(self) -> Iterator[tuple[Hypothesis, slice]]:
         """Each member with the places of its amplitudes in z."""

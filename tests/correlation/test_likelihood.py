@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.curve_data import CALIBRATION, RIG_HYSTERESIS
-from doe_kc.correlation.likelihood import build_likelihood, record_likelihood, rewhitened
+from doe_kc.correlation.likelihood import Rewhitening, build_likelihood, record_likelihood
 from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
 
@@ -110,7 +110,7 @@ def test_rows_keep_their_curves_between_errors() -> None:
     wider = replace(before, curves=tuple(replace(c, root=2.0 * c.root) for c in before.curves))
     rows = np.random.default_rng(1).standard_normal((before.size, 2))
     curves = before.size - len(before.figures)
-    found = rewhitened(rows, before, wider)
+    found = Rewhitening(before, wider)(rows)
     np.testing.assert_allclose(found[:curves], rows[:curves] / 2.0)
     np.testing.assert_array_equal(found[curves:], rows[curves:])
-    assert rewhitened(rows, before, before) is rows
+    assert Rewhitening(before, before)(rows) is rows

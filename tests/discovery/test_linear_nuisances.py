@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.correlation.likelihood import rewhitened
+from doe_kc.correlation.likelihood import Rewhitening
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace, trace_mean
@@ -102,6 +102,6 @@ def test_other_errors_change_the_units_of_traces(cluttered: Fit) -> None:
     curves = tuple(replace(c, root=2.0 * c.root) for c in model.likelihood.curves)
     wide = model.with_likelihood(replace(model.likelihood, curves=curves))
     assert known is not None and wide.nuisances is not None
-    expected = rewhitened(known.columns, model.likelihood, wide.likelihood)
+    expected = Rewhitening(model.likelihood, wide.likelihood)(known.columns)
     np.testing.assert_allclose(wide.nuisances.columns, expected)
     np.testing.assert_allclose(wide.nuisances.columns[:10], 0.5 * known.columns[:10])

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from doe_kc.correlation.least_squares import bounded_step
-from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.correlation.likelihood import Likelihood, Rewhitening
 from doe_kc.discovery.derivatives import amplitude_columns
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
@@ -82,7 +82,7 @@ def rewhitened_screenings(
         return list(screened)
     blocks = [np.column_stack([s.change, s.bend, s.columns]) for s in screened]
     ends = np.cumsum([block.shape[1] for block in blocks])
-    every = np.hsplit(rewhitened(np.hstack(blocks), before, after), ends[:-1])
+    every = np.hsplit(Rewhitening(before, after)(np.hstack(blocks)), ends[:-1])
     return [
         replace(s, change=own[:, 0].copy(), bend=own[:, 1].copy(), columns=own[:, 2:].copy())
         for s, own in zip(screened, every, strict=True)

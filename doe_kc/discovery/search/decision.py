@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from doe_kc.correlation.likelihood import Likelihood, rewhitened
+from doe_kc.correlation.likelihood import Likelihood, Rewhitening
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import Screened, shape_of
@@ -121,7 +121,7 @@ class Decision:
         candidates += [HypothesisGain(s.hypothesis, s.gain, False) for s in there]
         after = self.trials[0].fit.model.members if self.accepted else ()
         added = tuple(h for h in after if h.name not in names)
-        residual = rewhitened(self.before.residual, self.before.model.likelihood, own)
+        residual = Rewhitening(self.before.model.likelihood, own)(self.before.residual)
         gap = float(np.sqrt(np.mean(residual**2)))
         return Step(before, gap, tuple(candidates), self.temper, added)
 

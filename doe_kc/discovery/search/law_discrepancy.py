@@ -48,18 +48,18 @@ def fit_discrepancy(exact: Fit, signals: Sequence[EffectSignal]) -> tuple[Fit, d
     errors of the records grow by what its law may do to the curves, and with them their determinant, so that
     a law that fits is left as it is.
     """
-    shares = [0.0] * len(signals)
-    most = marginal(exact)
+    shares, own = [0.0] * len(signals), exact.model.likelihood
+    best, most = exact, marginal(exact)
     for i in sorted(range(len(signals)), key=lambda i: -signals[i].square):
         for share in DISCREPANCY_SHARES[1:]:
             candidate = [share if k == i else s for k, s in enumerate(shares)]
-            evidence = marginal(rewhitened_fit(exact, with_discrepancy(exact.model, signals, candidate)))
+            wider = rewhitened_fit(exact, with_discrepancy(own, signals, candidate))
+            evidence = marginal(wider)
             if evidence <= most:
                 break
-            most, shares[i] = evidence, share
+            best, most, shares[i] = wider, evidence, share
     names = [h.name for h in exact.model.members]
-    wider = with_discrepancy(exact.model, signals, shares)
-    settled = chord_fit(rewhitened_fit(exact, wider), wider) if any(shares) else exact
+    settled = exact if best is exact else chord_fit(best, best.model)
     return settled, dict(zip(names, shares, strict=True))
 
 
@@ -69,7 +69,7 @@ def without_own_discrepancy(
     """Name of each member with a discrepancy -> the records' errors with the discrepancies of all others."""
     names = [h.name for h in exact.model.members]
     return {
-        name: _wider(exact.model.likelihood, signals, [shares[n] * (n != name) for n in names])
+        name: with_discrepancy(exact.model.likelihood, signals, [shares[n] * (n != name) for n in names])
         for name in names
         if shares[name]
     }
@@ -88,17 +88,13 @@ def marginal(fit: Fit) -> float:
 
 
 def with_discrepancy(
-    model: EffectModel, signals: Sequence[EffectSignal], shares: Sequence[float]
-) -> EffectModel:
-    """The model, its records' errors its own and those of the laws of its effects.
+    likelihood: Likelihood, signals: Sequence[EffectSignal], shares: Sequence[float]
+) -> Likelihood:
+    """The same records with errors that hold those of the laws of a set's effects; the same object where no
+    share is.
 
     signals: what each member makes, see `effect_signals`. shares: one a member.
     """
-    return model.with_likelihood(_wider(model.likelihood, signals, shares)) if any(shares) else model
-
-
-def _wider(likelihood: Likelihood, signals: Sequence[EffectSignal], shares: Sequence[float]) -> Likelihood:
-    """The same records with errors that hold those of the laws; the same object where no share is."""
     if not any(shares):
         return likelihood
     curves: list[CurveData] = []

@@ -12,7 +12,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.screening.screen import rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
-from doe_kc.discovery.search.laws import open_laws, other_laws, with_law
+from doe_kc.discovery.search.law_variants import open_laws, other_laws, with_law
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.refits import set_refits
 from doe_kc.discovery.search.search import EffectSearch, search_from
@@ -37,7 +37,9 @@ def with_exchanged_laws(
         if explained and member.name not in freed:
             continue
         most = last.cost + 2.0 * BEYOND_DOUBT
-        starts = [FitStart(*with_law(last, member, law), last, most) for law in other_laws(member)]
+        starts = [
+            FitStart(*with_law(last.model, last.z, member, law), last, most) for law in other_laws(member)
+        ]
         refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
         sets = [_best_set(search, f, workers) for f in refits]
         best, gain = max(sets, key=lambda one: one[1], default=(last, 0.0))

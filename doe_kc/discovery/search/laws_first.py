@@ -11,8 +11,10 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.search.convergence import fit_to_errors
+from doe_kc.discovery.search.free_shapes import with_most_numbers
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
-from doe_kc.discovery.search.laws import frictions, open_laws, with_best_law, with_most_numbers
+from doe_kc.discovery.search.law_variants import frictions, open_laws
+from doe_kc.discovery.search.laws import with_best_law
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS, FEW_CONTRASTS, NOISE_CHANCE, PROPOSAL_GAIN
 from doe_kc.discovery.workers import DiscoveryWorkers

@@ -8,7 +8,7 @@ Statistical Association 89, 1994).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, pairwise
@@ -83,17 +83,32 @@ class LinearSets:
 
     def evidence(self, members: Members) -> tuple[float, FloatArray]:
         """ln posterior of a set, relative to a constant of all, and (m,) its amplitudes in order."""
-        order = sorted(members)
-        columns = np.array([c for i in order for c in range(*self._ends[i])], dtype=int)
-        there = np.array([*(self.low.size + i for i in order), self.gram.shape[0] - 1])
-        constant = float(self.gram[there[:, None], there].sum())
-        slope = self.gram[columns[:, None], there].sum(axis=1)
-        hessian = self.gram[columns[:, None], columns]
-        hessian.flat[:: columns.size + 1] += 1.0
+        return self.evidences([members])[members]
+
+    def evidences(self, sets: Collection[Members]) -> dict[Members, tuple[float, FloatArray]]:
+        """What `evidence` says of each set; those of as many effects and sizes are solved together."""
+        alike: dict[tuple[int, int], list[Members]] = {}
+        for members in sets:
+            count = sum(stop - start for start, stop in (self._ends[i] for i in members))
+            alike.setdefault((len(members), count), []).append(members)
+        known = {members: one for same in alike.values() for members, one in self._together(same)}
+        return {members: known[members] for members in sets}
+
+    def _together(self, sets: Sequence[Members]) -> Iterator[tuple[Members, tuple[float, FloatArray]]]:
+        """Of sets of as many effects and sizes."""
+        orders = [sorted(members) for members in sets]
+        columns = np.array([[c for i in order for c in range(*self._ends[i])] for order in orders], dtype=int)
+        last, first = self.gram.shape[0] - 1, self.low.size
+        there = np.array([[*(first + i for i in order), last] for order in orders])
+        constant = self.gram[there[:, :, None], there[:, None]].sum(axis=(1, 2))
+        slope = self.gram[columns[:, :, None], there[:, None]].sum(axis=2)
+        hessian = self.gram[columns[:, :, None], columns[:, None]] + np.eye(columns.shape[1])
         amplitudes = _within(hessian, slope, self.low[columns], self.high[columns])
-        cost = constant + 2.0 * float(slope @ amplitudes) + float(amplitudes @ hessian @ amplitudes)
-        occam = 0.5 * float(np.linalg.slogdet(hessian)[1]) if columns.size else 0.0
-        return -0.5 * cost - occam + self.prior.log([self.hypotheses[i] for i in order]), amplitudes
+        bent = (hessian @ amplitudes[..., None])[..., 0]
+        cost = constant + np.sum((2.0 * slope + bent) * amplitudes, axis=1)
+        occam = 0.5 * np.linalg.slogdet(hessian)[1]
+        for members, order, gain, own in zip(sets, orders, -0.5 * cost - occam, amplitudes, strict=True):
+            yield members, (float(gain) + self.prior.log([self.hypotheses[i] for i in order]), own)
 
     @cached_property
     def _ends(self) -> list[tuple[int, int]]:
@@ -106,12 +121,9 @@ class LinearSets:
         values = {current: self.evidence(current)}
         best = current
         for _ in range(PROPOSAL_MOVES):
-            for move in self._moves(best):
-                if move not in values:
-                    values[move] = self.evidence(move)
-            for move in self._pairs(best, {m: v[0] for m, v in values.items()}):
-                if move not in values:
-                    values[move] = self.evidence(move)
+            values |= self.evidences([m for m in dict.fromkeys(self._moves(best)) if m not in values])
+            pairs = self._pairs(best, {m: v[0] for m, v in values.items()})
+            values |= self.evidences([m for m in dict.fromkeys(pairs) if m not in values])
             following = max(values, key=lambda m: values[m][0])
             if following == best:
                 break
@@ -172,21 +184,29 @@ def _beyond(screened: Screened) -> FloatArray:
 
 
 def _within(hessian: FloatArray, slope: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    """(m,) minimizer, each amplitude that passes a bound held there."""
-    amplitudes: FloatArray = -np.asarray(np.linalg.solve(hessian, slope), dtype=np.float64)
+    """(s, m) minimizers of s quadratics (s, m, m) with slopes (s, m), each amplitude that passes a bound held
+    there."""
+    amplitudes = np.asarray(-np.linalg.solve(hessian, slope[..., None])[..., 0], dtype=np.float64)
+    for i in np.flatnonzero(((amplitudes < low) | (amplitudes > high)).any(axis=1)):
+        amplitudes[i] = _held_within(hessian[i], slope[i], low[i], high[i], amplitudes[i])
+    return amplitudes
+
+
+def _held_within(
+    hessian: FloatArray, slope: FloatArray, low: FloatArray, high: FloatArray, amplitudes: FloatArray
+) -> FloatArray:
+    """(m,) minimizer of one of them. amplitudes: (m,) that without bounds."""
     outside = (amplitudes < low) | (amplitudes > high)
-    if not outside.any():
-        return amplitudes
-    amplitudes[outside] = np.clip(amplitudes[outside], low[outside], high[outside])
+    held = np.where(outside, np.clip(amplitudes, low, high), amplitudes)
     free = ~outside
     for _ in range(slope.size):
         if not free.any():
             break
-        held = hessian[np.ix_(free, ~free)] @ amplitudes[~free]
-        amplitudes[free] = -np.linalg.solve(hessian[np.ix_(free, free)], slope[free] + held)
-        outside = free & ((amplitudes < low) | (amplitudes > high))
+        pull = hessian[np.ix_(free, ~free)] @ held[~free]
+        held[free] = -np.linalg.solve(hessian[np.ix_(free, free)], slope[free] + pull)
+        outside = free & ((held < low) | (held > high))
         if not outside.any():
             break
-        amplitudes[outside] = np.clip(amplitudes[outside], low[outside], high[outside])
+        held[outside] = np.clip(held[outside], low[outside], high[outside])
         free &= ~outside
-    return amplitudes
+    return held

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 
 from doe_kc.axle.model import Axle
@@ -15,6 +15,7 @@ from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.convergence import at_optimum, both_optima, converged_fit, fit_to_errors
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
+from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
     fit_discrepancy,
@@ -22,13 +23,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     without_own_discrepancy,
 )
-from doe_kc.discovery.search.laws import (
-    may_open,
-    with_best_laws,
-    with_free_laws,
-    with_free_shapes,
-    with_friction_laws,
-)
+from doe_kc.discovery.search.laws import may_open, with_best_laws, with_free_laws, with_friction_laws
 from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -148,6 +143,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     tuned, prior, current = state.tuned, state.prior, state.current
     model, first = tuned.model, None
     steps, loops_known, laws_tried = list(state.steps), False, False
+    compared: Set[str] = frozenset()
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
     tried = {_laws(current)}
@@ -180,16 +176,16 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_loops(current, added, model.axle, workers, known=loops_known)
-            laws_tried = False
+            laws_tried, compared = False, frozenset()
         elif (anew := refit_anew(current, workers)) is not None:
             current = anew
             del anew
         elif not laws_tried:
             laws_tried = True
             if laws_open:
-                opened = with_free_laws(current, model.likelihood, workers)
+                opened, compared = with_free_laws(current, model.likelihood, workers)
             else:
-                opened = with_friction_laws(current, model.likelihood, shares, workers)
+                opened, compared = with_friction_laws(current, model.likelihood, shares, workers)
             if opened is current:
                 if not laws_open:
                     break
@@ -199,7 +195,10 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             del opened
         else:
             break
+        count = len(current.model.members)
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
+        if len(current.model.members) != count:  # laws were compared beside an effect that has gone
+            compared = frozenset()
         screened = _latest(screened, decision, current)
         del decision
         if len(current.model.members) != 1:
@@ -208,7 +207,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         first = first.without_derivatives
     decision = decision.without_trials
     current = at_optimum(with_traces_anew(current), workers)
-    current = with_best_laws(current, workers)
+    current = with_best_laws(current, workers, compared)
     before_shapes = current.evidence
     current, other = with_free_shapes(current, workers)
     shape_loss = before_shapes - current.evidence

@@ -62,7 +62,7 @@ def size_fit(search: EffectSearch) -> SizeFit:
     """
     last, exact = with_friction_traces(search.with_law_discrepancy), search.with_effects
     signals, scales = effect_signals(exact), systematic_scales(last)
-    own = last.model.with_likelihood(with_systematic_errors(exact.model.likelihood, scales))
+    own = with_systematic_errors(exact.model.likelihood, scales)
     settled, shares = fit_discrepancy(rewhitened_fit(last, own), signals)
     own_fit = with_own_scatter(chord_fit(settled, settled.model))
     if not own_fit.converged:

@@ -30,7 +30,7 @@ def systematic_scales(fit: Fit) -> dict[SystematicError, float]:
 
     def evidence(scales: Mapping[SystematicError, float]) -> float:
         errors = with_systematic_errors(fit.model.likelihood, scales)
-        return marginal(rewhitened_fit(fit, fit.model.with_likelihood(errors)))
+        return marginal(rewhitened_fit(fit, errors))
 
     most = evidence(scales)
     for kind in SYSTEMATIC_ERRORS:

@@ -37,9 +37,9 @@ def test_only_what_the_effect_changes_is_widened() -> None:
     (friction,) = library("steering_friction")
     z = np.append(model("friction").centre, [0.8, 0.0])
     found = at("friction", friction, z)
-    wide = with_discrepancy(found.model, effect_signals(found), [SHARE])
+    wide = with_discrepancy(found.model.likelihood, effect_signals(found), [SHARE])
     before = {(c.load_case, c.response, c.side, c.branches): c for c in found.model.likelihood.curves}
-    for curve in wide.likelihood.curves:
+    for curve in wide.curves:
         was = before[curve.load_case, curve.response, curve.side, curve.branches]
         grown = np.trace(curve.root @ curve.root.T) / np.trace(was.root @ was.root.T)
         if (curve.load_case, curve.response, curve.branches) == ("steer", "toe", "half_width"):
@@ -53,7 +53,7 @@ def test_a_change_of_scale_is_no_shape() -> None:
     z = np.append(model("named").centre, [1.0, 1.0])
     found = at("named", hub, z)
     made = found.residual - model("named").residual(z[:-2])
-    wide = with_discrepancy(found.model, effect_signals(found), [SHARE]).likelihood
+    wide = with_discrepancy(found.model.likelihood, effect_signals(found), [SHARE])
     for (curve, place), now in zip(found.model.likelihood.slices(), wide.curves, strict=True):
         if (curve.load_case, curve.response, curve.branches) == ("lateral", "camber", "mean"):
             change = curve.root @ made[place]
@@ -112,9 +112,8 @@ def test_other_errors_change_the_units_of_everything() -> None:
     residual = sided.residual(z)
     jacobian = sided.jacobian(np.zeros((residual.size, z.size - 2)))
     found = Fit(sided, z, residual, jacobian, cost_of(sided, z, residual), 1, True)
-    wide = with_discrepancy(sided, effect_signals(found), [SHARE])
-    moved = rewhitened_fit(found, wide)
-    np.testing.assert_allclose(wide.residual(z), moved.residual, rtol=0, atol=1e-8)
+    moved = rewhitened_fit(found, with_discrepancy(sided.likelihood, effect_signals(found), [SHARE]))
+    np.testing.assert_allclose(moved.model.residual(z), moved.residual, rtol=0, atol=1e-8)
     assert np.abs(moved.residual - residual).max() > 0.1
-    back = rewhitened_fit(moved, wide.with_likelihood(sided.likelihood))
+    back = rewhitened_fit(moved, sided.likelihood)
     np.testing.assert_allclose(back.residual, residual, rtol=0, atol=1e-8)

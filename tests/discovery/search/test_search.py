@@ -26,7 +26,7 @@ def test_where_nothing_is_accepted_laws_are_tried_and_then_all_others(
     """A steering friction of 210 N by a third law was answered as 322 N and a compliance of its mount."""
     asked = []
     monkeypatch.setattr(decision_module, "untried", lambda *_: asked.append("others") or [])
-    monkeypatch.setattr(search_module, "with_free_laws", lambda fit, *_: asked.append("laws") or fit)
+    monkeypatch.setattr(search_module, "with_free_laws", lambda fit, *_: (asked.append("laws") or fit, set()))
     found = search(model("pair"), library(known), DiscoveryWorkers())
     members = found.with_law_discrepancy.model.members
     assert [h.effect for h in members] == [known], "the car has both, the library one"
@@ -35,7 +35,7 @@ def test_where_nothing_is_accepted_laws_are_tried_and_then_all_others(
 
 def test_a_step_whose_laws_gain_nothing_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """It stood twice in the picture of the evidence: before its other effects were tried, and with them."""
-    monkeypatch.setattr(search_module, "with_free_laws", lambda fit, *_: fit)
+    monkeypatch.setattr(search_module, "with_free_laws", lambda fit, *_: (fit, set()))
     found = search(model("pair"), library("steering_friction"), DiscoveryWorkers())
     assert [[h.effect for h in step.members] for step in found.steps] == [[], ["steering_friction"]]
     assert [step.accepted for step in found.steps] == [True, False]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
-from doe_kc.discovery.search.laws import open_laws
+from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.verdict.mixture import spread_between_laws
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery

@@ -1,0 +1,114 @@
+"""Fits with frictions of free shape.
+
+Which effects are there, laws of few numbers tell as well as any; how large they are, they do not. A motion
+that stays in presliding is a spring by the law's shape, and a compliance beside it takes up what that shape
+lacks. Closed forms that noise does not tell apart, or nearly so, then give sizes that differ by more than any
+of them allows, and their evidence measures which is the least wrong one. So sizes are estimated beside
+frictions of free shape, of which closed forms are special cases: the discrepancy of the law at its source,
+as numbers of the fit. A friction that is a trace has a closed form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.discovery.search.law_variants import default_law, frictions, open_laws, with_law
+from doe_kc.discovery.search.refits import more_than_trace
+from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, FREE_TRAVELS, NOISE_CHANCE
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
+from doe_kc.effects._friction import SHARES, TRAVEL
+from doe_kc.effects.hypothesis import Hypothesis
+
+
+def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> tuple[Fit, Fit | None]:
+    """The fit with every friction by the law of most numbers, where sizes may hang on it; and the other one
+    of both, None where no such law fits as well.
+
+    Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
+    as a law with drifting loops could make it, the fit stays as it is. It begins from other travels too where
+    the first ends above the closed law, which it could all but follow: on a car with two frictions and rubber
+    that left a contrast of 4.3 standard deviations, and 10 of ln likelihood. Nor is it taken where it leaves
+    what the closed law explains: one of the same cost left a contrast of 6.6.
+    """
+    start = with_most_numbers(current, frictions_to_free(current))
+    if start.model is current.model:
+        return current, None
+    explained = current.residual_map.chance >= NOISE_CHANCE
+
+    def explains(refit: Fit) -> bool:
+        return not explained or refit.residual_map.chance >= NOISE_CHANCE
+
+    refits = workers.fits(
+        [start, *_other_travels(start)],
+        "opening laws",
+        enough=lambda refit: refit is not None and refit.cost <= current.cost and explains(refit),
+    )
+    near = [f for f in refits if f is not None and f.cost <= current.cost + 2.0 * FREE_SHAPE_LOSS]
+    if not near:
+        return current, None
+    best = min(near, key=lambda f: (not explains(f), f.cost))
+    return (best, current) if explains(best) else (current, best)
+
+
+def with_most_numbers(current: Fit, members: Sequence[Hypothesis]) -> FitStart:
+    """Where a fit with the law of most numbers for some members begins."""
+    model, z = current.model, current.z
+    for member in members:
+        for law in open_laws(member)[-1:]:
+            model, z = with_law(model, z, member, law)
+    return FitStart(model, z, current)
+
+
+def frictions_to_free(current: Fit) -> list[Hypothesis]:
+    """Frictions of the set on whose law sizes hang: all that are more than traces where it has other effects
+    of the car too, else rubber alone, whose share is a mean of bushings that differ."""
+    free = [h for h in frictions(current) if len(EFFECTS[h.effect].variants(default_law(h))) > 1]
+    others = [h for h in current.model.members if h not in free and not EFFECTS[h.effect].on_rig]
+    if not others:
+        return [h for h in free if not EFFECTS[h.effect].laws]
+    return [h for h in free if _more_than_trace(current, h)]
+
+
+def _more_than_trace(current: Fit, member: Hypothesis) -> bool:
+    amplitudes, sds = amplitude_estimates(current, member)
+    numbers = zip(member.sizes, np.abs(amplitudes).tolist(), sds.tolist(), strict=True)
+    return more_than_trace([(size, a, sd) for size, a, sd in numbers if not size.shape])
+
+
+def best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:
+    """The fit with an opened law; where noise does not explain what it leaves, the best of several starts.
+
+    The sliders of a free backbone make the cost rough. From Duhem's law, 235 N over 0.81 mm, a friction of
+    two stages ended 160 of ln evidence behind the fit from 0.7 of that travel: 224.7 N over 0.38 mm, the
+    car's.
+    """
+    fits = workers.fits(
+        [start, *_other_travels(start)],
+        "opening laws",
+        enough=lambda refit: refit is not None and refit.residual_map.chance >= NOISE_CHANCE,
+    )
+    return max((f for f in fits if f is not None), key=lambda f: f.evidence, default=None)
+
+
+def _other_travels(start: FitStart) -> list[FitStart]:
+    """The same start with other travels of the frictions of free shape; none without one."""
+    places = [
+        (place.start + i, size.log_sd)
+        for h, place in start.model.places()
+        if any(size.key == SHARES for size in h.sizes)
+        for i, size in enumerate(h.sizes)
+        if size.key == TRAVEL
+    ]
+    out = []
+    for factor in FREE_TRAVELS if places else ():
+        z = start.z.copy()
+        for place, log_sd in places:
+            z[place] += np.log(factor) / log_sd
+        out.append(replace(start, z=z))
+    return out

@@ -1,0 +1,47 @@
+"""The laws that a member of a set can have, and the set with another one of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
+
+
+def open_laws(member: Hypothesis) -> list[Hypothesis]:
+    """The member by laws with numbers of their own beyond those that it has, fewest first."""
+    variants = EFFECTS[member.effect].variants(default_law(member))
+    more = [v for v in variants if len(v.sizes) > len(member.sizes)]
+    return sorted(more, key=lambda v: len(v.sizes))
+
+
+def other_laws(member: Hypothesis) -> list[Hypothesis]:
+    """The member by every other law of at most one number more than the default one has."""
+    default = default_law(member)
+    variants = EFFECTS[member.effect].variants(default)
+    return [v for v in variants if v.law != member.law and len(v.sizes) <= len(default.sizes) + 1]
+
+
+def default_law(member: Hypothesis) -> Hypothesis:
+    """The member by the default law of its effect."""
+    return replace(member, law="", sizes=EFFECTS[member.effect].sizes) if member.law else member
+
+
+def frictions(current: Fit) -> list[Hypothesis]:
+    """Members of the set that are frictions."""
+    return [h for h in current.model.members if EFFECTS[h.effect].frictional]
+
+
+def with_law(
+    model: EffectModel, z: FloatArray, member: Hypothesis, law: Hypothesis
+) -> tuple[EffectModel, FloatArray]:
+    """The model with a member by another law, and a point z in it; numbers that are new at typical."""
+    known = model.sizes_at(z, member)
+    own = [known.get(s.name, 0.0) for s in law.sizes]
+    place = next(p for h, p in model.places() if h == member)
+    return model.with_member(member, law), np.concatenate([z[: place.start], own, z[place.stop :]])
