@@ -113,17 +113,31 @@ class Likelihood(FieldsOnly):
             start += curve.size
 
 
+class Rewhitening:
+    """From units of one likelihood's errors to those of another of the same data, kept for many rows."""
+
+    def __init__(self, before: Likelihood, after: Likelihood) -> None:
+        pairs = [] if before is after else zip(before.groups, after.groups, strict=True)
+        self._changes = [
+            (old.place, new.inverses @ np.array([c.root for c in old.curves]))
+            for old, new in pairs
+            if any(a is not b for a, b in zip(old.curves, new.curves, strict=True))
+        ]
+
+    def of(self, rows: FloatArray) -> FloatArray:
+        """(M, ...) in the other units, from (M, ...); the same object where no errors differ."""
+        if not self._changes:
+            return rows
+        out = rows.copy()
+        for place, change in self._changes:
+            k, n, _ = change.shape
+            out[place] = (change @ rows[place].reshape(k, n, -1)).reshape(k * n, *rows.shape[1:])
+        return out
+
+
 def rewhitened(rows: FloatArray, before: Likelihood, after: Likelihood) -> FloatArray:
     """(M, ...) of the same data, from units of one likelihood's errors to those of another."""
-    if before is after:
-        return rows
-    out = rows.copy()
-    for old, new in zip(before.groups, after.groups, strict=True):
-        if any(a is not b for a, b in zip(old.curves, new.curves, strict=True)):
-            change = new.inverses @ np.array([c.root for c in old.curves])
-            k, n, _ = change.shape
-            out[old.place] = (change @ rows[old.place].reshape(k, n, -1)).reshape(k * n, *rows.shape[1:])
-    return out
+    return Rewhitening(before, after).of(rows)
 
 
 def record_likelihood(axle: Axle, measurement: Measurement) -> Likelihood:

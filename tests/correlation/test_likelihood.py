@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.correlation.curve_data import CALIBRATION, RIG_HYSTERESIS
-from doe_kc.correlation.likelihood import build_likelihood, record_likelihood, rewhitened
+from doe_kc.correlation.likelihood import Rewhitening, build_likelihood, record_likelihood, rewhitened
 from doe_kc.targets import CharacteristicOptions, CurveOptions, build_targets
 from tests.correlation.cases import measured, outcome, problem, truth
 
@@ -114,3 +114,6 @@ def test_rows_keep_their_curves_between_errors() -> None:
     np.testing.assert_allclose(found[:curves], rows[:curves] / 2.0)
     np.testing.assert_array_equal(found[curves:], rows[curves:])
     assert rewhitened(rows, before, before) is rows
+    units = Rewhitening(before, wider)
+    for column in rows.T:
+        np.testing.assert_array_equal(units.of(column), rewhitened(column, before, wider))

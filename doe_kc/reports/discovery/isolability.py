@@ -10,7 +10,7 @@ from string import ascii_uppercase
 
 import numpy as np
 
-from doe_kc.correlation.likelihood import rewhitened
+from doe_kc.correlation.likelihood import Rewhitening
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.thresholds import ALIKE_CORRELATION
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
@@ -108,8 +108,8 @@ def _test(status: HypothesisStatus) -> str:
 def _changes(discovery: Discovery) -> dict[str, FloatArray]:
     """(M,) change of each hypothesis as screened last, in units of the final model's errors."""
     search = discovery.search
-    errors = search.with_law_discrepancy.model.likelihood, discovery.fitted.model.likelihood
-    return {s.hypothesis.name: rewhitened(s.change, *errors) for s in search.screened}
+    units = Rewhitening(search.with_law_discrepancy.model.likelihood, discovery.fitted.model.likelihood)
+    return {s.hypothesis.name: units.of(s.change) for s in search.screened}
 
 
 def group_name(place: int) -> str:
