@@ -164,18 +164,32 @@ def read_axle(path: Path) -> Axle:
 
 def axle_from_document(document: Mapping[str, Any], *, source: str, folder: Path | None = None) -> Axle:
     """Axle from the parsed file; `source` names it in messages. folder: that a type file is seen from."""
-    file, axle = _plain_axle(document, folder or Path(), source)
-    if file.right:
-        axle = with_values(axle, {f"right.{path}": v for path, v in file.right.items()}, source=source)
-    for ident, options in file.effects.items():
-        refuse_on_rig(ident, source)
-        axle = apply_effect(axle, ident, options, source=source)
+    file, axle = plain_axle(document, source=source, folder=folder)
+    axle = apply_effects(axle, file.effects, source=source)
     check_geometry(axle, source)
     check_freedoms(axle, axle.topology.structure, source)
     return axle
 
 
-def _plain_axle(document: Mapping[str, Any], folder: Path, source: str) -> tuple[AxleFile, Axle]:
+def apply_effects(axle: Axle, tables: Mapping[str, Mapping[str, Any]], *, source: str) -> Axle:
+    """The axle with the effects of a file's tables, in their order."""
+    for ident, options in tables.items():
+        refuse_on_rig(ident, source)
+        axle = apply_effect(axle, ident, options, source=source)
+    return axle
+
+
+def plain_axle(
+    document: Mapping[str, Any], *, source: str, folder: Path | None = None
+) -> tuple[AxleFile, Axle]:
+    """The checked file, and its axle without effects, which may have a geometry that no car has."""
+    file, axle = _symmetric_axle(document, folder or Path(), source)
+    if not file.right:
+        return file, axle
+    return file, with_values(axle, {f"right.{path}": v for path, v in file.right.items()}, source=source)
+
+
+def _symmetric_axle(document: Mapping[str, Any], folder: Path, source: str) -> tuple[AxleFile, Axle]:
     """The checked file, and its axle without the right side's own values and effects."""
     axle_type = read_axle_type(str(document.get("type", DEFAULT_TYPE)), folder, source=source)
     file = validate(AxleFile, _with_springs(document, axle_type.structure), source)

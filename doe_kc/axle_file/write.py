@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping, MutableMapping
+from copy import deepcopy
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -26,7 +27,7 @@ from doe_kc.axle_file.places import (
     put_entry,
     restore_entry,
 )
-from doe_kc.axle_file.read import axle_from_document
+from doe_kc.axle_file.read import apply_effects, axle_from_document, plain_axle
 from doe_kc.effects import EFFECTS, effect_id
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.files import read_bytes, read_toml
@@ -152,9 +153,15 @@ def _read(document: tomlkit.TOMLDocument) -> Axle:
     return axle_from_document(document.unwrap(), source="axle")
 
 
+def _read_unchecked(document: tomlkit.TOMLDocument) -> Axle:
+    """As it is on the way to another axle: its geometry and freedoms do not matter yet."""
+    file, plain = plain_axle(document.unwrap(), source="axle")
+    return apply_effects(plain, file.effects, source="axle")
+
+
 def _wrong(document: tomlkit.TOMLDocument, axle: Axle) -> list[str]:
     """Internal values that do not read as wanted, the left side's first."""
-    now = _read(document).values
+    now = _read_unchecked(document).values
     return sorted((n for n, v in axle.values.items() if now.get(n) != v), key=lambda n: n.endswith("@R"))
 
 
@@ -164,6 +171,8 @@ def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
     own = {name: own_place(name, axle.topology.structure) for name in axle.values}
     for _ in range(WRITE_CORRECTIONS):
         wrong = [n for n in _wrong(document, axle) if n not in drivers and own[n]]
+        if not wrong:
+            break
         left = [n for n in wrong if not n.endswith("@R")]
         for name in left or wrong:
             _add_point(document, own[name])
@@ -178,7 +187,7 @@ def _fit(document: tomlkit.TOMLDocument, axle: Axle) -> bool:
 def _add_point(document: tomlkit.TOMLDocument, place: Place) -> None:
     """A hardpoint that the file leaves to be derived, as it is read without it."""
     if place[:1] == ("hardpoints",) and place[1] not in document["hardpoints"]:
-        now = _read(document)
+        now = _read_unchecked(document)
         document["hardpoints"][place[1]] = [
             parameter_value(now, f"{place[1]}.{axis}") for axis in COORDINATES
         ]
@@ -211,14 +220,14 @@ def _fit_without_an_effect(document: tomlkit.TOMLDocument, axle: Axle, source: s
 def _drivers(document: tomlkit.TOMLDocument) -> dict[str, list[Place]]:
     """Internal value -> options of effects that it moves with, found by changing each a little; first the one
     that moves the fewest others."""
-    axle = _read(document)
-    base, effects = axle.values, document.unwrap().get("effects", {})
+    file, plain = plain_axle(document.unwrap(), source="axle")
+    axle = apply_effects(plain, file.effects, source="axle")
     moving: list[tuple[Place, list[str]]] = []
-    for place, value in list(option_places(effects, places_of(axle))):
-        trial = document.unwrap()
+    for place, value in option_places(file.effects, places_of(axle)):
+        trial = {"effects": deepcopy(file.effects)}
         put_entry(trial, place, value * 1.0001 if value else 1e-4)
-        now = axle_from_document(trial, source="axle").values
-        moving.append((place, [name for name, moved in now.items() if moved != base[name]]))
+        now = apply_effects(plain, trial["effects"], source="axle").values
+        moving.append((place, [name for name, moved in now.items() if moved != axle.values[name]]))
     out: dict[str, list[Place]] = {}
     for place, names in sorted(moving, key=lambda item: len(item[1])):
         for name in names:

@@ -10,7 +10,7 @@ import pytest
 
 from doe_kc.axle import design_parameters, parameter_value
 from doe_kc.axle_file import read_axle
-from doe_kc.axle_file.read import axle_from_document
+from doe_kc.axle_file.read import apply_effects, axle_from_document, plain_axle
 from doe_kc.ground.errors import InputError
 from tests.reference import EXAMPLE, nominal
 
@@ -375,3 +375,13 @@ def test_a_steering_input_drives_sixty_millimetres_of_rack_unless_the_file_says_
     document["steering"]["rack_mm_per_rev"] = 48.0
     axle = axle_from_document(document, source="test")
     assert axle.load_cases["steer"].amplitude == pytest.approx(60.0 / 48.0 * 360.0)
+
+
+def test_effects_of_a_file_come_after_its_plain_axle() -> None:
+    document = tomllib.loads(TEXT) | {
+        "right": {"llr.Fx": 1.2},
+        "effects": {"hub_compliance": {}, "asymmetry": {"LLR_R": 1.5}},
+    }
+    file, plain = plain_axle(document, source="test")
+    assert (plain.effects, plain.values["llr.Fx@R"]) == ({}, 1.2)
+    assert apply_effects(plain, file.effects, source="test") == axle_from_document(document, source="test")

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle import Axle, with_values
-from doe_kc.axle_file import read_axle
+from doe_kc.axle_file import read, read_axle
 from doe_kc.axle_file.write import unit_beside, write_axle
 from doe_kc.effects import apply_effect
 from doe_kc.effects.hypothesis import Hypothesis
@@ -96,6 +96,17 @@ def test_several_places_share_a_table(tmp_path: Path) -> None:
     assert text.count("[effects.") == 1
     assert set(tomllib.loads(text)["effects"]["bushing_preload"]) == {"LLR", "UPB"}
     assert (again.values, again.effects) == (axle.values, axle.effects)
+
+
+def test_options_of_effects_are_tried_without_checks_of_the_axle(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether its bodies are guided matters only once it reads as wanted."""
+    axle = retuned(apply_effect(read_axle(AXLE), "rubber_hysteresis", {}, source="test"), 4)
+    checked: list[Axle] = []
+    monkeypatch.setattr(read, "check_freedoms", lambda axle, structure, source: checked.append(axle))
+    write_axle(axle, AXLE, tmp_path / "new.toml")
+    assert [dict(each.values) for each in checked] == [dict(axle.values)]
 
 
 def test_a_place_is_added_to_a_table_that_the_file_has(tmp_path: Path) -> None:
