@@ -186,7 +186,8 @@ def _located(pairs: list[tuple[TrueEffect, Named]]) -> tuple[int, int]:
 
 def _estimates(pairs: list[tuple[TrueEffect, Named]]) -> Iterator[Estimate]:
     for t, n in pairs:
-        true = numbers(t.id, {name: (value, 0.0) for name, value in t.parameters.items()})
+        there = t.parameters_at(n.location or "")
+        true = numbers(t.id, {name: (value, 0.0) for name, value in there.items()})
         for name, (value, sd) in numbers(t.id, n.parameters).items():
             if name in true:
                 limit, shown = n.limits.get(name), name not in n.unshown

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from statistics import geometric_mean
+
+from doe_kc.effects.rubber_hysteresis import REAR, REST
 
 DELETED = "library_deleted"
 """The suite whose hidden effect the analyser's library does not have."""
@@ -12,13 +15,28 @@ DELETED = "library_deleted"
 
 @dataclass(frozen=True)
 class TrueEffect:
-    """See `hidden.Hidden`. location: "" where there is no choice."""
+    """See `hidden.Hidden`. location: "" where there is no choice. of_bushings: parameter -> bushing -> its
+    own, where they differ."""
 
     id: str
     size: float
     location: str
     parameters: Mapping[str, float]
     approximate: bool
+    of_bushings: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+    def parameters_at(self, location: str) -> dict[str, float]:
+        """Its parameters as they are where an answer says: of the bushings there, where they differ, the
+        geometric mean, since an analyser's number is the middle of factors."""
+        own = {
+            name: geometric_mean(value for bushing, value in each.items() if _is_at(bushing, location))
+            for name, each in self.of_bushings.items()
+        }
+        return {**self.parameters, **own}
+
+
+def _is_at(bushing: str, location: str) -> bool:
+    return location in ("", bushing) or (location == REST and bushing not in REAR)
 
 
 @dataclass(frozen=True)
@@ -55,7 +73,15 @@ def read_truth(key: str) -> Truth:
     data = tomllib.loads(key)
     effects, small = (
         tuple(
-            TrueEffect(e["id"], e["size"], e["location"], e["parameters"], e["approximate"]) for e in data[of]
+            TrueEffect(
+                e["id"],
+                e["size"],
+                e["location"],
+                e["parameters"],
+                e["approximate"],
+                {n: e["options"][n] for n in e["parameters"] if isinstance(e["options"].get(n), Mapping)},
+            )
+            for e in data[of]
         )
         for of in ("effects", "clutter")
     )

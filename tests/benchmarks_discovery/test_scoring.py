@@ -319,3 +319,15 @@ def test_every_suite_has_its_place_in_the_table() -> None:
     truths = [_truth(f"case_{i}", suite, "hub_compliance") for i, suite in enumerate(ALL_SUITES)]
     found = [score(t, read_answer(pretend.perfect(t))) for t in reversed(truths)]
     assert [s for s in groups(found) if s in ALL_SUITES] == list(ALL_SUITES)
+
+
+@pytest.mark.parametrize(("location", "share"), [("LLR", 0.4), ("REST", 0.2), ("", 0.2 * 2.0 ** (1 / 3))])
+def test_rubber_is_compared_with_the_bushings_that_were_told(location: str, share: float) -> None:
+    """The rear bushing's own share, 0.4, was taken for wrong where that of all was 0.25."""
+    own = {"share": {"LLR": 0.4, "LLF": 0.1, "UPB": 0.4}}
+    effect = TrueEffect("rubber_hysteresis", 1.0, "", {"share": 0.25}, True, own)
+    told = {"id": "rubber_hysteresis", "location": location, "probability": 0.99}
+    told["parameters"] = {"share": {"value": share, "sd": 0.01}}
+    truth = Truth("x", "rubber", (effect,), (), "", frozenset())
+    found = score(truth, read_answer({"verdict": "named", "effects": [told]}), clear(truth))
+    assert [e.z for e in found.estimates] == [pytest.approx(0.0, abs=1e-9)]

@@ -12,15 +12,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import expit
 
 from doe_kc.discovery.fit import Fit, rewhitened_fit, size_weights
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
-from doe_kc.discovery.screening.score_test import score_tests
-from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.baseline import with_friction_traces
-from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_discrepancy import (
     EffectSignal,
     balanced_correlation,
@@ -48,11 +44,11 @@ class SizeFit:
     fit: Fit
     """Its amplitudes are the sizes."""
     law_shifts: FloatArray
-    """(d + m, k) by how much the unknowns shift for each shape that the law of a member may have besides, or
-    that of a compliance which may be in the car too, one standard deviation of it."""
+    """(d + m, k) by how much the unknowns shift for each shape that the law of a member may have besides,
+    one standard deviation of it."""
 
     def law_sd(self, member: Hypothesis) -> FloatArray:
-        """(s,) standard deviations of a member's sizes by the laws of all compliances."""
+        """(s,) standard deviations of a member's sizes by the laws of all members."""
         shifts = size_weights(self.fit.model, member) @ self.law_shifts
         return np.asarray(np.linalg.norm(shifts, axis=1))
 
@@ -71,8 +67,7 @@ def size_fit(search: EffectSearch) -> SizeFit:
     own_fit = with_own_scatter(chord_fit(settled, settled.model))
     if not own_fit.converged:
         own_fit = optimum(own_fit.model, own_fit.z)
-    shifts = law_shifts(own_fit, signals, shares), absent_law_shifts(own_fit, search)
-    return SizeFit(own_fit, np.hstack(shifts))
+    return SizeFit(own_fit, law_shifts(own_fit, signals, shares))
 
 
 def law_shifts(fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, float]) -> FloatArray:
@@ -88,33 +83,6 @@ def law_shifts(fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, f
         if not signal.friction
     ]
     return _shifts(fit, [np.concatenate(law) for law in changes if law])
-
-
-def absent_law_shifts(fit: Fit, search: EffectSearch) -> FloatArray:
-    """(d + m, k) see `SizeFit`, of the compliances that the set does not have, each by its chance of being in
-    the car. fit: the last set's, in other errors.
-
-    Re-tuning takes up the linear part of one that the records do not show, so that no set tells; what is
-    left of its law shifts the others. A mount of the rack that stiffens by 14 % made a hub beside it 4
-    standard deviations softer in toe, the mount in the set or not.
-    """
-    last, model = search.with_law_discrepancy.model, fit.model
-    absent = [s for s in search.screened if _yields(s) and compatible(model, s.hypothesis)]
-    there = score_tests(fit, rewhitened_screenings(absent, last.likelihood, model.likelihood))
-    odds = [s.gain + search.prior.log_odds(model.members, s.hypothesis) for s in there]
-    changes = []
-    for s, log in zip(there, odds, strict=True):
-        share = LAW_OPEN * float(np.sqrt(expit(min(log, 0.0))))  # likelier than not, it would be in the set
-        changes.append(
-            np.concatenate([share * curve.root @ s.change[at] for curve, at in model.likelihood.slices()])
-        )
-    return _shifts(fit, changes)
-
-
-def _yields(screened: Screened) -> bool:
-    """Whether a hypothesis is a compliance of the car that has equilibria."""
-    sizes = screened.hypothesis.sizes
-    return not screened.failed and any(size.growth == "compliance" for size in sizes)
 
 
 def _shifts(fit: Fit, changes: Sequence[FloatArray]) -> FloatArray:
