@@ -16,7 +16,7 @@ from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
 from typing import Any, ParamSpec, TypeVar
 
-from doe_kc.campaign.shared_arguments import called_with, shared_arguments
+from doe_kc.campaign.shared_arrays import called_with, shared_arguments
 from doe_kc.ground.threads import find_libraries, limit_process
 
 P = ParamSpec("P")
@@ -58,7 +58,7 @@ class Processes(Executor):
             if arguments is None:
                 return self._pool.submit(partial(_guarded, fn), *args, **kwargs)
             try:
-                future = self._pool.submit(partial(_guarded, called_with), fn, arguments)
+                future = self._pool.submit(partial(_guarded, called_with), fn, arguments.content)
             except BaseException:
                 arguments.close()
                 raise

@@ -1,8 +1,9 @@
-"""Large arrays of a task by way of shared memory, and all else through the pipe."""
+"""Large arrays of a task and its result by way of shared memory, and all else through the pipe."""
 
 from __future__ import annotations
 
 import os
+import pickle
 import sys
 from collections.abc import Mapping
 from concurrent.futures.process import BrokenProcessPool
@@ -14,9 +15,15 @@ import numpy as np
 import pytest
 
 import doe_kc.campaign.processes as processes_module
-import doe_kc.campaign.shared_arguments as shared_module
+import doe_kc.campaign.shared_arrays as shared_module
 from doe_kc.campaign.processes import Processes
-from doe_kc.campaign.shared_arguments import SHARED_FROM, SharedArguments, called_with, shared_arguments
+from doe_kc.campaign.shared_arrays import (
+    SHARED_FROM,
+    SharedArguments,
+    SharedResult,
+    called_with,
+    shared_arguments,
+)
 from doe_kc.ground.typing import FloatArray
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere arguments go through the pipe")
@@ -33,13 +40,13 @@ REST = {"small": np.arange(3), "middle": np.ones(2000), "columns": np.asfortrana
 
 def test_a_task_gets_the_arguments_that_it_was_given() -> None:
     shared = shared_arguments((LARGE, REST), {"offset": 2.0})
-    assert shared is not None and len(shared.rest) < SHARED_FROM // 100
-    part, rest, _ = called_with(told, shared)
+    assert shared is not None and len(shared.content.rest) < SHARED_FROM // 100
+    part, rest, _ = called_with(told, shared.content)
     np.testing.assert_array_equal(part, LARGE[::1000] + 2.0)
     assert rest == told(LARGE.copy(), REST)[1]
     assert LARGE[0, 0] == 0.0
     shared.close()
-    assert not Path(shared.path).exists()
+    assert not Path(shared.content.memory.path).exists()
 
 
 def test_small_arguments_and_such_as_cannot_be_sent_are_left_to_the_pool() -> None:
@@ -84,7 +91,46 @@ def test_the_memory_of_a_task_goes_with_it(fails: bool, monkeypatch: pytest.Monk
             np.testing.assert_array_equal(future.result()[0], LARGE[::1000] + i)
     executor.shutdown()
     assert len(made) == 5
-    assert not any(Path(shared.path).exists() for shared in made)
+    assert not any(Path(shared.content.memory.path).exists() for shared in made)
+
+
+def doubled(large: FloatArray) -> dict[str, Any]:
+    return {"large": 2.0 * large, "columns": np.asfortranarray(3.0 * large), "word": "b"}
+
+
+def test_a_large_result_comes_back_in_the_memory_of_its_arguments() -> None:
+    shared = shared_arguments((LARGE,), {})
+    assert shared is not None
+    result = called_with(doubled, shared.content)
+    assert isinstance(result, SharedResult) and result.content.start >= LARGE.nbytes
+    sent = pickle.dumps(result)
+    assert len(sent) < SHARED_FROM // 100
+    received = pickle.loads(sent)
+    shared.close()
+    assert received["word"] == "b" and received["columns"].flags.f_contiguous
+    np.testing.assert_array_equal(received["large"], 2.0 * LARGE)
+    np.testing.assert_array_equal(received["columns"], 3.0 * LARGE)
+    executor = Processes(2)
+    for future in [executor.submit(doubled, LARGE + i) for i in range(4)]:
+        assert future.result()["large"].flags.writeable
+    executor.shutdown()
+    assert not open_files()
+
+
+def test_a_result_that_comes_too_late_spoils_no_other_file(tmp_path: Path) -> None:
+    """After the loss of a worker the memory's number may be that of another file; the pipe serves."""
+    shared, other = shared_arguments((LARGE,), {}), tmp_path / "other"
+    assert shared is not None
+    number = shared.number
+
+    def late(_: FloatArray) -> FloatArray:
+        with other.open("wb") as file:
+            os.dup2(file.fileno(), number)
+        return LARGE
+
+    assert called_with(late, shared.content) is LARGE
+    shared.close()
+    assert other.read_bytes() == b""
 
 
 def leave(_: FloatArray) -> None:
