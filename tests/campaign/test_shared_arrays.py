@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import pickle
 import sys
 from collections.abc import Mapping
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
+from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from typing import Any
 
@@ -103,9 +103,9 @@ def test_a_large_result_comes_back_in_the_memory_of_its_arguments() -> None:
     assert shared is not None
     result = called_with(doubled, shared.content)
     assert isinstance(result, SharedResult) and result.content.start >= LARGE.nbytes
-    sent = pickle.dumps(result)
+    sent = ForkingPickler.dumps(result)
     assert len(sent) < SHARED_FROM // 100
-    received = pickle.loads(sent)
+    received = ForkingPickler.loads(sent)
     shared.close()
     assert received["word"] == "b" and received["columns"].flags.f_contiguous
     np.testing.assert_array_equal(received["large"], 2.0 * LARGE)

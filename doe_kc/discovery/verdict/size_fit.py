@@ -89,8 +89,7 @@ def _shifts(fit: Fit, changes: Sequence[FloatArray]) -> FloatArray:
     """(d + m, MODES k) shifts of the unknowns by k changes (N,) of all curves, each bent by every mode."""
     if not changes:
         return np.zeros((fit.z.size, 0))
-    bent = np.hstack([_bent(fit, change) for change in changes])
-    return np.asarray(fit.covariance @ fit.jacobian.pulled(bent))
+    return np.asarray(fit.covariance @ fit.jacobian.pulled(_bent(fit, np.array(changes).T)))
 
 
 def _law_changes(fit: Fit, member: Hypothesis, signal: EffectSignal, share: float) -> list[FloatArray]:
@@ -114,14 +113,14 @@ def _yielding(fit: Fit, member: Hypothesis, compliant: NDArray[np.bool_]) -> tup
     return tuple(curve.root @ yielding[at] for curve, at in fit.model.likelihood.slices())
 
 
-def _bent(fit: Fit, change: FloatArray) -> FloatArray:
-    """(M, MODES) change of the residual where one of all curves (N,) goes by each mode over the input."""
-    out, modes = np.zeros((fit.residual.size, MODES)), _modes()
+def _bent(fit: Fit, changes: FloatArray) -> FloatArray:
+    """(M, MODES k) changes of the residual where k of all curves (N, k) go by each mode over the input."""
+    out, modes = np.zeros((fit.residual.size, MODES * changes.shape[1])), _modes()
     for group in fit.model.likelihood.groups:
         at = group.first.input / np.abs(group.first.input).max()
         along = np.array([np.interp(at, GRID, mode) for mode in modes]).T
-        own = change[group.place].reshape(len(group.curves), -1, 1)
-        out[group.place] = group.whitened(own * along)
+        own = changes[group.place].reshape(len(group.curves), at.size, -1, 1) * along[:, None]
+        out[group.place] = group.whitened(own.reshape(len(group.curves), at.size, -1))
     return np.where(fit.model.used[:, None], out, 0.0)
 
 
