@@ -18,6 +18,18 @@ best shares meet exponential, log-normal, Berg's, tanh, arctan and Duhem's backb
 within 0.3 % rms of the limit; five sliders, in ratios of 2.5, within 1.2 %."""
 
 
+IWAN_ELEMENTS = 8
+"""Elements of a dry friction whose strengths are alike."""
+
+
+def iwan_yields(count: int = IWAN_ELEMENTS) -> FloatArray:
+    """(count,) yield displacements over limit / initial stiffness of elements of equal strength whose virgin
+    curve is nearly exponential: mid-quantiles of a gamma law of shape 2."""
+    from scipy.special import gammaincinv
+
+    return np.asarray(gammaincinv(2.0, (np.arange(count) + 0.5) / count))
+
+
 def normal_quantiles(count: int) -> FloatArray:
     """(count,) mid-quantiles of the standard normal distribution."""
     return np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count)])

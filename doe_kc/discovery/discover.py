@@ -52,9 +52,10 @@ def discover(
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
     pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper(search.with_law_discrepancy))
+    pending = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if compared else None
     members = findings(search, compared)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
-    predictions = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if relevant else ()
+    predictions = pending() if pending is not None and relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
     explained = adequacy(residual_map, predictions)
     relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy, explained)

@@ -221,9 +221,9 @@ laws that were chosen. As `LAW_WINDOW`: on a car with five effects they cost 1."
 FEW_CONTRASTS = 1.1
 """Mean square of the contrasts that remain, up to which single ones stand out of noise and not all: a law
 that a member lacks. Noise alone, with the discrepancy of laws among the errors, leaves 0.4 to 0.9."""
-FREE_TRAVELS = (0.5, 0.7, 1.4)
-"""times the travel before the law was opened, other starts of a friction of free shape. Its sliders stand in
-ratios of 1.4 to 2.3, so that shares and travel move from one of them to the next."""
+FREE_TRAVELS = (0.7, 1.4)
+"""times the travel of the backbone nearest to the law before, other starts of a friction of free shape. Its
+sliders stand in ratios of 1.4 to 2.3, so that shares and travel move from one of them to the next."""
 EFFECTS_MOST = 10
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six; rubber in two
 groups of bushings and a roll technique make them eight, and beside them come traces. With 6, two of 18 cars

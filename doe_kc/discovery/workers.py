@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from contextlib import closing
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, as_completed, wait
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -111,15 +110,19 @@ class DiscoveryWorkers:
         what: str,
         *,
         derivatives: Callable[[Fit], bool] = lambda _: True,
-        enough: Callable[[Fit | None], bool] = lambda _: False,
+        enough: Callable[[Fit | None], bool] | None = None,
     ) -> list[Fit | None]:
         """Fits from several starts, None where one has no equilibrium.
 
         They are of the very models of `starts`, wherever they were computed: whether two fits are to the same
         errors is asked by identity. derivatives: whether a fit keeps its own, see `Fit.without_derivatives`.
-        enough: whether the fit from the first start will do; then that alone is given. Workers begin with the
-        others meanwhile, which is for nothing then.
+        enough: whether the fit from the first start will do; then that alone is given. It is done before the
+        others are begun: they take up workers longer than it does, and nothing stops them.
         """
+        if enough is not None:
+            first = self.fits(starts[:1], what, derivatives=derivatives)
+            others = [] if enough(first[0]) else starts[1:]
+            return first + self.fits(others, what, derivatives=derivatives)
         keys = [_fit_key(start) for start in starts]
         self._begun += len(starts)
         out: dict[int, Fit | None] = {}
@@ -138,27 +141,34 @@ class DiscoveryWorkers:
         tasks = (
             (s.model, s.z, known_columns(s.near, s.model), s.ceiling) for s in (starts[i] for i in missing)
         )
-        with closing(self._run(_fit_one, tasks)) as results:
-            while not (first := 0 in out and enough(out[0])) and len(out) < len(starts):
-                at, result = next(results)
-                self._cache.put(keys[missing[at]], result)
-                unpacked(missing[at], result)
-                self.watch(what, 1)
-        self._begun -= len(starts) - len(out)
-        return [out[i] for i in range(1 if first else len(starts))]
+        for at, result in self._run(_fit_one, tasks):
+            self._cache.put(keys[missing[at]], result)
+            unpacked(missing[at], result)
+            self.watch(what, 1)
+        return [out[i] for i in range(len(starts))]
 
-    def held_out(self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit) -> tuple[HeldOut, ...]:
-        """Every load case of the records, predicted from the others; see `held_out`."""
+    def held_out(
+        self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit
+    ) -> Callable[[], tuple[HeldOut, ...]]:
+        """Begins to predict every load case of the records from the others, see `held_out`; what is returned
+        waits for it."""
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
         predictions: dict[str, HeldOut] = {}
         self._begun += len(cases)
         parts = min(len(cases), self._workers)  # each is sent three fits, of some 50 MB together
         groups = [cases[k::parts] for k in range(parts)]
-        tasks = [(tuned, with_effects, with_discrepancy, group) for group in groups]
-        for _, results in self._run(_held_out_many, tasks):
-            predictions |= {r.load_case: r for r in results}
-            self.watch("load cases held out", len(results))
-        return tuple(predictions[case] for case in cases)
+        futures = [
+            self._executor.submit(_held_out_many, tuned, with_effects, with_discrepancy, group)
+            for group in groups
+        ]
+
+        def waited() -> tuple[HeldOut, ...]:
+            for future in as_completed(futures):
+                predictions.update((r.load_case, r) for r in future.result())
+                self.watch("load cases held out", len(future.result()))
+            return tuple(predictions[case] for case in cases)
+
+        return waited
 
     def scan(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
         """Begins the generic scan at a model; what is returned waits for it.
@@ -175,13 +185,10 @@ class DiscoveryWorkers:
 
         return waited
 
-    def _run(
-        self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]
-    ) -> Generator[tuple[int, T], None, None]:
+    def _run(self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
         """(place, result) of every task as it is done; in this process one is done before the next begins.
 
-        No more are begun ahead than keep every worker busy: what they are given is large. Closed before its
-        end, it begins with none of the others.
+        No more are begun ahead than keep every worker busy: what they are given is large.
         """
         if isinstance(self._executor, InProcess):
             for i, call in enumerate(arguments):
@@ -191,18 +198,14 @@ class DiscoveryWorkers:
         begun: dict[Future[T], int] = {}
         for i, call in islice(following, TASKS_AHEAD * self._workers):
             begun[self._executor.submit(task, *call)] = i
-        try:
-            while begun:
-                for future in wait(begun, return_when=FIRST_COMPLETED).done:
-                    place = begun.pop(future)
-                    for i, call in islice(following, 1):
-                        begun[self._executor.submit(task, *call)] = i
-                    return_free_pages()
-                    yield place, future.result()
-                    return_free_pages()
-        finally:
-            for future in begun:
-                future.cancel()
+        while begun:
+            for future in wait(begun, return_when=FIRST_COMPLETED).done:
+                place = begun.pop(future)
+                for i, call in islice(following, 1):
+                    begun[self._executor.submit(task, *call)] = i
+                return_free_pages()
+                yield place, future.result()
+                return_free_pages()
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:

@@ -105,6 +105,12 @@ class Effect(ABC):
             *(replace(hypothesis, law=law, sizes=(*hypothesis.sizes, *more)) for law, more in others),
         )
 
+    def numbers_by(self, law: str, options: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Options with which the effect does by another law nearly what it does at some; without those that
+        stay what they are, and those of the law that begin at typical."""
+        del law, options
+        return {}
+
     def observe(self, curves: CurveSet, options: Mapping[str, Any]) -> CurveSet:
         """What the rig reads of an axle's curves; the curves themselves unless `on_rig`."""
         del options

@@ -10,6 +10,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.places import Places
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.axle.topology import FrictionLaw
+from doe_kc.effects._backbone import nearest_backbone
 from doe_kc.effects._base import Effect, Option
 from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._tables import checked_number
@@ -25,9 +26,11 @@ BACKBONE_SHARES = (0.04, 0.07, 0.10, 0.13, 0.19, 0.32, 0.15)
 """Shares of the sliders of a free backbone whose virgin curve is nearly exponential: 1 - (1 + y) exp(-y)
 between the geometric means of neighbouring yield displacements."""
 
-TRAVEL, SHARES = "presliding_mm", "shares"
-"""Options of a friction: how far it moves before it slides, and of the free backbone, the shares of its
-sliders."""
+LIMIT, TRAVEL, SHARES = "force_N", "presliding_mm", "shares"
+"""Options of a friction: what it is when it slides, how far it moves before, and of the free backbone, the
+shares of its sliders."""
+FREE_LAW = "backbone"
+"""The law with a backbone of its own."""
 
 SHARE_LOG_SD = 1.5
 """So wide that one slider may hold nearly all: a factor of 4.5 each."""
@@ -57,6 +60,14 @@ class DryFriction(Effect):
     @abstractmethod
     def with_law(self, axle: Axle, law: FrictionLaw) -> Axle:
         """The axle whose equations have the law."""
+
+    def numbers_by(self, law: str, options: Mapping[str, Any]) -> Mapping[str, Any]:
+        own = self.read(options, self.label)
+        if law != FREE_LAW or own["law"] == FREE_LAW:
+            return {}
+        free = nearest_backbone(own["law"], own["exponent"], own["spread"], BACKBONE_SHARES)
+        limit, travel = free.limit * own[LIMIT], free.travel * own[TRAVEL]
+        return {LIMIT: limit, TRAVEL: travel, SHARES: list(free.shares)}
 
     def read(
         self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES

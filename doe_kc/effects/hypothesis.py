@@ -63,6 +63,13 @@ class Size:
             return float(self.typical**amplitude)
         return float(self.typical * 2.718281828459045 ** (self.log_sd * amplitude))
 
+    def amplitude(self, value: float) -> float:
+        """The amplitude at which the option's number is a value, in `unit`; > 0 but of an amount or a
+        bend."""
+        if self.growth == "shape":
+            return math.log(value / self.typical) / self.log_sd
+        return self.over_typical(value)
+
     def over_typical(self, value: float) -> float:
         """How much of the effect a value, in `unit`, is over its typical size: of a stiffness, > 0, by its
         compliance, of a factor, > 0, by its logarithm."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
@@ -14,7 +16,18 @@ def fit_to_errors(current: Fit, likelihood: Likelihood, workers: DiscoveryWorker
     A linear hub that softens by 14 % under load was left 1190 of cost above it, and a steering friction
     beside it 1 standard deviation off. Laws compared with such a fit are better than it is, each in turn.
     """
-    return at_optimum(refit_to_errors(current, likelihood), workers)
+    return fits_to_errors(current, [likelihood], workers)[0]
+
+
+def fits_to_errors(current: Fit, likelihoods: Sequence[Likelihood], workers: DiscoveryWorkers) -> list[Fit]:
+    """`fit_to_errors` of several errors, the same fit where those are the same object."""
+    unlike = {id(likelihood): likelihood for likelihood in likelihoods}
+    near = {key: refit_to_errors(current, likelihood) for key, likelihood in unlike.items()}
+    open_ends = {key: fit for key, fit in near.items() if not fit.converged}
+    starts = [FitStart(fit.model, fit.z, fit) for fit in open_ends.values()]
+    for (key, fit), refit in zip(open_ends.items(), workers.fits(starts, "settling"), strict=True):
+        near[key] = refit or fit
+    return [near[id(likelihood)] for likelihood in likelihoods]
 
 
 def at_optimum(current: Fit, workers: DiscoveryWorkers) -> Fit:

@@ -21,6 +21,7 @@ from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, DISCREPANCY_SHARES
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.in_turn import in_turn
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.noise import smooth_correlation
 
@@ -50,14 +51,19 @@ def fit_discrepancy(exact: Fit, signals: Sequence[EffectSignal]) -> tuple[Fit, d
     """
     shares, own = [0.0] * len(signals), exact.model.likelihood
     best, most = exact, marginal(exact)
+
+    def wider(candidate: Sequence[float]) -> tuple[Fit, float]:
+        fit = rewhitened_fit(exact, with_discrepancy(own, signals, candidate))
+        return fit, marginal(fit)
+
     for i in sorted(range(len(signals)), key=lambda i: -signals[i].square):
-        for share in DISCREPANCY_SHARES[1:]:
-            candidate = [share if k == i else s for k, s in enumerate(shares)]
-            wider = rewhitened_fit(exact, with_discrepancy(own, signals, candidate))
-            evidence = marginal(wider)
+        candidates = [[*shares[:i], share, *shares[i + 1 :]] for share in DISCREPANCY_SHARES[1:]]
+        for candidate, (fit, evidence) in zip(
+            candidates, in_turn(wider, candidates, exact.model.solutions.pool), strict=False
+        ):
             if evidence <= most:
                 break
-            best, most, shares[i] = wider, evidence, share
+            best, most, shares = fit, evidence, candidate
     names = [h.name for h in exact.model.members]
     settled = exact if best is exact else chord_fit(best, best.model)
     return settled, dict(zip(names, shares, strict=True))

@@ -40,7 +40,7 @@ def with_exchanged_laws(
         starts = [
             FitStart(*with_law(last.model, last.z, member, law), last, most) for law in other_laws(member)
         ]
-        refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
+        refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None and f.cost <= most]
         sets = [_best_set(search, f, workers) for f in refits]
         best, gain = max(sets, key=lambda one: one[1], default=(last, 0.0))
         if gain <= ACCEPTED_ODDS:

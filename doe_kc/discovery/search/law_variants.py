@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.effects import EFFECTS
-from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
 
@@ -40,8 +42,15 @@ def frictions(current: Fit) -> list[Hypothesis]:
 def with_law(
     model: EffectModel, z: FloatArray, member: Hypothesis, law: Hypothesis
 ) -> tuple[EffectModel, FloatArray]:
-    """The model with a member by another law, and a point z in it; numbers that are new at typical."""
+    """The model with a member by another law, and a point z in it, where the new law does nearly what the old
+    one does at a point, as far as the effect can tell; other new numbers are at typical."""
     known = model.sizes_at(z, member)
-    own = [known.get(s.name, 0.0) for s in law.sizes]
+    alike = EFFECTS[law.effect].numbers_by(law.law, member.options(known))
+    own = [_amplitude(s, alike) if s.key in alike else known.get(s.name, 0.0) for s in law.sizes]
     place = next(p for h, p in model.places() if h == member)
     return model.with_member(member, law), np.concatenate([z[: place.start], own, z[place.stop :]])
+
+
+def _amplitude(size: Size, options: Mapping[str, Any]) -> float:
+    value = options[size.key]
+    return size.amplitude(value if size.index is None else value[size.index])

@@ -9,7 +9,7 @@ from typing import TypeVar
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, last_member
 from doe_kc.discovery.gauss_newton import FitStart
-from doe_kc.discovery.search.convergence import fit_to_errors
+from doe_kc.discovery.search.convergence import fits_to_errors
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -38,7 +38,7 @@ def removals(search: EffectSearch, workers: DiscoveryWorkers) -> list[Removal]:
     final = search.with_law_discrepancy
     out: list[Removal] = []
     for members in in_groups(final.model.members):
-        nears = [fit_to_errors(final, own_errors(search, member), workers) for member in members]
+        nears = fits_to_errors(final, [own_errors(search, member) for member in members], workers)
         bases = [last_member(near, m).without_derivatives for near, m in zip(nears, members, strict=True)]
         starts = [
             FitStart(near.model.without(m), base.z[: base.z.size - len(m.sizes)], near, ceiling_of(base))

@@ -17,6 +17,7 @@ from doe_kc.correlation.curve_data import CurveData, SystematicError
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.search.law_discrepancy import marginal
+from doe_kc.ground.in_turn import in_turn
 
 SYSTEMATIC_ERRORS: tuple[SystematicError, ...] = ("hysteresis", "calibration")
 """The one that shows most first."""
@@ -36,8 +37,10 @@ def systematic_scales(fit: Fit) -> dict[SystematicError, float]:
     for kind in SYSTEMATIC_ERRORS:
         assumed = SCALES.index(1.0)
         for way in (SCALES[assumed + 1 :], SCALES[:assumed][::-1]):
-            for scale in way:
-                candidate = evidence({**scales, kind: scale})
+            candidates = [{**scales, kind: scale} for scale in way]
+            for scale, candidate in zip(
+                way, in_turn(evidence, candidates, fit.model.solutions.pool), strict=False
+            ):
                 if candidate <= most:
                     break
                 most, scales[kind] = candidate, scale

@@ -13,25 +13,16 @@ backbone of decreasing slope is near one of them.
 from __future__ import annotations
 
 import casadi as ca
-import numpy as np
 
-from doe_kc.axle.sliders import BACKBONE_YIELDS
+from doe_kc.axle.sliders import BACKBONE_YIELDS, IWAN_ELEMENTS, iwan_yields
 from doe_kc.axle.topology import FrictionLaw
 from doe_kc.solver.builder import LOAD_CASE, Builder
 from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
-IWAN_ELEMENTS = 8
 LEAST_REST = 1e-9
 """Distance from the limit, over the limit, that stands for none: its powers stay finite."""
 NEARLY_DAHL = 1e-6
 """Exponent less 1 that stands for 1, where the closed form is 0 / 0."""
-
-
-def iwan_yields(count: int = IWAN_ELEMENTS) -> np.ndarray:
-    """(count,) yield displacements over x_pre of elements of equal strength, at the mid-quantiles."""
-    from scipy.special import gammaincinv
-
-    return np.asarray(gammaincinv(2.0, (np.arange(count) + 0.5) / count))
 
 
 def dahl_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX) -> ca.SX:

@@ -34,10 +34,14 @@ class Answers(DiscoveryWorkers):
         what: str,
         *,
         derivatives: Callable[[Fit], bool] = lambda _: True,
-        enough: Callable[[Fit | None], bool] = lambda _: False,
+        enough: Callable[[Fit | None], bool] | None = None,
     ) -> list[Fit | None]:
         first = self._answers(starts[:1])
-        return first if not first or enough(first[0]) else [*first, *self._answers(starts[1:])]
+        return (
+            first
+            if not first or (enough is not None and enough(first[0]))
+            else [*first, *self._answers(starts[1:])]
+        )
 
     def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
         laws = [

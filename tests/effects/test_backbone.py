@@ -1,0 +1,50 @@
+"""The free backbone that does nearly what a closed law does, against both laws as they are solved."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from doe_kc.effects._backbone import nearest_backbone
+from doe_kc.effects._friction import BACKBONE_SHARES
+from tests.solver.elements.test_friction import LEVEL, PRE, Law
+
+CLOSED = [
+    ("dahl", {}),
+    ("iwan", {}),
+    ("duhem", {"f.exponent": 0.7}),
+    ("duhem", {"f.exponent": 1.5}),
+    ("lognormal", {"f.spread": 0.4}),
+    ("lognormal", {"f.spread": 0.8}),
+]
+"""Laws with the numbers of their shape."""
+
+
+def loop(law: Law) -> np.ndarray:
+    """(120,) force along a wide loop, after one that brought the law there."""
+    there = 10.0 * PRE * np.sin(np.linspace(0.0, 2.5 * np.pi, 301))
+    back = there[-1] * np.cos(np.linspace(0.0, 2.0 * np.pi, 121))[1:]
+    law.along(there)
+    return law.along(back)
+
+
+@pytest.mark.parametrize(("law", "shape"), CLOSED)
+def test_it_makes_the_loop_of_the_law(law: str, shape: dict[str, float]) -> None:
+    free = nearest_backbone(
+        law,  # type: ignore[arg-type]
+        shape.get("f.exponent", 1.0),
+        shape.get("f.spread", 0.8),
+        BACKBONE_SHARES,
+    )
+    backbone = Law("backbone", shape={f"f.share{i}": share for i, share in enumerate(free.shares)})
+    backbone.numbers = (free.limit * LEVEL, free.travel * PRE, *backbone.numbers[2:])
+    left = loop(backbone) - loop(Law(law, shape=shape))
+    assert np.sqrt(np.mean(left**2)) < 0.015 * LEVEL
+    usual = loop(Law("backbone")) - loop(Law(law, shape=shape))
+    assert np.sqrt(np.mean(left**2)) < 0.7 * np.sqrt(np.mean(usual**2))
+    assert sum(free.shares) == pytest.approx(1.0) and min(free.shares) > 0.0
+
+
+def test_a_law_that_reaches_its_limit_far_away_has_less_of_it() -> None:
+    far = nearest_backbone("lognormal", 1.0, 1.5, BACKBONE_SHARES)
+    assert 0.85 < far.limit < 0.98 and far.travel > 1.0
