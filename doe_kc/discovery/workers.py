@@ -154,7 +154,6 @@ class DiscoveryWorkers:
         waits for it."""
         cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
         predictions: dict[str, HeldOut] = {}
-        self._begun += len(cases)
         parts = min(len(cases), self._workers)  # each is sent three fits, of some 50 MB together
         groups = [cases[k::parts] for k in range(parts)]
         futures = [
@@ -163,6 +162,7 @@ class DiscoveryWorkers:
         ]
 
         def waited() -> tuple[HeldOut, ...]:
+            self._begun += len(cases)
             for future in as_completed(futures):
                 predictions.update((r.load_case, r) for r in future.result())
                 self.watch("load cases held out", len(future.result()))

@@ -183,6 +183,27 @@ def test_a_value_over_the_typical_size(size: Size, value: float, times: float) -
     assert size.over_typical(value) == pytest.approx(times)
 
 
+@pytest.mark.parametrize("h", SIZED, ids=ident)
+def test_an_amplitude_is_that_of_its_value(h: Hypothesis) -> None:
+    for size in h.sizes:
+        for amplitude in (0.3, 1.0, 2.0):
+            assert size.amplitude(size.value(amplitude)) == pytest.approx(amplitude)
+
+
+@pytest.mark.parametrize("h", SIZED, ids=ident)
+def test_numbers_by_another_law_are_numbers_of_that_law(h: Hypothesis) -> None:
+    """A law that does nearly the same has them all in reach, and one that stays has none that change."""
+    effect = ALL_EFFECTS[h.effect]
+    variants = effect.variants(h)
+    for law in variants:
+        assert not effect.numbers_by(law.law, options(law, 1.0))
+        for before in variants:
+            numbers = effect.numbers_by(law.law, options(before, 1.0))
+            assert set(numbers) <= {size.key for size in law.sizes}
+            at = dict(options(law, 1.0)) | dict(numbers)
+            assert apply_effect(short(), h.effect, at, source="test").values
+
+
 def test_variants_of_a_friction_are_its_laws() -> None:
     (own,) = EFFECTS["strut_friction"].hypotheses()
     variants = EFFECTS["strut_friction"].variants(own)
