@@ -94,10 +94,13 @@ class Likelihood(FieldsOnly):
 
     def jacobian(self, gradients: CurveGradients, characteristics: FloatArray) -> FloatArray:
         """(M, p) derivative of the residual. characteristics: (all registered, p) their gradients."""
-        parts = [group.whitened(group.slopes(gradients)) for group in self.groups]
-        scalars = [_scalar_row(f, gradients, characteristics) / f.sd for f in self.figures]
-        tail = np.array(scalars).reshape(len(scalars), len(gradients.paths))
-        return np.vstack([*parts, tail])
+        out = np.empty((self.size, len(gradients.paths)))
+        for group in self.groups:
+            slopes = group.slopes(gradients)
+            np.matmul(group.inverses, slopes, out=out[group.place].reshape(slopes.shape))
+        for row, figure in enumerate(self.figures, start=self.size - len(self.figures)):
+            out[row] = _scalar_row(figure, gradients, characteristics) / figure.sd
+        return out
 
     def without(self, places: Collection[tuple[str, str]]) -> Likelihood:
         """The data but those of some (load case, response)."""

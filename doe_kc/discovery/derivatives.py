@@ -34,13 +34,12 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
     moves, slopes = directions(model, z, sound, places), model.space.slopes(z[: model.parameters])
     solution, pool = model.solutions(axle), model.solutions.pool
     gradients = value_gradients(axle, solution, model.space, moves, GAIN_COLUMN, pool)
-    exact = to_places(_whitened(model, gradients, axle), model.space, slopes)
-    out[:, : model.parameters] = exact[:, : model.parameters]
+    exact, tuned = _whitened(model, gradients, axle), model.parameters + len(model.space.ties)
+    out[:, : model.parameters] = to_places(exact[:, :tuned], model.space, slopes)
     for curve, place in model.likelihood.slices():  # each calibration moves its own load case alone
         at = model.calibrations.start + model.cases.index(curve.load_case)
         out[place, at] = INPUT_GAIN * sound.load_cases[curve.load_case].gain * exact[place, -1]
-    known = exact[:, model.parameters : -1]
-    out[:, model.linear.start :] = _with_differences(model, z, residual, places, moves, known)
+    out[:, model.linear.start :] = _with_differences(model, z, residual, places, moves, exact[:, tuned:-1])
     return out
 
 
@@ -115,6 +114,8 @@ def _with_differences(
 ) -> FloatArray:
     """(M, k) derivative to the amplitudes at some places. known: of `moves`; the others' are differences."""
     exact = np.array([str(i) in moves for i in places], dtype=bool)
+    if exact.all():
+        return known
     out = np.empty((residual.size, exact.size))
     out[:, exact] = known
     out[:, ~exact] = amplitude_differences(model, z, residual, [i for i in places if str(i) not in moves])

@@ -200,11 +200,14 @@ class EffectModel(FieldsOnly):
         """Each place of an amplitude, and the axle at z, `here`, with that amplitude larger by a step."""
         values, before, plain = self.space.values(z[: self.parameters]), self.axle, self.with_effects(z)
         tuned, members = names_touched(plain, tuple(values)), list(self.places())
+        tables = [(h, h.options(self.sizes_at(z, h))) for h, _ in members]
         for k, (member, own) in enumerate(members):
             for i in (i for i in places if own.start <= i < own.stop):
-                axle = self._with(before, member, z + step * np.eye(z.size)[i])
-                for other, _ in members[k + 1 :]:
-                    axle = self._with(axle, other, z)
+                beside = z.copy()
+                beside[i] += step
+                axle = self._with(before, member, beside)
+                for other, options in tables[k + 1 :]:
+                    axle = apply_effect(axle, other.effect, options, source=other.name)
                 same = axle.topology == plain.topology and axle.load_cases == plain.load_cases
                 moved = {n: v for n, v in axle.values.items() if v != plain.values.get(n)}
                 if same and axle.values.keys() == plain.values.keys() and tuned.isdisjoint(moved):
