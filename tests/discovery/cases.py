@@ -57,6 +57,10 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
         "hub_compliance": {"camber_Nm_deg": 4000.0, "toe_Nm_deg": 7000.0},
         "steering_friction": {"force_N": 200.0, "presliding_mm": 0.05},
     },
+    "mounted": {
+        "steering_friction": {"force_N": 200.0, "presliding_mm": 0.03, "law": "iwan"},
+        "rack_mount_compliance": {"k_N_mm": 4000.0},
+    },
     "steady": {"strut_friction": {"force_N": 150.0}},
     "rubber": {"rubber_hysteresis": {"share": 0.3, "yield_mm": 0.1, "spread": 0.5}},
     "lead": {"tie_rod_compliance": {"k_N_mm": 3000.0}},

@@ -27,6 +27,7 @@ from doe_kc.discovery.search.laws import may_open, with_best_laws, with_free_law
 from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
+from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS, EFFECTS_MOST, MOST_STEPS
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -61,6 +62,10 @@ class EffectSearch:
     with_other_laws: Fit | None
     """`with_law_discrepancy` by closed laws of its frictions where those have free shapes, or by free shapes
     where those fit as well but leave what closed laws explain; None where there is none."""
+
+    larger: tuple[HypothesisFit, ...] = ()
+    """Sets with one effect more, which one of its members may hide: more probable than the last one, by less
+    than an effect needs. To the records' own errors, without derivatives; see `with_series_compliances`."""
 
     @property
     def evidence(self) -> float:

@@ -17,6 +17,7 @@ from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.decision import temper
 from doe_kc.discovery.search.law_exchange import with_exchanged_laws
 from doe_kc.discovery.search.search import EffectSearch, search_from
+from doe_kc.discovery.search.series_compliance import with_series_compliances
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -32,7 +33,7 @@ def exchanged(
     With the alternatives of every member of its last set. It ends, since the probability of the last set, its
     errors its own, grows with each exchange.
     """
-    search = with_exchanged_laws(search, library, workers)
+    search = _with_other_laws(search, library, workers)
     compared = alternatives(search, temper(search.with_law_discrepancy), workers)
     while (better := better_set(compared)) is not None:
         last = search.with_effects
@@ -41,9 +42,16 @@ def exchanged(
         other = search_from(search, start, better.rival, better.gain, library, workers)
         if other.log_posterior <= search.log_posterior:
             break
-        search = with_exchanged_laws(other, library, workers)
+        search = _with_other_laws(other, library, workers)
         compared = alternatives(search, temper(search.with_law_discrepancy), workers)
     return search, compared
+
+
+def _with_other_laws(
+    search: EffectSearch, library: Sequence[Hypothesis], workers: DiscoveryWorkers
+) -> EffectSearch:
+    """The search, gone on from sets with another law, or with what a law has taken up."""
+    return with_series_compliances(with_exchanged_laws(search, library, workers), library, workers)
 
 
 @dataclass(frozen=True)

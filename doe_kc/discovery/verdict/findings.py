@@ -25,7 +25,7 @@ from doe_kc.discovery.thresholds import (
 )
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
-from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_between_sets
+from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_between_sets, spread_in_larger_sets
 from doe_kc.discovery.verdict.size_fit import SizeFit, size_fit
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
@@ -67,6 +67,7 @@ def _finding(
     sd = np.hypot(_with_linearity(hypothesis, most_probable, sd), sized.law_sd(hypothesis))
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
+    sd = np.hypot(sd, spread_in_larger_sets(hypothesis, assumed, search.larger))
     detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_name_chances(own, detectability)

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.special import expit
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.thresholds import LAW_WINDOW
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.effects.hypothesis import Hypothesis
@@ -35,6 +36,19 @@ def spread_between_sets(
     return np.asarray(np.sqrt(squares / weights))
 
 
+def spread_in_larger_sets(
+    member: Hypothesis, amplitudes: FloatArray, larger: Sequence[HypothesisFit]
+) -> FloatArray:
+    """(m,) root of the mean square by which a member's amplitudes differ in sets with one effect more, which
+    it may hide; those of its law only where it has the same. amplitudes: (m,) in the last set."""
+    weights, squares = 1.0, np.zeros(amplitudes.size)
+    for other in larger:
+        weight = float(np.exp(min(other.gain, LAW_WINDOW)))
+        weights += weight
+        squares += weight * _apart(member, amplitudes, other.fit) ** 2
+    return np.asarray(np.sqrt(squares / weights))
+
+
 def spread_between_laws(
     member: Hypothesis, amplitudes: FloatArray, last: Fit, other: Fit | None
 ) -> FloatArray:
@@ -47,15 +61,22 @@ def spread_between_laws(
     """
     if other is None:
         return np.zeros(amplitudes.size)
+    share = float(expit(0.5 * (last.cost - other.cost)))
+    return np.asarray(np.sqrt(share) * np.abs(_apart(member, amplitudes, other)))
+
+
+def _apart(member: Hypothesis, amplitudes: FloatArray, other: Fit) -> FloatArray:
+    """(m,) by which a member's amplitudes differ in a fit that has it by any law; 0 for those of its law
+    where that is another one."""
     there = next(h for h in other.model.members if h.name == member.name)
     known = dict(zip((s.name for s in there.sizes), amplitude_estimates(other, there)[0], strict=True))
     same = [there.law == member.law or not s.shape for s in member.sizes]
-    apart = [
-        known.get(s.name, a) - a if counts else 0.0
-        for s, a, counts in zip(member.sizes, amplitudes, same, strict=True)
-    ]
-    share = float(expit(0.5 * (last.cost - other.cost)))
-    return np.asarray(np.sqrt(share) * np.abs(apart))
+    return np.array(
+        [
+            known.get(s.name, a) - a if counts else 0.0
+            for s, a, counts in zip(member.sizes, amplitudes, same, strict=True)
+        ]
+    )
 
 
 def _sets(compared: Sequence[Alternatives]) -> Iterator[tuple[float, Fit]]:

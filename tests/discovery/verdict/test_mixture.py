@@ -9,7 +9,8 @@ import pytest
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.search.law_variants import open_laws
-from doe_kc.discovery.verdict.mixture import spread_between_laws
+from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_in_larger_sets
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery
 
@@ -56,3 +57,18 @@ def test_numbers_of_another_law_are_not_compared(closed: Fit) -> None:
 def test_without_other_laws_there_is_no_spread(closed: Fit) -> None:
     member = closed.model.members[0]
     assert not spread_between_laws(member, np.ones(2), closed, None).any()
+
+
+def test_a_larger_set_counts_by_its_odds_and_not_for_its_law(closed: Fit) -> None:
+    friction = next(h for h in closed.model.members if open_laws(h) or h.law)
+    own = amplitude_estimates(closed, friction)[0]
+    moved = np.ones(closed.amplitudes.size)
+    hub = closed.model.members[0]
+    even = HypothesisFit(hub, other(closed, moved, 0.0), 0.0)
+    np.testing.assert_allclose(spread_in_larger_sets(friction, own, [even]), np.sqrt(0.5))
+    likelier = replace(even, gain=2.0)
+    np.testing.assert_allclose(spread_in_larger_sets(friction, own, [likelier]) ** 2, 0.880797, atol=1e-6)
+    assert not spread_in_larger_sets(friction, own, []).any()
+    law = replace(friction, law="another")
+    numbers = spread_in_larger_sets(law, own, [even])
+    np.testing.assert_array_equal(numbers > 0.0, [not size.shape for size in law.sizes])

@@ -1,0 +1,88 @@
+"""A mount of the rack that the law of a steering friction has taken up."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import FitStart, fit
+from doe_kc.discovery.search import series_compliance
+from doe_kc.discovery.search.search import EffectSearch
+from doe_kc.discovery.search.series_compliance import with_series_compliances
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects.hypothesis import Hypothesis
+from tests.discovery.cases import discovery, library, model
+
+(FRICTION,) = library("steering_friction")
+(MOUNT,) = library("rack_mount_compliance")
+EVERY = [FRICTION, MOUNT, *library("hub_compliance", "tie_rod_compliance", "strut_bending")]
+
+
+@cache
+def alone(car: str) -> EffectSearch:
+    """A search that ended with a steering friction and nothing else."""
+    without = model(car).extended(FRICTION)
+    last = fit(without, np.append(np.zeros(without.dimension), [1.0, 0.0]))
+    return replace(discovery("friction").search, with_law_discrepancy=last, with_effects=last, shape_loss=0.0)
+
+
+class Counted(DiscoveryWorkers):
+    """Counts the fits that are asked for."""
+
+    count = 0
+
+    def fits(self, starts: list[FitStart], *args: object, **kwargs: object) -> list[Fit | None]:  # type: ignore[override]
+        self.count += len(starts)
+        return super().fits(starts, *args, **kwargs)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def taken(monkeypatch: pytest.MonkeyPatch) -> list[Fit]:
+    """Fits of the sets that the search goes on from, each to a set more probable than the last one."""
+    fits: list[Fit] = []
+
+    def gone_on(before: EffectSearch, start: FitStart, changed: Hypothesis, *_: object) -> EffectSearch:
+        assert changed == MOUNT and start.model.members[-1] == MOUNT
+        fits.append(start.near)
+        last = before.with_law_discrepancy
+        return replace(before, with_law_discrepancy=replace(last, cost=last.cost - 1.0))
+
+    monkeypatch.setattr(series_compliance, "search_from", gone_on)
+    return fits
+
+
+def test_a_friction_on_a_mount_is_told_with_the_mount(taken: list[Fit]) -> None:
+    """200 N on 4000 N/mm, which alone are 162 N."""
+    before = alone("mounted")
+    assert with_series_compliances(before, EVERY, DiscoveryWorkers()) is not before
+    (found,) = taken
+    sizes = {h.name: found.model.sizes_at(found.z, h) for h in found.model.members}
+    force = next(s for s in FRICTION.sizes if s.key == "force_N").value(sizes[FRICTION.name]["force_N"])
+    stiffness = MOUNT.sizes[0].value(sizes[MOUNT.name]["k_N_mm"])
+    assert force == pytest.approx(200.0, rel=0.1) and stiffness == pytest.approx(4000.0, rel=0.1)
+
+
+def test_a_mount_that_is_not_there_is_asked_for_once(taken: list[Fit]) -> None:
+    before, asked = alone("friction"), Counted()
+    assert with_series_compliances(before, EVERY, asked) is before
+    assert asked.count == 1 and not taken
+
+
+def test_nothing_is_in_series_with_what_is_no_friction() -> None:
+    before, asked = discovery("named").search, Counted()
+    assert with_series_compliances(before, EVERY, asked) is before
+    assert asked.count == 0
+
+
+def test_a_set_that_is_more_probable_by_too_little_is_kept(
+    taken: list[Fit], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(series_compliance, "ACCEPTED_ODDS", np.inf)
+    kept = with_series_compliances(alone("mounted"), EVERY, DiscoveryWorkers())
+    (larger,) = kept.larger
+    assert larger.hypothesis == MOUNT and larger.gain > 0.0 and not taken
+    assert not larger.fit.jacobian.own.size
