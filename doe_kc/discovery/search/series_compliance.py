@@ -38,23 +38,29 @@ def with_series_compliances(
     Prandtl-Iwan's brings 7, and 190.5 +- 11.5 N on 3960 +- 300 N/mm.
     """
     last, pairs = search.with_effects, _pairs(search, library)
-    firsts = workers.fits([_start(last, *pair) for pair in pairs], "adding compliances")
+    firsts = [_start(last, *pair) for pair in pairs]
     larger: list[HypothesisFit] = []
-    for (member, compliance), first in zip(pairs, firsts, strict=True):
+    for (member, compliance), start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):
         odds = search.prior.log_odds(last.model.members, compliance)
-        if first is None or first.evidence - last.evidence + odds <= 0.0:
+        if fit is None or fit.evidence - last.evidence + odds <= 0.0:
             continue
         starts = [s for law in _closed_laws(member) for s in _starts(last, member, compliance, law)]
-        fits = [f for f in workers.fits(starts, "adding compliances") if f is not None]
-        best = max([first, *fits], key=lambda f: f.evidence)
-        gain = best.evidence - search.evidence + odds
+        reached = [(start, fit), *zip(starts, _fits(starts, workers), strict=True)]
+        there = [(f.evidence, k, f) for k, (_, f) in enumerate(reached) if f is not None]
+        evidence, k, best = max(there)
+        gain = evidence - search.evidence + odds
         if gain > ACCEPTED_ODDS:
-            start = FitStart(best.model, best.z, best)
-            other = search_from(search, start, compliance, gain, library, workers)
+            following = FitStart(reached[k][0].model, best.z, last)
+            other = search_from(search, following, compliance, gain, library, workers)
             if other.log_posterior > search.log_posterior:
                 return other
-        larger.append(HypothesisFit(compliance, best.without_derivatives, gain, odds))
+        larger.append(HypothesisFit(compliance, best, gain, odds))
     return replace(search, larger=tuple(larger)) if larger else search
+
+
+def _fits(starts: Sequence[FitStart], workers: DiscoveryWorkers) -> list[Fit | None]:
+    """Without derivatives: nine of 10 MB each, at the end of a search."""
+    return workers.fits(starts, "adding compliances", derivatives=lambda _: False)
 
 
 def _pairs(search: EffectSearch, library: Sequence[Hypothesis]) -> list[tuple[Hypothesis, Hypothesis]]:

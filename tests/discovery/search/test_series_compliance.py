@@ -41,21 +41,21 @@ class Counted(DiscoveryWorkers):
 
 
 @pytest.fixture
-def taken(monkeypatch: pytest.MonkeyPatch) -> list[Fit]:
-    """Fits of the sets that the search goes on from, each to a set more probable than the last one."""
-    fits: list[Fit] = []
+def taken(monkeypatch: pytest.MonkeyPatch) -> list[FitStart]:
+    """Sets that the search goes on from, each to one more probable than the last one."""
+    starts: list[FitStart] = []
 
     def gone_on(before: EffectSearch, start: FitStart, changed: Hypothesis, *_: object) -> EffectSearch:
         assert changed == MOUNT and start.model.members[-1] == MOUNT
-        fits.append(start.near)
+        starts.append(start)
         last = before.with_law_discrepancy
         return replace(before, with_law_discrepancy=replace(last, cost=last.cost - 1.0))
 
     monkeypatch.setattr(series_compliance, "search_from", gone_on)
-    return fits
+    return starts
 
 
-def test_a_friction_on_a_mount_is_told_with_the_mount(taken: list[Fit]) -> None:
+def test_a_friction_on_a_mount_is_told_with_the_mount(taken: list[FitStart]) -> None:
     """200 N on 4000 N/mm, which alone are 162 N."""
     before = alone("mounted")
     assert with_series_compliances(before, EVERY, DiscoveryWorkers()) is not before
@@ -66,7 +66,7 @@ def test_a_friction_on_a_mount_is_told_with_the_mount(taken: list[Fit]) -> None:
     assert force == pytest.approx(200.0, rel=0.1) and stiffness == pytest.approx(4000.0, rel=0.1)
 
 
-def test_a_mount_that_is_not_there_is_asked_for_once(taken: list[Fit]) -> None:
+def test_a_mount_that_is_not_there_is_asked_for_once(taken: list[FitStart]) -> None:
     before, asked = alone("friction"), Counted()
     assert with_series_compliances(before, EVERY, asked) is before
     assert asked.count == 1 and not taken
@@ -79,7 +79,7 @@ def test_nothing_is_in_series_with_what_is_no_friction() -> None:
 
 
 def test_a_set_that_is_more_probable_by_too_little_is_kept(
-    taken: list[Fit], monkeypatch: pytest.MonkeyPatch
+    taken: list[FitStart], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(series_compliance, "ACCEPTED_ODDS", np.inf)
     kept = with_series_compliances(alone("mounted"), EVERY, DiscoveryWorkers())
