@@ -19,7 +19,13 @@ from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.law_variants import default_law, frictions, other_laws, with_law
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch, search_from
-from doe_kc.discovery.thresholds import ACCEPTED_ODDS, BEYOND_DOUBT, COMPLIANT_LIMIT, COMPLIANT_TRAVEL
+from doe_kc.discovery.thresholds import (
+    ACCEPTED_ODDS,
+    BEYOND_DOUBT,
+    COMPLIANT_LIMIT,
+    COMPLIANT_TRAVEL,
+    NOISE_CHANCE,
+)
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects._friction import LIMIT, TRAVEL
@@ -32,12 +38,15 @@ def with_series_compliances(
     """The search, gone on from its last set with a compliance in series with one of its frictions, where that
     leads to a better one; with sets that are the more probable ones but by less than it takes, as `larger`.
 
-    Closed laws are asked where by its own law that set is the more probable one: with a mount of the rack
-    that is not there it was 2.5 to 5.2 of ln posterior odds behind on five cars. A steering friction of 190 N
-    on a mount of 4130 N/mm had become 95.2 +- 1.2 N by Duhem's law, by which a mount brought 2;
-    Prandtl-Iwan's brings 7, and 190.5 +- 11.5 N on 3960 +- 300 N/mm.
+    Only of sets that explain the records: what others leave asks for anything. Closed laws are asked where by
+    its own law that set is the more probable one: with a mount of the rack that is not there it was 2.5 to
+    5.2 of ln posterior odds behind on five cars. A steering friction of 190 N on a mount of 4130 N/mm had
+    become 95.2 +- 1.2 N by Duhem's law, by which a mount brought 2; Prandtl-Iwan's brings 7, and 190.5 +-
+    11.5 N on 3960 +- 300 N/mm.
     """
     last, pairs = search.with_effects, _pairs(search, library)
+    if search.with_law_discrepancy.residual_map.chance < NOISE_CHANCE:
+        return search
     firsts = [_start(last, *pair) for pair in pairs]
     larger: list[HypothesisFit] = []
     for (member, compliance), start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):

@@ -30,6 +30,12 @@ def alone(car: str) -> EffectSearch:
     return replace(discovery("friction").search, with_law_discrepancy=last, with_effects=last, shape_loss=0.0)
 
 
+@pytest.fixture
+def explained(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As if noise explained what any set leaves."""
+    monkeypatch.setattr(series_compliance, "NOISE_CHANCE", 0.0)
+
+
 class Counted(DiscoveryWorkers):
     """Counts the fits that are asked for."""
 
@@ -55,6 +61,7 @@ def taken(monkeypatch: pytest.MonkeyPatch) -> list[FitStart]:
     return starts
 
 
+@pytest.mark.usefixtures("explained")
 def test_a_friction_on_a_mount_is_told_with_the_mount(taken: list[FitStart]) -> None:
     """200 N on 4000 N/mm, which alone are 162 N."""
     before = alone("mounted")
@@ -78,6 +85,13 @@ def test_nothing_is_in_series_with_what_is_no_friction() -> None:
     assert asked.count == 0
 
 
+def test_a_set_that_explains_nothing_asks_for_anything() -> None:
+    before, asked = alone("mounted"), Counted()
+    assert with_series_compliances(before, EVERY, asked) is before
+    assert asked.count == 0
+
+
+@pytest.mark.usefixtures("explained")
 def test_a_set_that_is_more_probable_by_too_little_is_kept(
     taken: list[FitStart], monkeypatch: pytest.MonkeyPatch
 ) -> None:
