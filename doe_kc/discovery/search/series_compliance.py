@@ -44,10 +44,10 @@ def with_series_compliances(
     become 95.2 +- 1.2 N by Duhem's law, by which a mount brought 2; Prandtl-Iwan's brings 7, and 190.5 +-
     11.5 N on 3960 +- 300 N/mm.
     """
-    last, pairs = search.with_effects, _pairs(search, library)
     if search.with_law_discrepancy.residual_map.chance < NOISE_CHANCE:
         return search
-    firsts = [_start(last, *pair) for pair in pairs]
+    last, pairs = search.with_effects, _pairs(search, library)
+    firsts = [_start(last, member, compliance, member) for member, compliance in pairs]
     larger: list[HypothesisFit] = []
     for (member, compliance), start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):
         odds = search.prior.log_odds(last.model.members, compliance)
@@ -102,9 +102,9 @@ def _starts(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothes
     return [near, replace(near, z=far)]
 
 
-def _start(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothesis | None = None) -> FitStart:
-    """The last set with a typical compliance, a friction by another law if any."""
-    model, z = with_law(last.model, last.z, member, law) if law else (last.model, last.z)
+def _start(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothesis) -> FitStart:
+    """The last set with a typical compliance, a friction by its own law or another one."""
+    model, z = with_law(last.model, last.z, member, law)
     typical = [0.0 if size.shape else 1.0 for size in compliance.sizes]
     most = last.cost + 2.0 * BEYOND_DOUBT
     return FitStart(model.extended(compliance), np.append(z, typical), last, most)
