@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, as_completed, wait
+from dataclasses import replace
 from itertools import islice
 from typing import Any, TypeVar
 
 import numpy as np
 
 from doe_kc.campaign.executors import InProcess
-from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns
 from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.result_arrays import fit_arrays, fit_of_arrays, screening_arrays, screening_of_arrays
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
 from doe_kc.discovery.screening.scan import Scan, scan
 from doe_kc.discovery.screening.screen import Screened, effort, screen
-from doe_kc.discovery.thresholds import CHUNKS
+from doe_kc.discovery.thresholds import CHUNKS, FREE_SHAPE_LOSS
 from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.memory import return_free_pages
@@ -78,14 +80,14 @@ class DiscoveryWorkers:
         for i, (key, (_, h)) in enumerate(zip(keys, wanted, strict=True)):
             known = self._cache.get(key)
             if known is not None:
-                out[i] = _unpacked(h, known)
+                out[i] = screening_of_arrays(h, known)
         if out:
             self.watch("screening effects", len(out))
         groups = self._groups([i for i in range(len(wanted)) if i not in out], wanted)
         tasks = [(fits[wanted[g[0]][0]][0], [(wanted[i][1], begun[i]) for i in g]) for g in groups]
         for at, results in self._run(_screen_many, tasks):
             for i, result in zip(groups[at], results, strict=True):
-                self._cache.put(keys[i], _packed(result))
+                self._cache.put(keys[i], screening_arrays(result))
                 out[i] = result
             self.watch("screening effects", len(groups[at]))
         places = iter(range(len(wanted)))
@@ -117,18 +119,21 @@ class DiscoveryWorkers:
         They are of the very models of `starts`, wherever they were computed: whether two fits are to the same
         errors is asked by identity. derivatives: whether a fit keeps its own, see `Fit.without_derivatives`.
         enough: whether the fit from the first start will do; then that alone is given. It is done before the
-        others are begun: they take up workers longer than it does, and nothing stops them.
+        others are begun: they take up workers longer than it does. Those are given up where they promise to
+        end above it.
         """
         if enough is not None:
             first = self.fits(starts[:1], what, derivatives=derivatives)
             others = [] if enough(first[0]) else starts[1:]
+            if first[0] is not None:
+                others = [_no_worse(s, first[0]) for s in others]
             return first + self.fits(others, what, derivatives=derivatives)
         keys = [_fit_key(start) for start in starts]
         self._begun += len(starts)
         out: dict[int, Fit | None] = {}
 
         def unpacked(i: int, arrays: Arrays) -> None:
-            refit = _unpacked_fit(starts[i].model, arrays)
+            refit = fit_of_arrays(starts[i].model, arrays)
             out[i] = refit if refit is None or derivatives(refit) else refit.without_derivatives
 
         for i, key in enumerate(keys):
@@ -232,6 +237,11 @@ def _scan(tuned: Fit, temper: float) -> Scan | None:
         return_free_pages()
 
 
+def _no_worse(start: FitStart, first: Fit) -> FitStart:
+    """Given up where it promises to cost more than the first fit by what a free shape may cost."""
+    return replace(start, ceiling=min(start.ceiling, first.cost + 2.0 * FREE_SHAPE_LOSS))
+
+
 def _fit_key(start: FitStart) -> str:
     limit = [] if np.isinf(start.ceiling) else [np.array(start.ceiling)]
     return key_of("fit", fingerprint(start.model), start.z, *limit)
@@ -239,59 +249,8 @@ def _fit_key(start: FitStart) -> str:
 
 def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: float) -> Arrays:
     try:
-        return _packed_fit(fit(model, start, known=known, ceiling=ceiling))
+        return fit_arrays(fit(model, start, known=known, ceiling=ceiling))
     except NotConverged:
-        return {"z": np.zeros(0)}
+        return fit_arrays(None)
     finally:
         return_free_pages()
-
-
-def _packed_fit(fit: Fit) -> Arrays:
-    """Without what its model says of it, the derivatives to linear nuisances among that."""
-    return {
-        "z": fit.z,
-        "residual": fit.residual,
-        "jacobian": fit.jacobian.own,
-        "evaluations": np.array(float(fit.evaluations)),
-        "converged": np.array(float(fit.converged)),
-    }
-
-
-def _unpacked_fit(model: EffectModel, known: Arrays) -> Fit | None:
-    """The stored fit, None for one without an equilibrium."""
-    if not known["z"].size:
-        return None
-    z, residual = known["z"], known["residual"]
-    counts = int(known["evaluations"]), bool(known["converged"])
-    return Fit(model, z, residual, model.jacobian(known["jacobian"]), cost_of(model, z, residual), *counts)
-
-
-def _packed(screening: Screened) -> Arrays:
-    return {
-        "amplitudes": screening.amplitudes,
-        "sd": screening.sd,
-        "numbers": np.array([screening.gain, screening.score, screening.detectability, screening.absorbed]),
-        "columns": screening.columns,
-        "change": screening.change,
-        "bend": screening.bend,
-        "visible": screening.size_detectability,
-        "failed": np.frombuffer(screening.failed.encode(), dtype=np.uint8).astype(float),
-    }
-
-
-def _unpacked(hypothesis: Hypothesis, known: Arrays) -> Screened:
-    gain, score, detectability, absorbed = (float(v) for v in known["numbers"])
-    return Screened(
-        hypothesis,
-        known["amplitudes"],
-        known["sd"],
-        gain,
-        score,
-        known["columns"],
-        known["change"],
-        known["bend"],
-        detectability,
-        absorbed,
-        known["visible"],
-        bytes(known["failed"].astype(np.uint8)).decode(),
-    )

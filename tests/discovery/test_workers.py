@@ -17,6 +17,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache
 from doe_kc.discovery.screening.screen import effort
 from doe_kc.discovery.search.search import tune
+from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS
 from doe_kc.discovery.workers import TASKS_AHEAD, DiscoveryWorkers
 from tests.discovery.cases import library, model
 
@@ -146,3 +147,23 @@ def test_a_first_fit_that_will_do_is_the_only_one(tuned: Fit, count: int, tmp_pa
         assert len(set(stored)) == len(starts)
         (again,) = workers.fits(starts, "", enough=lambda refit: refit is not None)
     assert first is not None and again is not None and np.array_equal(first.z, again.z)
+
+
+def test_the_other_starts_are_given_up_where_they_promise_less_than_the_first(tuned: Fit) -> None:
+    """One that is not far above it is not."""
+    extended, z = start(tuned)
+    near, far = (
+        FitStart(extended, np.append(z[:-2], [a, a]), tuned, ceiling)
+        for a, ceiling in ((0.5, np.inf), (0.7, 7.0))
+    )
+    given: list[float] = []
+
+    class Noted(DiscoveryWorkers):
+        def _run(self, task, arguments):  # type: ignore[no-untyped-def]
+            tasks = list(arguments)
+            given.extend(ceiling for *_, ceiling in tasks)
+            return super()._run(task, tasks)
+
+    first, _, last = Noted().fits([near, near, far], "", enough=lambda refit: False)
+    assert first is not None and last is not None and not last.converged
+    assert given == [np.inf, first.cost + 2.0 * FREE_SHAPE_LOSS, 7.0]

@@ -63,6 +63,7 @@ def with_series_compliances(
             other = search_from(search, following, compliance, gain, library, workers)
             if other.log_posterior > search.log_posterior:
                 return other
+            gain = min(gain, other.log_posterior - search.log_posterior)
         larger.append(HypothesisFit(compliance, best, gain, odds))
     return replace(search, larger=tuple(larger)) if larger else search
 

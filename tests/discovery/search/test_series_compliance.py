@@ -100,3 +100,13 @@ def test_a_set_that_is_more_probable_by_too_little_is_kept(
     (larger,) = kept.larger
     assert larger.hypothesis == MOUNT and larger.gain > 0.0 and not taken
     assert not larger.fit.jacobian.own.size
+
+
+@pytest.mark.usefixtures("explained")
+def test_a_set_that_ends_no_more_probable_counts_as_what_it_ended_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = alone("mounted")
+    last = before.with_law_discrepancy
+    ended = replace(before, with_law_discrepancy=replace(last, cost=last.cost + 8.0))
+    monkeypatch.setattr(series_compliance, "search_from", lambda *_: ended)
+    (larger,) = with_series_compliances(before, EVERY, DiscoveryWorkers()).larger
+    assert larger.gain == pytest.approx(ended.log_posterior - before.log_posterior) and larger.gain < 0.0
