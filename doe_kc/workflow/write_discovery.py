@@ -13,7 +13,7 @@ from doe_kc.effects.words import hypothesis_words
 from doe_kc.ground.output import write_columns
 from doe_kc.measurement import Measurement
 from doe_kc.reports.discovery.effects import effect_table
-from doe_kc.reports.discovery.figures import write_discovery_figures
+from doe_kc.reports.discovery.figures import discovery_figures
 from doe_kc.reports.discovery.isolability import isolability_table
 from doe_kc.reports.discovery.library import library_table
 from doe_kc.reports.discovery.parameters import tuned_table
@@ -65,20 +65,16 @@ def write_discovery(
     }
     words: dict[str, Any] = {"study": study.name, "date": date.today().isoformat()}
     known = {"Measurement": measurement.manifest.name, **notes}
-    page = write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words)
-    link_pages(folder.parent)
-    return [
-        *written,
-        *(
+    figures = discovery_figures(discovery, folder, study=study.name, workers=workers, pictures=study.pictures)
+    with figures as pictures:
+        page = write_discovery_page(folder / "report.html", discovery, measurement, notes=notes, **words)
+        link_pages(folder.parent)
+        tables = [
             write_columns(folder / name, table_columns(of(discovery)))
             for name, of in DISCOVERY_TABLES.items()
-        ),
-        write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words),
-        page,
-        *write_discovery_figures(
-            discovery, folder, study=study.name, workers=workers, pictures=study.pictures
-        ),
-    ]
+        ]
+        workbook = write_discovery_workbook(folder / "discovery.xlsx", discovery, notes=known, **words)
+    return [*written, *tables, workbook, page, *pictures]
 
 
 def axle_note(discovery: Discovery) -> str:

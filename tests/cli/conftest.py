@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -22,4 +23,4 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(comparison_figures, "write_comparison_figures", nothing)
     monkeypatch.setattr(influence_figures, "write_influence_figures", nothing)
     monkeypatch.setattr(correlation_figures, "write_correlation_figures", nothing)
-    monkeypatch.setattr(write_discovery, "write_discovery_figures", nothing)
+    monkeypatch.setattr(write_discovery, "discovery_figures", lambda *_, **__: nullcontext([]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from functools import partial
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from doe_kc.reports.discovery.parameter_figure import parameter_figure
 from doe_kc.reports.discovery.parameters import tuned_parameters
 from doe_kc.reports.discovery.tables import gain_words, gap_rows
 from doe_kc.reports.drawing.panel import Panel
-from doe_kc.reports.drawing.series import Job, draw_series
+from doe_kc.reports.drawing.series import Job, series_beside
 from doe_kc.reports.drawing.sheet import Sheet, sheet
 
 HELD_OUT_ROW = 0.3
@@ -86,14 +87,15 @@ def discovery_jobs(discovery: Discovery, folder: Path, study: str) -> list[Job]:
     return jobs
 
 
-def write_discovery_figures(
+def discovery_figures(
     discovery: Discovery,
     folder: Path,
     *,
     study: str,
     workers: int | None = None,
     pictures: PictureFormat = PNG,
-) -> list[Path]:
-    """Pictures `disagreement`, `gap`, `evidence`, `worst_curves`, `isolability`, `parameters` and, where
-    effects were found, `held_out`. RunError when the folder cannot be written."""
-    return draw_series(discovery_jobs(discovery, folder, study), workers, pictures=pictures)
+) -> AbstractContextManager[list[Path]]:
+    """Draws, beside what is done meanwhile, the pictures `disagreement`, `gap`, `evidence`, `worst_curves`,
+    `isolability`, `parameters` and, where effects were found, `held_out`. RunError when the folder cannot be
+    written."""
+    return series_beside(discovery_jobs(discovery, folder, study), workers, pictures=pictures)

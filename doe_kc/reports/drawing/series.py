@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor
+from contextlib import contextmanager
 from pathlib import Path
 
 from doe_kc.campaign.executors import processes
@@ -26,8 +27,18 @@ def draw_series(
     A file that shows the same numbers already is left as it is. workers: processes for
     more than a few, default one per core. Raises RunError when one cannot be written.
     """
+    with series_beside(jobs, workers, pictures=pictures) as paths:
+        return paths
+
+
+@contextmanager
+def series_beside(
+    jobs: Sequence[Job], workers: int | None = None, *, pictures: PictureFormat = PNG
+) -> Iterator[list[Path]]:
+    """As `draw_series`, while this process does something else; at its end all are drawn."""
     if pictures == "none":
-        return []
+        yield []
+        return
     digests = PictureDigests()
     paths = [style.picture_path(path, pictures) for path, _ in jobs]
     marks = [digests.of(make) for _, make in jobs]
@@ -36,17 +47,17 @@ def draw_series(
         for job, path, mark in zip(jobs, paths, marks, strict=True)
         if mark is None or not shows(path, mark)
     ]
-    if missing:
-        count = 1 if len(missing) <= FEW else min(workers or available_cores(), len(missing))
-        with processes(count) as executor:
-            try:
-                for done in [executor.submit(_draw, *job) for job in missing]:
-                    done.result()
-            except BrokenExecutor:
-                raise RunError(
-                    "a process that drew pictures was ended from outside; use fewer --workers."
-                ) from None
-    return paths
+    count = 1 if len(missing) <= FEW else min(workers or available_cores(), len(missing))
+    with processes(count) as executor:
+        try:
+            begun = [executor.submit(_draw, *job) for job in missing]
+            yield paths
+            for done in begun:
+                done.result()
+        except BrokenExecutor:
+            raise RunError(
+                "a process that drew pictures was ended from outside; use fewer --workers."
+            ) from None
 
 
 def _draw(path: Path, make: Callable[[], style.Picture], pictures: PictureFormat, mark: str) -> None:

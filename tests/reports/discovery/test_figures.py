@@ -13,10 +13,10 @@ from doe_kc.ground.errors import RunError
 from doe_kc.reports.discovery.curves import curve_figure, worst_views
 from doe_kc.reports.discovery.evidence import evidence_figure, evidence_steps
 from doe_kc.reports.discovery.figures import (
+    discovery_figures,
     discovery_jobs,
     gain_words,
     held_out_figure,
-    write_discovery_figures,
 )
 from doe_kc.reports.discovery.gaps import gap_figure
 from doe_kc.reports.discovery.heat_map import discovery_grids, heat_map_figure, signed
@@ -47,9 +47,11 @@ def test_every_verdict_is_drawn(car: str, tmp_path: Path) -> None:
 
 
 def test_files_are_written(tmp_path: Path) -> None:
-    paths = write_discovery_figures(
+    drawing = discovery_figures(
         discovery("none"), tmp_path / "new", study="S $x_1$", workers=1, pictures="svg"
     )
+    with drawing as paths:
+        pass
     assert [p.name for p in paths] == [f"{n}.svg" for n in NAMES[:-1]]
     assert all(p.stat().st_size > 3000 for p in paths)
 
@@ -143,5 +145,6 @@ def test_parameters_that_return_come_first() -> None:
 
 def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:
     (tmp_path / "out").write_text("a file")
-    with pytest.raises(RunError, match="out"):
-        write_discovery_figures(discovery("none"), tmp_path / "out", study="S", workers=1)
+    drawing = discovery_figures(discovery("none"), tmp_path / "out", study="S", workers=1)
+    with pytest.raises(RunError, match="out"), drawing:
+        pass

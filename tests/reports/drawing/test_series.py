@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 
 from doe_kc.campaign.executors import in_process
+from doe_kc.ground.errors import RunError
 from doe_kc.ground.picture_format import PictureFormat
 from doe_kc.ground.typing import FloatArray
 from doe_kc.reports.drawing import series
 from doe_kc.reports.drawing.picture_digest import PictureDigests
-from doe_kc.reports.drawing.series import draw_series
+from doe_kc.reports.drawing.series import draw_series, series_beside
 from doe_kc.reports.drawing.sheet import Sheet, sheet
 
 
@@ -107,3 +108,16 @@ def test_a_few_are_drawn_in_this_process(
     monkeypatch.setattr(series, "processes", here)
     draw_series([(tmp_path / f"{k}", partial(line_figure, LINE)) for k in range(count)], 2)
     assert asked == [workers] and len(list(tmp_path.iterdir())) == count
+
+
+def test_pictures_are_drawn_beside_other_work(tmp_path: Path) -> None:
+    """What fails beside them is told after the last one."""
+    jobs = [(tmp_path / f"{k}", partial(line_figure, LINE)) for k in range(series.FEW + 1)]
+    with series_beside(jobs, 2) as paths:
+        assert [p.name for p in paths] == [f"{k}.png" for k in range(len(jobs))]
+        (tmp_path / "page").write_text("beside")
+    assert all(p.exists() for p in paths)
+    with pytest.raises(RunError, match="page"), series_beside(jobs, 2, pictures="svg"):
+        raise RunError("page: no")
+    with series_beside(jobs, pictures="none") as none:
+        assert none == []
