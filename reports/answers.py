@@ -110,7 +110,7 @@ def _effect(answer: Answer, effect: AdoptedEffect) -> str:
     assert discovery is not None
     findings = (*discovery.findings, *discovery.traces)
     finding = next(f for f in findings if (f.hypothesis.effect, f.hypothesis.location) == place)
-    sizes = size_words(discovery, finding)
+    sizes = size_words(finding)
     return f"{effect.label}: {sizes}" if sizes else effect.label
 
 

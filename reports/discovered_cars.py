@@ -107,8 +107,7 @@ def _check(car: str, found: Discovery) -> None:
 def _row(car: str, found: Discovery) -> tuple[str, ...]:
     inside = "unknown" if car == CUSTOMER else "; ".join(_words(i, o) for i, o in _key(car).items()) or "none"
     said = "; ".join(
-        f"{f.hypothesis.name}: {size_words(found, f)} (probability {f.probability:.2f})"
-        for f in found.findings
+        f"{f.hypothesis.name}: {size_words(f)} (probability {f.probability:.2f})" for f in found.findings
     )
     gap = found.gap
     sizes = [number(v) for v in (gap.nominal, gap.tuned, gap.with_effect, gap.best_decoy)]

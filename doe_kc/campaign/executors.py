@@ -31,8 +31,8 @@ class InProcess(Executor):
 
 TIMEOUT = "10s"
 PER_WORKER = 4
-"""Designs submitted at once for each worker thread: it never waits for the next one, and few are lost with a
-scheduler."""
+"""Workers that each thread of the cluster counts as: twice as many tasks are under way, see `PendingRuns`, so
+that no thread waits for the next one."""
 PENDING_TASKS = 8
 """The same at least, for a cluster that is still starting its workers."""
 
@@ -44,7 +44,6 @@ class DaskCluster(Executor):
     """
 
     def __init__(self, address: str) -> None:
-        self.address = address
         self._client, self.lost = _connected(address)
         self._executor: Executor = self._client.get_executor(pure=False)
 

@@ -44,11 +44,11 @@ class Interrupts:
 
     @contextmanager
     def allowed(self) -> Iterator[None]:
-        """A part that may be left at any point."""
-        self._allowed = True
+        """A part that may be left at any point, and so may one within it."""
+        before, self._allowed = self._allowed, True
         try:
             if self._arrived:
                 raise KeyboardInterrupt
             yield
         finally:
-            self._allowed = False
+            self._allowed = before

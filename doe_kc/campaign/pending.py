@@ -25,7 +25,7 @@ Batch = tuple[str, ...]
 
 class PendingRuns:
     """key -> design of `designs`, each run once, `size` of them by a task. Twice as many tasks as there are
-    workers are under way."""
+    workers are under way, one with a single worker."""
 
     def __init__(
         self,

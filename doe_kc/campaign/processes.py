@@ -14,6 +14,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from functools import partial
 from multiprocessing.connection import wait
 from multiprocessing.context import BaseContext
+from types import TracebackType
 from typing import Any, ParamSpec, TypeVar
 
 from doe_kc.campaign.shared_arrays import called_with, shared_arguments
@@ -76,6 +77,15 @@ class Processes(Executor):
         for process in list((getattr(self._pool, "_processes", None) or {}).values()):
             process.terminate()
         self.renew()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Waits for what is under way; after an exception, which nobody takes it after, it ends that."""
+        if kind is None:
+            self.shutdown()
+        else:
+            self.abandon()
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the workers; `submit` would begin anew."""

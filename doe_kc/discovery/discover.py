@@ -8,19 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.correlation.likelihood import Likelihood, Rewhitening
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.result import CurveGap, Discovery, Finding, FindingVerdict, Gap, Returned
+from doe_kc.discovery.result import CurveGap, Discovery, Finding, FindingVerdict, Gap
 from doe_kc.discovery.screening.disagreement import raw_map
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.decision import temper, threshold
-from doe_kc.discovery.search.law_discrepancy import is_friction
+from doe_kc.discovery.search.law_variants import frictions
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED, RETURNS_FROM
+from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.certainty import certain, name_doubt
@@ -29,7 +29,7 @@ from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothe
 from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.verdict.findings import findings
 from doe_kc.discovery.verdict.sentences import next_tests, sentences
-from doe_kc.discovery.verdict.verdict import Verdict, ambiguous, classes, verdict
+from doe_kc.discovery.verdict.verdict import Verdict, ambiguous, class_of, classes, verdict
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -57,28 +57,28 @@ def discover(
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
     predictions = pending() if pending is not None and relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
-    explained = adequacy(residual_map, predictions)
-    relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy, explained)
+    set_adequacy = adequacy(residual_map, predictions)
+    relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy, set_adequacy)
     interface_scan = None if pending_scan is None else pending_scan()
     decoy = best_decoy(compared, relevant)
     gap, curve_gaps = gaps(model.likelihood, nominal, tuned, with_effects, decoy.fit if decoy else None)
-    traces = shown_traces(members, explained)
-    limits_hold = resolved(search, explained)
+    traces = shown_traces(members, set_adequacy)
+    limits_hold = resolved(search, set_adequacy)
     statuses = _statuses(search, (*relevant, *traces), len(library), resolved=limits_hold)
     outside = beyond(model.space, with_effects)
-    ambiguous = classes(relevant) if outcome.kind == "class" else ()
-    separating = _separating(compared, ambiguous)
+    groups = classes(relevant) if outcome.kind == "class" else ()
+    separating = _separating(compared, relevant) if groups else {}
     return Discovery(
         verdict=outcome.kind,
         sentences=sentences(
-            outcome, relevant, explained, gap, residual_map, interface_scan, outside, widened
+            outcome, relevant, set_adequacy, gap, residual_map, interface_scan, outside, widened
         ),
         findings=relevant,
         traces=traces,
-        classes=ambiguous,
+        classes=groups,
         statuses=statuses,
         unexplained=tuple(residual_map.worst(DISAGREEMENTS_LISTED)) if outcome.kind == "unexplained" else (),
-        adequacy=explained,
+        adequacy=set_adequacy,
         search=search,
         decoy=decoy,
         nominal=nominal,
@@ -88,8 +88,7 @@ def discover(
         gap=gap,
         gaps=curve_gaps,
         held_out=predictions,
-        returned=returned(tuned, with_effects) if relevant else (),
-        next_tests=next_tests(outcome, relevant, ambiguous, statuses, separating),
+        next_tests=next_tests(outcome, relevant, groups, statuses, separating),
         seconds=time.perf_counter() - started,
         scan=interface_scan,
         widened=widened,
@@ -103,7 +102,7 @@ def with_verdicts(
     compared: Sequence[Alternatives],
     outcome: Verdict,
     final: Fit,
-    explained: Adequacy,
+    set_adequacy: Adequacy,
 ) -> tuple[Finding, ...]:
     """The findings, each with its own verdict: some are certain although the rest is not explained.
 
@@ -114,7 +113,7 @@ def with_verdicts(
     def judged(finding: Finding) -> Finding:
         place = own[finding.hypothesis.name]
         kind: FindingVerdict = "class" if ambiguous(finding) else "named"
-        doubt = name_doubt(place, final, explained)
+        doubt = name_doubt(place, final, set_adequacy)
         if outcome.kind == "unexplained":
             sure = certain(finding, place, final)
             kind, doubt = ("named", name_doubt(place, final, None)) if sure else ("lead", doubt)
@@ -133,16 +132,17 @@ def best_decoy(compared: Sequence[Alternatives], relevant: Sequence[Finding]) ->
 
 
 def _separating(
-    compared: Sequence[Alternatives], ambiguous: Sequence[Sequence[str]]
+    compared: Sequence[Alternatives], relevant: Sequence[Finding]
 ) -> dict[tuple[str, str], tuple[ExtraTest, ...]]:
-    """The load cases that tell the first effect of every class from each other one."""
+    """The load cases that tell an effect which others could be from each of those."""
     out: dict[tuple[str, str], tuple[ExtraTest, ...]] = {}
-    trials = {c.hypothesis.effect: c.trials for c in compared}
-    for first, *others in ambiguous:
-        own, *rest = trials[first]
+    trials = {c.hypothesis.name: c.trials for c in compared}
+    for finding in filter(ambiguous, relevant):
+        own, *rest = trials[finding.hypothesis.name]
+        first, *others = class_of(finding)
         for other in others:
             rival = next((t for t in rest if t.hypothesis.effect == other), None)
-            if rival is not None:
+            if rival is not None and (first, other) not in out:
                 out[first, other] = extra_tests(own.fit, rival.fit)
     return out
 
@@ -153,8 +153,8 @@ def resolved(search: EffectSearch, adequacy: Adequacy) -> bool:
     They take the model for right. Where what remains is not noise it is not; where the law of a friction is
     not the model's, what is missing of that hides effects larger than any such limit.
     """
-    fit, shares = search.with_law_discrepancy, search.discrepancy_shares
-    other_law = (shares.get(h.name, 0.0) > 0.0 and is_friction(fit, h) for h in fit.model.members)
+    shares = search.discrepancy_shares
+    other_law = (shares.get(h.name, 0.0) > 0.0 for h in frictions(search.with_law_discrepancy))
     return adequacy.holds and not any(other_law)
 
 
@@ -186,7 +186,10 @@ def _statuses(
 def gaps(
     likelihood: Likelihood, nominal: FloatArray, tuned: Fit, with_effects: Fit, decoy: Fit | None
 ) -> tuple[Gap, tuple[CurveGap, ...]]:
-    """The gap of all records together, and of each load case and response."""
+    """The gap of all records together, and of each load case and response.
+
+    likelihood: with the errors that it is in, those of all fits but the decoy's.
+    """
     rows: dict[tuple[str, str], list[int]] = {}
     for curve, place in likelihood.slices():
         at = rows.setdefault((curve.load_case, curve.response), [])
@@ -195,7 +198,7 @@ def gaps(
         "nominal": nominal,
         "tuned": tuned.residual,
         "with_effect": with_effects.residual,
-        "best_decoy": None if decoy is None else decoy.residual,
+        "best_decoy": None if decoy is None else _in_errors(decoy, likelihood),
     }
 
     def gap(places: slice | list[int], floor: float) -> Gap:
@@ -212,29 +215,9 @@ def noise_floor(fit: Fit) -> float:
     return float(np.sqrt(max(0.0, 1.0 - used / fit.residual.size)))
 
 
+def _in_errors(fit: Fit, likelihood: Likelihood) -> FloatArray:
+    return Rewhitening(fit.model.likelihood, likelihood)(fit.residual)
+
+
 def _rms(residual: FloatArray) -> float:
     return float(np.sqrt(np.mean(residual**2)))
-
-
-def returned(tuned: Fit, with_effects: Fit) -> tuple[Returned, ...]:
-    """Parameters that the re-tuned model had moved and that go back once the effects are there."""
-    model = with_effects.model
-    count = model.parameters
-    before = (tuned.z[:count] - model.centre[:count]) / model.prior_sd[:count]
-    after = (with_effects.z[:count] - model.centre[:count]) / model.prior_sd[:count]
-    nominal = model.space.values(model.centre[:count])
-    one, two = model.space.values(tuned.z[:count]), model.space.values(with_effects.z[:count])
-    out = [
-        Returned(
-            v.path,
-            nominal[v.path],
-            one[v.path],
-            two[v.path],
-            v.unit,
-            float(before[i]),
-            float(after[i]),
-        )
-        for i, v in enumerate(model.space.variables)
-        if abs(before[i]) >= RETURNS_FROM and abs(after[i]) < abs(before[i])
-    ]
-    return tuple(sorted(out, key=lambda r: abs(r.with_effect_distance) - abs(r.tuned_distance)))

@@ -65,7 +65,8 @@ class Finding:
     """Its numbers."""
     probability: float
     """That it is this effect, in whatever place, among it, none at all, and its rivals in its place, each
-    refitted."""
+    refitted, less the chance that something outside the library has taken its place; of a trace among those
+    alone."""
     log10_odds: float
     """log10 of the odds of the effect against the best of those, `against`."""
     against: str
@@ -73,7 +74,7 @@ class Finding:
     rivals: tuple[Rival, ...]
     """Other effects in its place, the most probable first."""
     gain: float
-    """ln of the evidence over the set without it."""
+    """ln of the evidence over that of the set without it."""
     detectability: float
     """Standard deviations that it makes after re-tuning."""
     wrong_name: float
@@ -121,26 +122,6 @@ class CurveGap:
     """Its whitened RMS; the noise floor is 1."""
 
 
-@dataclass(frozen=True)
-class Returned:
-    """A parameter that re-tuning alone moved away from nominal and that the effects bring back."""
-
-    path: str
-    """Path of the parameter."""
-    nominal: float
-    """Value of the axle file, in `unit`."""
-    tuned: float
-    """Value of the re-tuned axle without an effect, in `unit`."""
-    with_effect: float
-    """Value of the re-tuned axle with the effects, in `unit`."""
-    unit: str
-    """Unit of the parameter."""
-    tuned_distance: float
-    """Distance from nominal without an effect, in standard deviations of the prior."""
-    with_effect_distance: float
-    """The same with the effects."""
-
-
 @dataclass(frozen=True, repr=False)
 class Discovery:
     """The verdict on one car and its evidence."""
@@ -156,7 +137,8 @@ class Discovery:
     classes: tuple[tuple[str, ...], ...]
     """Ids of effects that the records do not tell apart, one group for each ambiguous finding."""
     statuses: tuple[HypothesisStatus, ...]
-    """Of every hypothesis of the library: found, a trace, excluded, unresolved or not testable."""
+    """Of every hypothesis that is in the set or can come in beside it: found, a trace, excluded, unresolved,
+    not testable or without an equilibrium."""
     unexplained: tuple[tuple[Contrast, float], ...]
     """The largest disagreements that remain, in standard deviations; empty unless unexplained."""
     adequacy: Adequacy
@@ -179,8 +161,6 @@ class Discovery:
     """The same of every load case and response."""
     held_out: tuple[HeldOut, ...]
     """Every load case predicted from all others; empty without a finding."""
-    returned: tuple[Returned, ...]
-    """Parameters that the effects bring back towards nominal, the largest return first."""
     next_tests: tuple[str, ...]
     """Tests that would separate a class, confirm a name or show what is not testable, in words."""
     seconds: float
@@ -198,8 +178,3 @@ class Discovery:
     def fitted(self) -> Fit:
         """The most probable axle, with the effects."""
         return self.search.with_effects
-
-    @property
-    def held_out_by_case(self) -> Mapping[str, HeldOut]:
-        """Load case -> its prediction."""
-        return {h.load_case: h for h in self.held_out}

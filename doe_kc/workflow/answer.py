@@ -15,6 +15,7 @@ from doe_kc.correlation.assessment import MISFIT, Assessment, Objection, assess
 from doe_kc.correlation.result import Correlation
 from doe_kc.curves import response_name
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.effects.words import effect_label
 from doe_kc.ground.output import write_json
 from doe_kc.load_cases import case_label
@@ -24,7 +25,6 @@ from doe_kc.reports.answer.overview_sheet import write_overview
 from doe_kc.reports.correlation.characteristics import characteristic_table
 from doe_kc.reports.correlation.twin_tables import twin_entry
 from doe_kc.reports.discovery.effect_words import effect_words
-from doe_kc.reports.discovery.words import size_words
 from doe_kc.reports.page.answer import files_there, write_answer_page
 from doe_kc.reports.page.links import link_pages
 from doe_kc.reports.page.simulation import write_simulation_page
@@ -173,7 +173,7 @@ def _effect_line(answer: Answer, effect: AdoptedEffect) -> str:
     place = (effect.id, effect.location)
     for finding in (*discovery.findings, *discovery.traces):
         if (finding.hypothesis.effect, finding.hypothesis.location) == place and finding.hypothesis.sizes:
-            return f"{effect.label}: {size_words(discovery, finding)}"
+            return f"{effect.label}: {size_words(finding)}"
     return effect.label
 
 

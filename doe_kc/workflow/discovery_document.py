@@ -12,9 +12,10 @@ from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, exclusion_limit
 from doe_kc.discovery.verdict.sentences import adequacy_words, odds_words
+from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
-from doe_kc.reports.discovery.words import HEADLINES, contrast_words, size_words
+from doe_kc.reports.discovery.words import HEADLINES, contrast_words
 
 HIDDEN = ("not testable", "no solution")
 
@@ -74,7 +75,7 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
 
 
 def effect_entry(finding: Finding) -> dict[str, Any]:
-    """id, location, others that would do as well, probability, odds and parameters of one effect."""
+    """id, location, others that would do as well, probability, odds, numbers and other options of an effect."""
     parameters: dict[str, dict[str, Any]] = {}
     length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
     for e in finding.estimates:
@@ -99,6 +100,7 @@ def effect_entry(finding: Finding) -> dict[str, Any]:
         "log10_odds": min(finding.log10_odds, CERTAIN),
         "against": finding.against or None,
         "parameters": parameters,
+        "options": dict(hypothesis.fixed) | ({"law": hypothesis.law} if hypothesis.law else {}),
     }
 
 
@@ -220,5 +222,5 @@ def discovery_lines(discovery: Discovery) -> list[str]:
 
 
 def _line(discovery: Discovery, finding: Finding) -> str:
-    sizes = f": {size_words(discovery, finding)}" if finding.hypothesis.sizes else ""
+    sizes = f": {size_words(finding)}" if finding.hypothesis.sizes else ""
     return f"{hypothesis_label(finding.hypothesis)}{sizes}, {odds_words(finding)}"

@@ -75,6 +75,14 @@ def test_a_signal_while_storing_waits_for_the_next_wait() -> None:
         os.kill(os.getpid(), signal.SIGINT)
 
 
+def test_a_part_within_another_leaves_it_allowed() -> None:
+    with pytest.raises(KeyboardInterrupt), Interrupts() as interrupts, interrupts.allowed():
+        with interrupts.allowed():
+            pass
+        os.kill(os.getpid(), signal.SIGINT)
+        pytest.fail("goes on")
+
+
 def test_other_threads_have_no_signals(toy: Toy) -> None:
     found: list[bool] = []
 

@@ -1,4 +1,4 @@
-"""A killed parent: its workers end too."""
+"""Workers end with their parent, and what they do with an exception of its."""
 
 from __future__ import annotations
 
@@ -6,10 +6,13 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from doe_kc.campaign.executors import processes
+from doe_kc.ground.errors import RunError
 from tests.cli.test_processes import await_true
 
 PARENT = """
@@ -51,6 +54,13 @@ def alive(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
     except OSError:
         return False
+
+
+def test_an_exception_ends_what_is_under_way() -> None:
+    with pytest.raises(RunError, match="interrupted"), processes(2) as executor:
+        begun = [executor.submit(time.sleep, 600.0) for _ in range(6)]
+        raise RunError("interrupted")
+    assert all(future.done() for future in begun)
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs /proc")

@@ -24,7 +24,7 @@ from doe_kc.solver.suite import solve
 from doe_kc.study import Study, read_study
 from doe_kc.workflow.discovery_document import discovery_document, discovery_lines, effect_entry, not_testable
 from doe_kc.workflow.write_discovery import DISCOVERY_TABLES, axle_note, write_discovery
-from tests.discovery.cases import AXLE, LOAD_CASES, discovery, records
+from tests.discovery.cases import AXLE, LOAD_CASES, discovery, library, records
 
 CARS = ["none", "named", "class", "unexplained", "lead", "two"]
 KEYS = [
@@ -165,6 +165,16 @@ def test_a_list_option_becomes_one_parameter() -> None:
     assert list(entry["parameters"]) == ["UPB"]
     assert len(entry["parameters"]["UPB"]["value"]) == len(entry["parameters"]["UPB"]["sd"]) == 3
     assert entry["parameters"]["UPB"]["unit"] == "1/mm^2"
+
+
+def test_the_rest_of_the_effects_table_is_in_its_options() -> None:
+    """Its law, and that a preload comes on top of the file's."""
+    friction, preload = (next(iter(library(ident))) for ident in ("steering_friction", "bushing_preload"))
+    by_law = next(v for v in EFFECTS["steering_friction"].variants(friction) if v.law == "iwan")
+    none = replace(discovery("lead").findings[0], estimates=())
+    assert effect_entry(replace(none, hypothesis=friction))["options"] == {}
+    assert effect_entry(replace(none, hypothesis=by_law))["options"] == {"law": "iwan"}
+    assert effect_entry(replace(none, hypothesis=preload))["options"] == {"added": True}
 
 
 def test_an_index_alone_keeps_its_place() -> None:

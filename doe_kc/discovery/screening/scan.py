@@ -201,7 +201,7 @@ def _place(
     strongest = float(np.abs(amplitudes).max())
     counted = tuple(str(names[i]) for i in order if strongest > 0 and abs(amplitudes[i]) > 0.2 * strongest)
     gain = 0.5 * gained - 0.5 * len(counted) * float(np.log1p(gained))
-    beyond_noise = tuned.misfit_left - tuned.residual.size - tuned.z.size
+    beyond_noise = tuned.misfit_left - tuned.residual.size
     explained_share = gained / max(beyond_noise, 1.0)
     return Place(interface, law, side, counted, float(np.sqrt(gained)), min(1.0, explained_share), 0.0), gain
 

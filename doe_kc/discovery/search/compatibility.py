@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import combinations
 
+from doe_kc.curves import SIDES
 from doe_kc.discovery.model import EffectModel
 from doe_kc.effects.hypothesis import Hypothesis
 
@@ -31,4 +32,7 @@ def _beside(one: Hypothesis, other: Hypothesis) -> bool:
 
 
 def _bushing(hypothesis: Hypothesis) -> str:
-    return (hypothesis.location or "").partition("_")[0]
+    """Its bushing, of either side; empty without a place."""
+    location = hypothesis.location or ""
+    head, _, side = location.rpartition("_")
+    return head if side in SIDES else location

@@ -67,11 +67,8 @@ class Step:
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
     added: tuple[Hypothesis, ...]
     """Effects that the step brought in."""
-
-    @property
-    def accepted(self) -> bool:
-        """Whether the first refit passes the threshold, so that its effects are the model from here on."""
-        return bool(self.added)
+    accepted: bool
+    """Whether its first refit, which may only have fewer effects, is the model from here on."""
 
 
 @dataclass(frozen=True)
@@ -111,19 +108,23 @@ class Decision:
         """What was screened."""
         return replace(self, trials=())
 
-    def step(self, own: Likelihood) -> Step:
-        """What is told of it. own: the records' own errors."""
+    def step(self, own: Likelihood, prior: SetPrior) -> Step:
+        """What is told of it. own: the records' own errors. prior: of sets."""
         before = self.before.model.members
         names = {h.name for h in before}
         refits = {t.hypothesis.name for t in self.trials}
-        there = [s for s in self.screened if s.hypothesis.name not in refits and not s.failed]
         candidates = [HypothesisGain(t.hypothesis, t.gain, True) for t in self.trials]
-        candidates += [HypothesisGain(s.hypothesis, s.gain, False) for s in there]
+        others = [
+            HypothesisGain(s.hypothesis, s.gain + prior.log_odds(before, s.hypothesis), False)
+            for s in self.screened
+            if s.hypothesis.name not in refits and not s.failed
+        ]
+        candidates += sorted(others, key=lambda c: -c.gain)
         after = self.trials[0].fit.model.members if self.accepted else ()
         added = tuple(h for h in after if h.name not in names)
         residual = Rewhitening(self.before.model.likelihood, own)(self.before.residual)
         gap = float(np.sqrt(np.mean(residual**2)))
-        return Step(before, gap, tuple(candidates), self.temper, added)
+        return Step(before, gap, tuple(candidates), self.temper, added, self.accepted)
 
 
 def threshold(count: int) -> float:
@@ -164,7 +165,7 @@ def next_decision(
     trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:
-        return Decision(current, tuple(screened), (), 1.0, False)
+        return Decision(current, tuple(screened), (), temper(current), False)
     first = trials[0]
     divisor = temper(first.fit if first.gain > ACCEPTED_ODDS else current)
     return Decision(current, tuple(screened), tuple(trials), divisor, first.gain / divisor > ACCEPTED_ODDS)

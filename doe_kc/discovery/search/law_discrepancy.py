@@ -20,6 +20,7 @@ from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, DISCREPANCY_SHARES
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.in_turn import in_turn
 from doe_kc.ground.typing import FloatArray
@@ -126,18 +127,8 @@ def _signal(
     for curve, change in zip(model.likelihood.curves, changes, strict=True):
         key = (curve.response, curve.branches)
         largest[key] = max(largest.get(key, 0.0), float(np.abs(change).max()))
-    return EffectSignal(changes, largest, _frictional(model, member, z), float(whitened @ whitened))
-
-
-def is_friction(fit: Fit, member: Hypothesis) -> bool:
-    """Whether a member of a fit is a friction."""
-    return _frictional(fit.model, member, fit.z)
-
-
-def _frictional(model: EffectModel, member: Hypothesis, z: FloatArray) -> bool:
-    place = next(p for h, p in model.places() if h == member)
-    alone = replace(model, members=(member,))
-    return alone.with_effects(np.concatenate([z[: model.dimension], z[place]])).topology.frictional
+    friction = EFFECTS[member.effect].frictional
+    return EffectSignal(changes, largest, friction, float(whitened @ whitened))
 
 
 def balanced_correlation(relative: FloatArray) -> FloatArray:

@@ -45,12 +45,20 @@ def with_exchanged_laws(
         best, gain = max(sets, key=lambda one: one[1], default=(last, 0.0))
         if gain <= ACCEPTED_ODDS:
             continue
-        changed = next(h for h in best.model.members if h.name == member.name)
+        changed = _changed(best.model.members, member, last.model.members)
         start = FitStart(best.model, best.z, best)
         other = search_from(search, start, changed, gain, library, workers)
         if other.log_posterior > search.log_posterior:
             return other
     return search
+
+
+def _changed(
+    members: Sequence[Hypothesis], member: Hypothesis, before: Sequence[Hypothesis]
+) -> Hypothesis | None:
+    """The member by its other law; of a set that asked for none of it an effect that is new; None without."""
+    own = [h for h in members if h.name == member.name]
+    return next(iter([*own, *(h for h in members if h not in before)]), None)
 
 
 def _freed(search: EffectSearch) -> set[str]:

@@ -9,7 +9,7 @@ import numpy as np
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
-from doe_kc.discovery.search.convergence import fit_to_errors
+from doe_kc.discovery.search.convergence import fit_to_errors, fits_to_errors
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -33,8 +33,8 @@ def backward_elimination(
         needed = {h.name: least - _odds(fit.model.members, h, prior) for h, _ in places}
         losses = {h.name: _loss(fit, place) for h, place in places}
         members = [(h, p) for h, p in places if losses[h.name] < REMOVAL_FACTOR * needed[h.name]]
-        errors = (without_own.get(h.name, fit.model.likelihood) for h, _ in members)
-        withs = [fit_to_errors(fit, likelihood, workers) for likelihood in errors]
+        errors = [without_own.get(h.name, fit.model.likelihood) for h, _ in members]
+        withs = fits_to_errors(fit, errors, workers)
         starts = [
             FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit, w.cost + 2.0 * BEYOND_DOUBT)
             for w, (h, place) in zip(withs, members, strict=True)

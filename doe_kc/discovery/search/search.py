@@ -19,7 +19,6 @@ from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
     fit_discrepancy,
-    is_friction,
     marginal,
     without_own_discrepancy,
 )
@@ -31,6 +30,7 @@ from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS, EFFECTS_MOST, MOST_STEPS
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -108,7 +108,7 @@ def search_from(
     steps, added = before.steps, (changed,) if changed else ()
     if changed:
         candidates = (HypothesisGain(changed, gain, True),)
-        step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), added)
+        step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), added, True)
         steps = (*steps, step)
     taken, _ = _with_loops(other, added, own.axle, workers, known=False)
     following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
@@ -158,9 +158,10 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         opening = first.screened if first else ()
         decision = next_decision(current, library, prior, workers, screened, opening, laws_open=laws_open)
         first = first or decision
-        steps.append(decision.step(model.likelihood))
+        steps.append(decision.step(model.likelihood, prior))
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
         if full or len(steps) >= MOST_STEPS:
+            steps[-1] = replace(decision, accepted=False).step(model.likelihood, prior)
             break
         before = current.model.likelihood
         instead = None
@@ -173,7 +174,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             )
             if needless:
                 decision = replace(decision, accepted=False)
-                steps[-1] = decision.step(model.likelihood)
+                steps[-1] = decision.step(model.likelihood, prior)
         if instead is not None:
             steps.pop()
             current = instead
@@ -245,7 +246,7 @@ def _with_loops(
 ) -> tuple[Fit, bool]:
     """A set that was taken, with the loops before the record that the records ask for, and whether those are
     known. own: the axle as given."""
-    if known or not any(is_friction(taken, h) for h in added):
+    if known or not any(EFFECTS[h.effect].frictional for h in added):
         return taken, known
     return with_conditioning(taken, own, workers)
 

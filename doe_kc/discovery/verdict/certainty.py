@@ -39,13 +39,13 @@ def remaining_share(own: Alternatives, final: Fit) -> float:
     return max(0.0, excess) / max(2.0 * own.loss, 1.0)
 
 
-def name_doubt(own: Alternatives, final: Fit, explained: Adequacy | None) -> float:
+def name_doubt(own: Alternatives, final: Fit, adequacy: Adequacy | None) -> float:
     """Odds that something outside the library is at work in a named effect's place.
 
-    How often a name was wrong in the benchmark, more where noise hardly explains what remains (`explained`;
+    How often a name was wrong in the benchmark, more where noise hardly explains what remains (`adequacy`;
     None where that is at work beside the effect), and what remains over what the effect explains.
     """
-    support = 1.0 if explained is None else explained.support
+    support = 1.0 if adequacy is None else adequacy.support
     return WRONG_NAMES / support + remaining_share(own, final)
 
 

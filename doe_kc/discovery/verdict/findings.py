@@ -85,7 +85,7 @@ def _finding(
         log10_odds=odds,
         against=against,
         rivals=rivals,
-        gain=own.trials[0].gain,
+        gain=own.loss,
         detectability=detectability,
         wrong_name=max(chances.values(), default=0.0),
         alike=_alike(own, chances),

@@ -11,10 +11,14 @@ from doe_kc.discovery.thresholds import CERTAIN, NOISE_DRAWS, PARAMETERS_LISTED,
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.extra_test import ExtraTest
+from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.effects import EFFECTS
-from doe_kc.effects.words import place_words
-from doe_kc.ground.numbers import number, unit_words, with_sd
+from doe_kc.effects.words import place_of, place_words
+from doe_kc.ground.numbers import number
+
+OBJECTION = "Against a name: "
+"""Begins a sentence with what keeps the whole set from a name."""
 
 
 def sentences(
@@ -34,7 +38,7 @@ def sentences(
     out = [_opening(verdict, findings, beyond)]
     out += [_one(f) for f in findings]
     if verdict.kind == "unexplained":
-        out += [f"Against a name: {o}." for o in verdict.objections]
+        out += [f"{OBJECTION}{o}." for o in verdict.objections]
         out += [
             f"Unexplained: {c.load_case}, {c.response}, {c.shape} ({c.wheels}), {z:+.1f} standard deviations."
             for c, z in remaining.worst(3)
@@ -61,20 +65,22 @@ def _outside(beyond: Sequence[str], widened: float) -> str:
 
 
 def _opening(verdict: Verdict, findings: Sequence[Finding], beyond: Sequence[str]) -> str:
-    names = _listed([_label(f) for f in findings])
+    sure = [f for f in findings if f.verdict == "named"]
+    unsure = [f for f in findings if f not in sure]
+    names, named, others = (_listed([_label(f) for f in some]) for some in (findings, sure, unsure))
     if verdict.kind == "named":
         return f"The model lacks {names}."
     if verdict.kind == "class":
-        return f"The model lacks an effect that is most likely {names}, but others cannot be told from it."
+        one = len(unsure) == 1
+        lack = f"{named}, and " if sure else ""
+        lack += f"{'an effect that is' if one else 'effects that are'} most likely {others}"
+        return f"The model lacks {lack}, but others cannot be told from {'it' if one else 'them'}."
     if verdict.kind == "none" and beyond:
         return "No effect is missing: re-tuning explains all records, though only beyond the bounds."
     if verdict.kind == "none":
         return "No effect is missing: re-tuning within production scatter explains all records."
-    sure = [f for f in findings if f.verdict == "named"]
     if sure:
-        named = " and ".join(_label(f) for f in sure)
-        more = " and ".join(_label(f) for f in findings if f not in sure)
-        lead = f"; the best lead is {more}" if more else ""
+        lead = f"; the best lead is {others}" if others else ""
         return (
             f"The model lacks {named}, and something besides that the library does not name for sure{lead}."
         )
@@ -89,21 +95,18 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _label(finding: Finding) -> str:
-    label = EFFECTS[finding.hypothesis.effect].label.lower()
-    place = finding.hypothesis.location
-    return f"{label} ({place_words(place)})" if place else label
+    label, place = _known(finding.hypothesis.effect), place_of(finding.hypothesis)
+    return f"{label} ({place})" if place else label
 
 
 def _one(finding: Finding) -> str:
-    sizes = ", ".join(
-        f"{e.key}{'' if e.index is None else f'[{e.index}]'} = {with_sd(e.value, e.sd)}{unit_words(e.unit)}"
-        for e in finding.estimates
-    )
+    sizes = size_words(finding)
     rivals = ", ".join(f"{_known(r.effect)} {r.probability:.0%}" for r in finding.rivals)
     label = _label(finding)
     text = f"{label[0].upper()}{label[1:]}: {odds_words(finding)}"
     text += f"; {sizes}" if sizes else ""
-    text += f"; at {' or '.join(finding.elsewhere)} it would do as well" if finding.elsewhere else ""
+    places = " or ".join(map(place_words, finding.elsewhere))
+    text += f"; at {places} it would do as well" if places else ""
     return text + (f"; else {rivals}." if rivals else ".")
 
 
@@ -165,7 +168,8 @@ def next_tests(
             out.setdefault(ident, f"To confirm {_known(ident)}: {EFFECTS[ident].shown_by}.")
     for effect, best in _untestable(statuses):
         how = f"{EFFECTS[effect].shown_by}{_component_words(best)}"
-        out.setdefault(effect, f"Not testable here, {_known(effect)}: {how}.")
+        seen = "Seen only as a trace" if best.status == "trace" else "Not testable here"
+        out.setdefault(effect, f"{seen}, {_known(effect)}: {how}.")
     return tuple(list(out.values())[:TESTS_ADVISED])
 
 

@@ -64,10 +64,13 @@ def ambiguous(finding: Finding) -> bool:
 
 def classes(findings: Sequence[Finding]) -> tuple[tuple[str, ...], ...]:
     """For every effect that is not sure: it and the rivals that it cannot be told from."""
+    return tuple(class_of(f) for f in findings if ambiguous(f))
+
+
+def class_of(finding: Finding) -> tuple[str, ...]:
+    """Ids of an effect and of the rivals that it cannot be told from."""
     return tuple(
-        tuple(dict.fromkeys((f.hypothesis.effect, *(r.effect for r in f.rivals), *f.alike)))
-        for f in findings
-        if ambiguous(f)
+        dict.fromkeys((finding.hypothesis.effect, *(r.effect for r in finding.rivals), *finding.alike))
     )
 
 

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 
 from doe_kc.correlation.answer_record import EffectWords
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.verdict.size_words import told_sizes
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
 from doe_kc.reports.discovery.effects import kind_of
-from doe_kc.reports.discovery.words import physics_words, told_sizes
+from doe_kc.reports.discovery.words import physics_words
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 SIZE_WORDS: Mapping[str, str] = {
@@ -45,10 +46,7 @@ def effect_words(discovery: Discovery, finding: Finding) -> EffectWords:
     return EffectWords(
         label=hypothesis_label(finding.hypothesis),
         kind=kind_of(discovery, finding),
-        sizes=[
-            f"{size_name(s.size, finding.hypothesis.location)} {s.words}"
-            for s in told_sizes(discovery, finding)
-        ],
+        sizes=[f"{size_name(s.size, finding.hypothesis.location)} {s.words}" for s in told_sizes(finding)],
         sure=sure_words(discovery, finding),
         physics=physics_words(finding),
         rivals=", ".join(
@@ -71,13 +69,13 @@ def size_name(size: Size, location: str | None = None) -> str:
 
 
 def sure_words(discovery: Discovery, finding: Finding) -> str:
-    """How sure it is that the car has the effect, against all others and what the library does not list."""
+    """How sure it is that the car has the effect, see `Finding.probability`."""
     kind = kind_of(discovery, finding)
     if kind == "trace":
         return "seen, too small to matter"
     if kind == "lead only":
         return "a lead: it explains part of the records, something else is at work beside it"
-    chance = _percent(finding.probability * (1.0 - (discovery.adequacy.unlisted or 0.0)))
+    chance = _percent(finding.probability)
     return f"sure ({chance})" if kind == "found" else f"most likely ({chance})"
 
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.sentences import against_words
+from doe_kc.discovery.verdict.size_words import SizeEstimate, size_estimates
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.words import effect_label, place_of
 from doe_kc.ground.numbers import sd_format
-from doe_kc.reports.discovery.words import FoundSize, found_sizes, mistaken_words, physics_words
+from doe_kc.reports.discovery.words import mistaken_words, physics_words
 from doe_kc.reports.table import Column, SheetLayout, Table
 
 ODDS = '[>=6]"> 6";0.0'
@@ -25,7 +26,7 @@ class EffectRow:
 
     finding: Finding
     kind: str
-    size: FoundSize | None
+    size: SizeEstimate | None
     mistaken: str
     first: bool
 
@@ -70,7 +71,7 @@ def effect_rows(discovery: Discovery) -> list[EffectRow]:
     out: list[EffectRow] = []
     for finding in (*discovery.findings, *discovery.traces):
         own = kind_of(discovery, finding)
-        sizes: list[FoundSize | None] = list(found_sizes(discovery, finding))
+        sizes: list[SizeEstimate | None] = list(size_estimates(finding))
         alike = mistaken_words(finding.hypothesis.effect, discovery.fitted.model.axle)
         out += [EffectRow(finding, own, size, alike, i == 0) for i, size in enumerate(sizes or [None])]
     return out

@@ -1,4 +1,4 @@
-"""Which effects the records ask for: ln evidence of each candidate, step by step of the search."""
+"""Which effects the records ask for: ln posterior odds of each candidate, step by step of the search."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ EVIDENCE_AXIS_START = -2.0
 
 @dataclass(frozen=True)
 class EvidenceBar:
-    """gain: ln evidence over the model without it; refitted: after a joint refit, else as screened."""
+    """gain: ln of the posterior odds over the set without it; refitted: after a joint refit, else as
+    screened."""
 
     label: str
     gain: float
@@ -65,7 +66,7 @@ def evidence_steps(discovery: Discovery) -> list[EvidenceStep]:
     out = []
     for i, step in enumerate(discovery.search.steps):
         names = ", ".join(hypothesis_words(h) for h in step.members)
-        title = f"Step {i + 1}: re-tuned with {names}" if names else "Step 1: re-tuned without an effect"
+        title = f"Step {i + 1}: re-tuned {f'with {names}' if names else 'without an effect'}"
         end = "" if step.accepted or i < last else "; nothing more is asked for"
         out.append(EvidenceStep(title + end, _candidates(step), ACCEPTED_ODDS * step.temper))
     return out
@@ -96,13 +97,13 @@ def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
     for panel in page.panels[:-1]:
         panel.numbers["x"] = False
     page.panels[-1].set_labels(
-        "how much more probable the records are with it (natural logarithm; 10 = 22 000 times)", None
+        "how much more probable the set is with it (natural logarithm; 10 = 22 000 times)", None
     )
     handles: list[Line2D | Patch] = [
         Patch(color=CHOSEN, label="taken into the model"),
         Patch(color=REFITTED, label="refitted jointly, not taken"),
         Patch(fc=SCREENED, ec="#8A9199", label="screened only"),
-        Line2D([], [], color="black", ls="--", lw=0.9, label="needed among so many candidates"),
+        Line2D([], [], color="black", ls="--", lw=0.9, label="needed: a hundred to one"),
     ]
     page.add_legend(handles, 4)
     page.set_heading(f"Evidence for effects: {study}", 1 - 0.06 / height)

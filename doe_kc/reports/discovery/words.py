@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from typing import Any
 
 from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle.model import Axle
 from doe_kc.axle.places import places_of
 from doe_kc.curves import response_name
-from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate, VerdictKind
+from doe_kc.discovery.result import Discovery, Finding, VerdictKind
 from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.effects.words import effect_label
-from doe_kc.ground.numbers import number, unit_words, with_sd
+from doe_kc.ground.numbers import number, unit_words
 from doe_kc.load_cases import case_label
 
 HEADLINES: dict[VerdictKind, str] = {
@@ -119,50 +118,3 @@ def _number_at(size: Size, amplitude: float, digits: int = 3) -> str:
 def typical_words(hypothesis: Hypothesis) -> str:
     """Typical size, e.g. `force_N 250 N`."""
     return "; ".join(f"{s.key} {number(s.typical)}{unit_words(s.unit)}" for s in merged_sizes(hypothesis))
-
-
-@dataclass(frozen=True)
-class FoundSize:
-    """One number of a found effect."""
-
-    size: Size
-    estimate: ParameterEstimate
-
-    @property
-    def seen(self) -> bool:
-        """Whether the records tell it from none."""
-        return self.estimate.limit is None and self.estimate.shown
-
-    @property
-    def words(self) -> str:
-        """`5012 ± 26 Nm/deg`, or the limit of one that cannot be told from none, or that it is not shown."""
-        unit = unit_words(self.size.unit)
-        if not self.estimate.shown:
-            return "not shown by these records"
-        if self.estimate.limit is None:
-            return f"{with_sd(self.estimate.value, self.estimate.sd)}{unit}"
-        limit = f"{number(self.estimate.limit)}{unit}"
-        if self.size.growth == "compliance":
-            return f"not told from rigid (above {limit}, 95 %)"
-        return f"not told from none (below {limit}, 95 %)"
-
-    @property
-    def sentence(self) -> str:
-        """The option's name with `words`."""
-        return f"{self.size.name} {'= ' if self.seen else ''}{self.words}"
-
-
-def found_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
-    """The numbers of a finding in the order of its hypothesis."""
-    for size, own in zip(finding.hypothesis.sizes, finding.estimates, strict=True):
-        yield FoundSize(size, own)
-
-
-def size_words(discovery: Discovery, finding: Finding) -> str:
-    """The sizes of a finding in one line."""
-    return "; ".join(s.sentence for s in told_sizes(discovery, finding))
-
-
-def told_sizes(discovery: Discovery, finding: Finding) -> Iterator[FoundSize]:
-    """Those that a reader can use: without the sliders of a free law, which mean nothing one by one."""
-    return (s for s in found_sizes(discovery, finding) if not (s.size.shape and s.size.index is not None))

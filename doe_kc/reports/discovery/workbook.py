@@ -74,8 +74,8 @@ DISCOVERY_LEGEND = {
     ),
     "Probability": (
         "That it is this effect, in whatever place, all other effects in the model: among it, its removal "
-        "and its rivals in its place, each refitted. An effect outside the library is another question: see "
-        "the adequacy."
+        "and its rivals in its place, each refitted, less the chance that something outside the library has "
+        "taken its place; of a trace among those alone."
     ),
     "log10 odds": (
         "Of the effect against the best alternative, all others in the model: 2 is a hundred to one; 6 says "

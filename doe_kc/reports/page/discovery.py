@@ -13,6 +13,7 @@ from matplotlib.colors import LogNorm, to_hex
 
 from doe_kc.curves import response_name
 from doe_kc.discovery.result import Discovery, VerdictKind
+from doe_kc.discovery.verdict.sentences import OBJECTION
 from doe_kc.effects.words import effect_label
 from doe_kc.ground.numbers import with_sd
 from doe_kc.load_cases import case_label
@@ -119,6 +120,8 @@ def _remains(discovery: Discovery) -> list[str]:
     ]
     if discovery.beyond:
         out.append(f"Outside their bounds: {', '.join(discovery.beyond)}; check the nominal axle.")
+    if discovery.verdict == "unexplained":
+        return out or [s for s in discovery.sentences if s.startswith(OBJECTION)]
     return out or [
         f"Nothing: {discovery.gap.with_effect:.2f} times the noise of the rig are left, which is noise."
     ]

@@ -15,9 +15,9 @@ from doe_kc.reports.render.page import Section, render, table_html
 from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 
 CANDIDATES_LEAD = (
-    "Effects are added one by one, each with all parameters re-tuned. The evidence counts how much better "
-    "the records are explained and charges for the added freedom; it must pass what chance reaches among so "
-    "many candidates. Screened ones were not worth a joint refit."
+    "Effects are added one by one, each with all parameters re-tuned. The odds count how much better the "
+    "records are explained, charge for the added freedom and for how many effects there are to choose from; "
+    "a hundred to one are needed. Screened ones were not worth a joint refit."
 )
 HELD_OUT = (
     "Each load case is left out, the models are fitted to all the others and predict it. A right effect "
@@ -56,7 +56,7 @@ CANDIDATE_COLUMNS: tuple[Column[CandidateRow], ...] = (
     Column("candidate", "Candidate", lambda r: r.bar.label,
            page=PageCell(style="first", strong=lambda r: r.how == "taken")),
     Column("how", "How far", lambda r: r.how, page=PageCell()),
-    Column("gain", "ln evidence gained", lambda r: r.bar.gain, "0.0",
+    Column("gain", "ln odds gained", lambda r: r.bar.gain, "0.0",
            page=PageCell(text=lambda r: gain_words(r.bar.gain).lstrip("+"))),
     Column("bar", "on a logarithmic scale", lambda r: r.bar.gain,
            page=PageCell(text=lambda r: _bar(r), order=lambda r: r.bar.gain)),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
+from doe_kc.discovery.verdict.size_words import size_estimates, size_words
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.effects.words import hypothesis_label, place_words
@@ -23,7 +24,7 @@ from doe_kc.reports.discovery.isolability import (
 from doe_kc.reports.discovery.library import library_table
 from doe_kc.reports.discovery.parameters import tuned_parameters, tuned_table
 from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery.words import HEADLINES, found_sizes, limit_words, size_words
+from doe_kc.reports.discovery.words import HEADLINES, limit_words
 from doe_kc.reports.render.csv import table_frame
 from tests.discovery.cases import LOAD_CASES, discovery, records
 
@@ -121,14 +122,14 @@ def test_effects_have_a_row_for_each_number(car: str, kinds: list[str]) -> None:
 
 def test_a_size_that_cannot_be_told_from_none_is_a_limit() -> None:
     found = discovery("named")  # its car's hub is rigid in toe for these load cases
-    camber, toe = found_sizes(found, found.findings[0])
+    camber, toe = size_estimates(found.findings[0])
     assert camber.seen and "±" in camber.words
     assert not toe.seen
     limited = replace(toe, estimate=replace(toe.estimate, limit=20000.0, shown=True))
     assert not limited.seen and limited.words == "not told from rigid (above 20000 Nm/deg, 95 %)"
     unshown = replace(toe, estimate=replace(toe.estimate, limit=None, shown=False))
     assert not unshown.seen and unshown.words == "not shown by these records"
-    assert size_words(found, found.findings[0]).startswith("camber_Nm_deg = ")
+    assert size_words(found.findings[0]).startswith("camber_Nm_deg = ")
 
 
 def test_the_sheet_has_no_number_for_a_size_that_is_not_told() -> None:
