@@ -75,7 +75,7 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
 
 
 def effect_entry(finding: Finding) -> dict[str, Any]:
-    """id, location, others that would do as well, probability, odds, numbers and other options of an effect."""
+    """id, location, others that would do as well, probability, odds and table of an effect."""
     parameters: dict[str, dict[str, Any]] = {}
     length = 1 + max((e.index or 0 for e in finding.estimates), default=0)
     for e in finding.estimates:
