@@ -2,8 +2,8 @@
 
 The polynomials are orthonormal on the n inputs of a load case (evenly spaced: Gram polynomials),
 so that coefficients are products with a matrix, and the highest degree gives every point back. Each curve has
-the lowest degree of `DEGREES` that misses no point by half of its accuracy, and its coefficients are rounded
-so that no point moves by the other half.
+as few coefficients, by `COEFFICIENTS`, as miss no point by half of its accuracy, and these are rounded so
+that no point moves by the other half.
 Source: W. Gautschi, Orthogonal Polynomials: Computation and Approximation (2004), 1.5.2.
 """
 
@@ -21,7 +21,7 @@ from doe_kc.ground.typing import FloatArray
 
 FIT_ACCURACY: Mapping[str, float] = {"deg": 3e-4, "mm": 2e-3, "N": 0.4}
 """Unit of a response -> largest deviation of a rebuilt point."""
-DEGREES = (3, 5, 8, 12, 16, 24, 32, 48)
+COEFFICIENTS = (3, 5, 8, 12, 16, 24, 32, 48)
 """Numbers of coefficients that are tried, then all n."""
 IntArray = NDArray[np.int32]
 
@@ -52,7 +52,7 @@ def fitted(inputs: FloatArray, curves: FloatArray, steps: FloatArray) -> CurveFi
     half = steps * np.sqrt(n) / 2.0
     counts = np.full(len(curves), n)
     places, left, before = np.arange(len(curves)), curves, 0
-    for count in (c for c in DEGREES if c < n):
+    for count in (c for c in COEFFICIENTS if c < n):
         left = left - coefficients[places, before:count] @ basis[:, before:count].T
         more = np.abs(left).max(axis=1) > half[places]
         counts[places[~more]] = count

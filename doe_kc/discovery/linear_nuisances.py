@@ -1,7 +1,7 @@
-"""Nuisances whose columns are the same at every point of a fit: differences between the sides, and clutter.
+"""Nuisances whose columns are the same at every point of a fit: differences between the sides, and traces.
 
-Clutter are traces of every effect that is not in the model, further Gaussian unknowns of a fit. Every car
-has a little of each. Without them what they do to the records would pass for another effect, or shift the
+Traces of every effect that is not in the model are further Gaussian unknowns of a fit. Every car has a
+little of each. Without them what they do to the records would pass for another effect, or shift the
 sizes of those in the model. With the slab prior of a member's sizes this is a spike and slab (T. J.
 Mitchell, J. J. Beauchamp, Journal of the American Statistical Association 83, 1988): the errors of all sets
 of effects are the same but for the members themselves.

@@ -29,10 +29,6 @@ class Changes:
     is_residual: bool = False
     """Whether they are the residual itself, to which the prior's rows belong."""
 
-    def scaled(self, factors: FloatArray) -> Changes:
-        """Linear combinations of the changes, by factors (k, l)."""
-        return Changes(self.rows @ factors, self.pulled @ factors)
-
     def columns(self, places: NDArray[np.int_] | slice) -> Changes:
         """Some of the changes."""
         return Changes(self.rows[:, places], self.pulled[:, places], self.is_residual)

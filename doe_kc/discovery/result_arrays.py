@@ -39,7 +39,7 @@ def screening_arrays(screening: Screened) -> Arrays:
     return {
         "amplitudes": screening.amplitudes,
         "sd": screening.sd,
-        "numbers": np.array([screening.gain, screening.score, screening.detectability, screening.absorbed]),
+        "numbers": np.array([screening.gain, screening.detectability, screening.absorbed]),
         "columns": screening.columns,
         "change": screening.change,
         "bend": screening.bend,
@@ -50,13 +50,12 @@ def screening_arrays(screening: Screened) -> Arrays:
 
 def screening_of_arrays(hypothesis: Hypothesis, known: Arrays) -> Screened:
     """The screening of a hypothesis that `screening_arrays` gave these for."""
-    gain, score, detectability, absorbed = (float(v) for v in known["numbers"])
+    gain, detectability, absorbed = (float(v) for v in known["numbers"])
     return Screened(
         hypothesis,
         known["amplitudes"],
         known["sd"],
         gain,
-        score,
         known["columns"],
         known["change"],
         known["bend"],

@@ -81,11 +81,11 @@ FIT_POOR_RATIO = 0.25
 FIT_GOOD_RATIO = 0.75
 """-, decrease over its prediction, above which the trust radius grows. Usual (Conn, Gould, Toint 2000)."""
 LEAST_STEP = 0.0001
-"""prior standard deviations, trust radius below which a fit is given up. Beyond any
-use: on a car with one effect 0.001 and 0.00001 gave the same."""
+"""of a parameter's range and of an effect's typical size, trust radius below which a fit is given up. Beyond
+any use: on a car with one effect 0.001 and 0.00001 gave the same."""
 LARGEST_RADIUS = 2.0
-"""prior standard deviations, trust radius at most. Beyond, no axle is linear; on a car with one effect
-0.7 and 6 gave the same verdict and sizes."""
+"""of a parameter's range and of an effect's typical size, trust radius at most. Beyond, no axle is linear; on
+a car with one effect 0.7 and 6 gave the same verdict and sizes."""
 AMPLITUDE_LIMIT = 2.0
 """times what is believed, amplitude that a fit does not go beyond. Room for the verdict to refuse what is too
 large."""
@@ -156,9 +156,9 @@ SHAPE_STARTS = (0.0, -2.0, 2.0)
 """prior standard deviations, starts of a shape. It does not exist where the effect is absent (Davies
 1977)."""
 RESCREENED_MOST = 6
-"""-, hypotheses that are screened anew at a later step at most, those of the largest score. Only the
+"""-, hypotheses that are screened anew at a later step at most, those of the largest gain. Only the
 first few are refitted: on a car with one effect 3 and 30 gave the same verdict, sizes and time, on one with
-five what came in was the first of the score each time."""
+five what came in was the first of them each time."""
 PROMISING = 1.0
 """ln evidence to first order, from which a hypothesis is screened anew at a later step. As `HOPELESS`."""
 CHUNKS = 4
@@ -181,7 +181,7 @@ ABSORBED_SHARE = 0.95
 """-, share that re-tuning absorbs, from which all such effects are refitted. Differences of large changes are
 missed by a screening of first order in the parameters."""
 OVERLOOKED_MOST = 6
-"""-, such effects that are refitted at most, those of the largest score. Each costs a
+"""-, such effects that are refitted at most, those of the largest gain. Each costs a
 refit: on a car with one effect 2 and 18 gave the same verdict and sizes."""
 BENT_SHARE = 0.33
 """-, share of the parameters that bounds hold back, from which refits begin at the nominal axle too. A
@@ -197,8 +197,8 @@ of the rig 90 and lost 11, while a tyre compliance that promised 65 gained 82.""
 TIED_EVIDENCE = 1.0
 """ln evidence, up to which two places are equally good. Less than one standard deviation."""
 FALSE_ALARM = 0.01
-"""-, chance that noise alone brings in any effect, at the limits of exclusion. The usual level of one in a
-hundred, shared by the whole library (Bonferroni)."""
+"""-, chance that noise alone brings in any effect, at the limits of exclusion and among screenings that are
+refitted. The usual level of one in a hundred, shared by the whole library (Bonferroni)."""
 EFFECTS_ABSENT = 20.0
 """-, second parameter of the Beta prior of an effect's probability, the first is 1. One effect in 21 before
 the records: a library of two dozen, of which a car has one or a few."""
@@ -206,7 +206,8 @@ ACCEPTED_ODDS = 4.6
 """ln posterior odds, from which an effect is taken into the set. A hundred to one: what comes in is pruned
 later, what stays out is not looked at again in the step."""
 PROPOSAL_MOVES = 12
-"""-, moves to the most probable set to first order at most. Twice the number of effects."""
+"""-, moves to the most probable set to first order at most. Room for `EFFECTS_MOST` and
+two exchanges."""
 PROPOSAL_PAIRS = 6
 """-, effects of which pairs are proposed. Fifteen pairs beside each set: milliseconds."""
 PROPOSAL_GAIN = 50.0

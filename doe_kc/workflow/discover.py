@@ -23,6 +23,7 @@ from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.errors import InputError, nearest
+from doe_kc.ground.threads import one_thread
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study
 from doe_kc.variables import Space, VariableOptions, build_space
@@ -30,6 +31,7 @@ from doe_kc.variables import Space, VariableOptions, build_space
 Progress = Callable[[str, int, int], None]
 
 
+@one_thread()
 def discover_study(
     study: Study,
     measurement: Measurement,
@@ -125,6 +127,7 @@ def discovery_space(axle: Axle, options: VariableOptions, source: str) -> Space:
     return build_space(axle, free, source)
 
 
+@one_thread()
 def discover_folder(
     axle_path: Path,
     measurement_dir: Path | Sequence[Path],

@@ -19,7 +19,7 @@ from doe_kc.discovery.derivatives import (
 from doe_kc.discovery.fit import Fit, amplitude_estimates, cost_of
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.baseline import tune, with_clutter
+from doe_kc.discovery.search.baseline import tune, with_traces
 from doe_kc.discovery.thresholds import TRACE_SD
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
@@ -154,7 +154,7 @@ def test_the_size_of_an_effect_on_both_sides_is_its_mean() -> None:
     """Moved from a free play to its traces on either side, nothing changes but the prior's cost."""
     bare = tune(model("named"))
     both, left, right = library("tie_rod_free_play")
-    traced = with_clutter(bare, DiscoveryWorkers().screenings(bare, [both, left, right]))
+    traced = with_traces(bare, DiscoveryWorkers().screenings(bare, [both, left, right]))
     beside = traced.model.extended(both)
     assert traced.model.nuisances is not None
     names = [f"{t.hypothesis.name} {t.size.name}" for t in traced.model.nuisances.traces]

@@ -13,7 +13,7 @@ from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace, trace_mean
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import screen
-from doe_kc.discovery.search.search import tune, with_clutter
+from doe_kc.discovery.search.search import tune, with_traces
 from doe_kc.discovery.thresholds import TRACE_SD
 from tests.discovery.cases import library, model
 
@@ -25,7 +25,7 @@ def tuned() -> Fit:
 
 @pytest.fixture(scope="module")
 def cluttered(tuned: Fit) -> Fit:
-    return with_clutter(tuned, [screen(tuned, h) for h in library("hub_compliance", "tie_rod_compliance")])
+    return with_traces(tuned, [screen(tuned, h) for h in library("hub_compliance", "tie_rod_compliance")])
 
 
 def test_traces_are_of_amounts_at_three_per_cent(tuned: Fit, cluttered: Fit) -> None:

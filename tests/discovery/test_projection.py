@@ -31,7 +31,7 @@ def test_inner_products_are_those_of_the_marginal_covariance(tuned: Fit) -> None
     assert np.allclose(fit.projection.squares(own), np.diag(exact), rtol=1e-6)
     one, other = own.columns(slice(1)), own.columns(slice(1, 2))
     assert np.allclose(fit.projection.inner(one, other), exact[:1, 1:], rtol=1e-6, atol=1e-9)
-    both = own.scaled(np.array([[1.0], [-2.0]]))
+    both = fit.changes(rows @ np.array([[1.0], [-2.0]]))
     assert np.allclose(fit.projection.squares(both), exact[0, 0] - 4.0 * exact[0, 1] + 4.0 * exact[1, 1])
 
 

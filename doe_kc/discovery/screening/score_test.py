@@ -51,7 +51,6 @@ def _tested(
         amplitudes=amplitudes if known.amplitudes.size else known.amplitudes,
         sd=np.sqrt(np.diag(np.linalg.inv(hessian)))[: known.amplitudes.size],
         gain=gain,
-        score=float(np.sqrt(max(0.0, float(-slope @ amplitudes)))),
         detectability=detectability,
         absorbed=1.0 - detectability**2 / square if square > 0.0 else 0.0,
         size_detectability=size_detectability(known.hypothesis, alone, detectability),

@@ -46,8 +46,6 @@ class Screened:
     """(m,) standard deviations of them, after re-tuning and the prior."""
     gain: float
     """ln of the evidence over the model without it; -inf where it has no equilibrium."""
-    score: float
-    """Standard deviations by which the fit improves."""
     columns: FloatArray
     """(M, m) derivative of the residual to the amplitudes, at `amplitudes`."""
     change: FloatArray
@@ -115,9 +113,7 @@ def _failure(fit: Fit, hypothesis: Hypothesis, reason: str) -> Screened:
     empty = np.zeros(len(hypothesis.sizes))
     nothing = np.zeros((fit.residual.size, empty.size))
     none = np.zeros(fit.residual.size)
-    return Screened(
-        hypothesis, empty, empty + np.inf, -np.inf, 0.0, nothing, none, none, 0.0, 0.0, empty, reason
-    )
+    return Screened(hypothesis, empty, empty + np.inf, -np.inf, nothing, none, none, 0.0, 0.0, empty, reason)
 
 
 def _promising_shape(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
@@ -247,13 +243,11 @@ def _summary(fit: Fit, hypothesis: Hypothesis, best: _AmplitudeSolution, change:
     seen, square = float(fit.without_traces.squares(fit.changes(change))[0]), float(change @ change)
     alone = fit.without_traces.gram_of(best.columns)
     solved = done if best.solved else columns @ best.amplitudes
-    fitted = best.cost - float(best.amplitudes @ best.amplitudes)
     return Screened(
         hypothesis,
         best.amplitudes,
         np.sqrt(np.diag(np.linalg.inv(hessian))),
         0.5 * (fit.misfit_left - best.cost) - 0.5 * float(np.linalg.slogdet(hessian)[1]),
-        float(np.sqrt(max(0.0, fit.misfit_left - fitted))),
         columns,
         change,
         solved - columns @ best.amplitudes,

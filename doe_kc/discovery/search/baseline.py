@@ -63,7 +63,7 @@ def _sides(fit: Fit) -> FloatArray:
     return np.asarray(model.scatter * side_differences(model.axle_at(fit.z), model.space, model.likelihood))
 
 
-def with_clutter(tuned: Fit, screened: Sequence[Screened]) -> Fit:
+def with_traces(tuned: Fit, screened: Sequence[Screened]) -> Fit:
     """The re-tuned axle with traces of all effects, those that cannot move anything left out."""
     traces: list[Trace] = []
     columns: list[FloatArray] = []

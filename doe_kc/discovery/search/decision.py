@@ -138,12 +138,12 @@ def next_decision(
     prior: SetPrior,
     workers: DiscoveryWorkers,
     known: Sequence[Screened],
-    opening: Sequence[Screened],
+    first_screened: Sequence[Screened],
     *,
     laws_open: bool,
 ) -> Decision:
-    """known: every hypothesis as it was screened last, in the errors of `current`. opening: as at the first
-    step. laws_open: whether other laws of the frictions in the set have yet to be tried.
+    """known: every hypothesis as it was screened last, in the errors of `current`. first_screened: as at the
+    first step. laws_open: whether other laws of the frictions in the set have yet to be tried.
 
     A decoy of another kind is refitted beside the first effect alone: beside further ones the verdict does so
     at the last set.
@@ -153,7 +153,7 @@ def next_decision(
     trials = set_refits(current, _proposed(current, screened, prior), prior, workers)
     if not any(_passes(t, current) for t in trials):
         trials += _leader_refits(current, screened, least, prior, workers)
-    trials += refits_from_nominal(current, screened, opening, trials, prior, workers)
+    trials += refits_from_nominal(current, screened, first_screened, trials, prior, workers)
     if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]

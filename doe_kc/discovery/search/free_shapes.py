@@ -64,7 +64,7 @@ def _with_shapes(
 
     refits = workers.fits(
         [start, *_other_travels(start)],
-        "opening laws",
+        "freeing laws",
         enough=lambda refit: refit is not None and refit.cost <= current.cost and explains(refit),
     )
     near = [f for f in refits if f is not None and f.cost <= current.cost + 2.0 * FREE_SHAPE_LOSS]
@@ -108,7 +108,7 @@ def best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:
     """
     fits = workers.fits(
         [start, *_other_travels(start)],
-        "opening laws",
+        "freeing laws",
         enough=lambda refit: refit is not None and refit.residual_map.chance >= NOISE_CHANCE,
     )
     return max((f for f in fits if f is not None), key=lambda f: f.evidence, default=None)

@@ -37,7 +37,8 @@ def with_friction_laws(
     current: Fit, own: Likelihood, shares: Mapping[str, float], workers: DiscoveryWorkers
 ) -> tuple[Fit, Set[str]]:
     """The fit with the best laws of the frictions whose law has a discrepancy: closed ones, and free ones of
-    those that `with_free_shapes` leaves; and names of those that `with_best_laws` need not compare again.
+    those that `with_free_shapes` leaves; and names of those that `with_best_closed_laws` need not compare
+    again.
 
     own: the records' own errors, see `with_free_laws`. shares: member's name -> its law's discrepancy among
     the errors of the fit. Asked once nothing else comes in: a friction of two stages, 268 N, was 211 +- 7 N
@@ -61,7 +62,7 @@ def with_friction_laws(
 
 def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> tuple[Fit, Set[str]]:
     """The fit with the laws that gain evidence, closed or free, where nothing else explains what remains; and
-    names of the frictions that `with_best_laws` need not compare again.
+    names of the frictions that `with_best_closed_laws` need not compare again.
 
     own: the records' own errors, to which such a law is fitted: errors that hold the discrepancy of the law
     before it take a poor one for explained. A friction of two stages, 227 N over 0.19 mm, ended at 223 N over
@@ -126,7 +127,7 @@ def _explained(exact: Fit) -> bool:
     return settled.residual_map.chance >= NOISE_CHANCE
 
 
-def with_best_laws(current: Fit, workers: DiscoveryWorkers, compared: Set[str] = frozenset()) -> Fit:
+def with_best_closed_laws(current: Fit, workers: DiscoveryWorkers, compared: Set[str] = frozenset()) -> Fit:
     """The fit with the closed law of most evidence for every friction on which other sizes may hang, but
     those that have been compared.
 

@@ -38,7 +38,7 @@ def laws_instead(
         return None
     exact, rival = fit_to_errors(current, own, workers), refit_to_errors(further.fit, own)
     best = _with_best_laws(exact, members, workers)
-    (added,) = workers.fits([FitStart(rival.model, rival.z, rival)], "opening laws")
+    (added,) = workers.fits([FitStart(rival.model, rival.z, rival)], "freeing laws")
     if best is exact or added is None:
         return None if best is exact else best
     if best.evidence > added.evidence + further.prior:
@@ -67,7 +67,7 @@ def needless_beside_laws(
         return False
     exact, rival = (fit_to_errors(fit, own, workers) for fit in (current, further.fit))
     starts = [with_most_numbers(fit, bending) for fit in (exact, rival)]
-    bent, both = workers.fits(starts, "opening laws")
+    bent, both = workers.fits(starts, "freeing laws")
     if bent is None or both is None or bent.evidence <= rival.evidence + further.prior:
         return False
     settled, _ = fit_discrepancy(bent, effect_signals(bent))

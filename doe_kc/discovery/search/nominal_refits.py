@@ -40,7 +40,7 @@ from doe_kc.solver.result import NotConverged
 def refits_from_nominal(
     current: Fit,
     screened: Sequence[Screened],
-    opening: Sequence[Screened],
+    first_screened: Sequence[Screened],
     trials: Sequence[HypothesisFit],
     prior: SetPrior,
     workers: DiscoveryWorkers,
@@ -50,10 +50,10 @@ def refits_from_nominal(
     that gain, as one set. Where a fault of the rig leads, of what led before any effect.
 
     From an axle that is bent a refit may not find back, and beside one of two large effects the other does
-    not show; a fault of the rig may be all that it sees of an effect of the car. opening: as they were
+    not show; a fault of the rig may be all that it sees of an effect of the car. first_screened: as they were
     screened before any effect. trials: other refits of the same step, which count among all.
     """
-    bent, first = many_held(current), leading_at_first(opening, current.model)
+    bent, first = many_held(current), leading_at_first(first_screened, current.model)
     if current.residual_map.chance >= NOISE_CHANCE or not (bent or (first and _rig_fault_leads(trials))):
         return []
     try:
@@ -110,13 +110,13 @@ def leading_from_nominal(gains: Sequence[BoundedGain]) -> list[BoundedGain]:
     return [one for i, one in enumerate(best.values()) if i < NOMINAL_REFITS or id(one) in first]
 
 
-def leading_at_first(opening: Sequence[Screened], model: EffectModel) -> list[Screened]:
+def leading_at_first(first_screened: Sequence[Screened], model: EffectModel) -> list[Screened]:
     """Of the effects that the model lacks and can take, the first ones by their screening before any effect:
     beside a friction that bends the axle, a ride height 7 mm off promised -3 of ln evidence, and 36 000
     before."""
     best: dict[str, Screened] = {}
     has = {h.effect for h in model.members}
-    for s in sorted(opening, key=lambda s: -s.gain):
+    for s in sorted(first_screened, key=lambda s: -s.gain):
         if s.gain > ACCEPTED_ODDS and s.hypothesis.effect not in has:
             best.setdefault(s.hypothesis.effect, s)
     return list(best.values())[:NOMINAL_REFITS]

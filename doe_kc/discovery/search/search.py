@@ -11,7 +11,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
-from doe_kc.discovery.search.baseline import tune, with_clutter, with_sides_anew, with_traces_anew
+from doe_kc.discovery.search.baseline import tune, with_sides_anew, with_traces, with_traces_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.convergence import at_optimum, both_optima, converged_fit, fit_to_errors
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
@@ -22,7 +22,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     without_own_discrepancy,
 )
-from doe_kc.discovery.search.laws import may_open, with_best_laws, with_free_laws, with_friction_laws
+from doe_kc.discovery.search.laws import may_open, with_best_closed_laws, with_free_laws, with_friction_laws
 from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -123,7 +123,7 @@ def _start(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
     tuned = tune(model)
     workers.watch("re-tuning", 1)
     screened = workers.screenings(tuned, library)
-    current = with_clutter(tuned, screened)
+    current = with_traces(tuned, screened)
     return _SearchState(tuned, (), current, tuple(screened), {}, {}, SetPrior.of(library))
 
 
@@ -155,8 +155,10 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
         laws_open = not laws_tried and may_open(current)
-        opening = first.screened if first else ()
-        decision = next_decision(current, library, prior, workers, screened, opening, laws_open=laws_open)
+        first_screened = first.screened if first else ()
+        decision = next_decision(
+            current, library, prior, workers, screened, first_screened, laws_open=laws_open
+        )
         first = first or decision
         steps.append(decision.step(model.likelihood, prior))
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
@@ -213,7 +215,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         first = first.without_derivatives
     decision = decision.without_trials
     current = at_optimum(with_traces_anew(current), workers)
-    current = with_best_laws(current, workers, compared)
+    current = with_best_closed_laws(current, workers, compared)
     before_shapes = current.evidence
     current, other = with_free_shapes(current, workers)
     shape_loss = before_shapes - current.evidence

@@ -27,7 +27,6 @@ from doe_kc.discovery.search.refits import (
     refit_starts,
 )
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import NAME_ALWAYS_LEVEL
 from doe_kc.discovery.verdict.removals import Removal, ceiling_of, in_groups, own_errors, removals
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -185,7 +184,7 @@ def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWork
     """The alternatives from refits of the search; frictional ones driven by the loops of the last set."""
     first, final = search.first, search.with_law_discrepancy
     base = fit_to_errors(final, own_errors(search, final.model.members[0]), workers)
-    own = _own(base, first.before, search.prior)
+    own = hypothesis_fit(base, first.before, search.prior)
     kept = [
         t
         for t in first.trials
@@ -211,7 +210,7 @@ def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWork
 def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
     """The place of the last member of `base`, and what is worth a refit in it."""
     known = {s.hypothesis.name: s for s in _screened(search, without)}
-    own = _own(base, without, search.prior)
+    own = hypothesis_fit(base, without, search.prior)
     itself = known.pop(own.hypothesis.name)
     others = [s for s in known.values() if _may_replace(base, s.hypothesis)]
     first, *there = score_tests(without, [itself, *others])
@@ -237,13 +236,9 @@ def _place_comparison(
     """The alternatives from refits of the last set without the member and with each rival in its place."""
     trials = [hypothesis_fit(f, place.without, search.prior) for f in refits if f is not None]
     rivals = sorted(filter(plausible, trials), key=lambda t: -t.gain)
-    own = _own(place.base, place.without, search.prior)
+    own = hypothesis_fit(place.base, place.without, search.prior)
     compared = comparison(place.without, place.screened, place.change, (own, *rivals), temper)
     return compared.without_derivatives
-
-
-def _own(base: Fit, without: Fit, prior: SetPrior) -> HypothesisFit:
-    return hypothesis_fit(base, without, prior)
 
 
 def _may_replace(base: Fit, hypothesis: Hypothesis) -> bool:

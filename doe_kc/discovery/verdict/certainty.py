@@ -25,8 +25,8 @@ from doe_kc.discovery.verdict.verdict import ambiguous
 
 
 def certain(finding: Finding, own: Alternatives, final: Fit) -> bool:
-    """Whether an effect is named whatever else is missing. final: the fit of the last set."""
-    if ambiguous(finding) or not (finding.relevant and finding.believed):
+    """Whether an effect that is no trace is named whatever else is missing. final: fit of the last set."""
+    if ambiguous(finding) or not finding.believed:
         return False
     strong = finding.log10_odds >= CERTAIN and 2.0 * own.loss >= NAME_ALWAYS_LEVEL**2
     return strong and remaining_share(own, final) <= CERTAIN_SHARE and explained(own, final.residual_map)

@@ -35,7 +35,6 @@ class GridCell:
 class MapGrid:
     """One map: what it is of, its cells, and the largest |z| that noise alone passes in 5 % of maps."""
 
-    name: str
     title: str
     threshold: float
     cells: dict[tuple[str, str], GridCell]
@@ -58,24 +57,24 @@ class MapGrid:
         return sum(abs(c.z) > self.threshold for c in self.cells.values())
 
 
-def map_grid(name: str, title: str, disagreement: Map) -> MapGrid:
+def map_grid(title: str, disagreement: Map) -> MapGrid:
     """Largest |z| over shapes and wheels; what re-tuning absorbs wholly is left out."""
     cells: dict[tuple[str, str], GridCell] = {}
     for contrast, z in zip(disagreement.names, disagreement.z, strict=True):
         key = (contrast.load_case, contrast.response)
         if np.isfinite(z) and (key not in cells or abs(z) > abs(cells[key].z)):
             cells[key] = GridCell(contrast, float(z))
-    return MapGrid(name, title, disagreement.threshold, cells)
+    return MapGrid(title, disagreement.threshold, cells)
 
 
 def discovery_grids(discovery: Discovery) -> list[MapGrid]:
     """Nominal, re-tuned and, where there is any, with the effects."""
     grids = [
-        map_grid("nominal", "Nominal axle", discovery.nominal_map),
-        map_grid("tuned", "Re-tuned without an effect", discovery.tuned_map),
+        map_grid("Nominal axle", discovery.nominal_map),
+        map_grid("Re-tuned without an effect", discovery.tuned_map),
     ]
     if discovery.fitted.model.members:
-        grids.append(map_grid("with_effect", "Re-tuned with the effect", discovery.residual_map))
+        grids.append(map_grid("Re-tuned with the effect", discovery.residual_map))
     return grids
 
 

@@ -12,9 +12,9 @@ from doe_kc.discovery.linear_nuisances import Trace
 from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.search.baseline import (
     tune,
-    with_clutter,
     with_friction_traces,
     with_sides_anew,
+    with_traces,
     with_traces_anew,
 )
 from doe_kc.discovery.thresholds import SIDE_ANGLE, TRACE_SD, TRACE_SEEN
@@ -88,19 +88,19 @@ def test_traces_are_of_the_sizes_of_effects_that_move_something() -> None:
     tuned = tune(model("pair"))
     (hub,) = library("hub_compliance")
     screened = DiscoveryWorkers().screenings(tuned, [hub, *library("rig_channel_gain")[:1]])
-    found = with_clutter(tuned, screened)
+    found = with_traces(tuned, screened)
     nuisances = found.model.nuisances
     assert nuisances is not None and {t.hypothesis.name for t in nuisances.traces} == {hub.name}
     seen = np.linalg.norm(screened[0].columns, axis=0) * TRACE_SD > TRACE_SEEN
     assert found.z.size == tuned.z.size + int(seen.sum()) and seen.any()
-    assert with_clutter(tuned, []) is tuned
+    assert with_traces(tuned, []) is tuned
 
 
 def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> None:
     """Against solutions: a mount of the rack beside a friction of the rack is no softer column."""
     tuned = tune(model("friction"))
     friction, mount, strut = library("steering_friction", "rack_mount_compliance", "strut_friction")
-    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [friction, mount, strut]))
+    traced = with_traces(tuned, DiscoveryWorkers().screenings(tuned, [friction, mount, strut]))
     before = with_effect(traced, friction, [1.0, 0.0])
     known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
@@ -126,7 +126,7 @@ def test_traces_of_either_sign_are_derivatives_about_the_axle_with_its_effects()
     by four standard deviations."""
     tuned = tune(model("named"))
     hub, height = library("hub_compliance", "ride_height_offset")
-    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [hub, height]))
+    traced = with_traces(tuned, DiscoveryWorkers().screenings(tuned, [hub, height]))
     before = with_effect(traced, hub, [1.0, 1.0])
     known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
@@ -148,7 +148,7 @@ def test_traces_of_frictions_are_by_both_laws_about_the_axle_with_its_effects() 
     """Against solutions, of the one that is absent; a law that only presses is a spring of its own."""
     tuned = tune(model("pair"))
     steering, strut = library("steering_friction", "strut_friction")
-    traced = with_clutter(tuned, DiscoveryWorkers().screenings(tuned, [steering, strut]))
+    traced = with_traces(tuned, DiscoveryWorkers().screenings(tuned, [steering, strut]))
     untraced = traced.z.copy()
     untraced[traced.model.traces] = 0.0
     before = with_effect(replace(traced, z=untraced), steering, [1.0, 0.0])

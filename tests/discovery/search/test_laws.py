@@ -15,7 +15,7 @@ from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_variants import open_laws
-from doe_kc.discovery.search.laws import with_best_laws, with_free_laws, with_friction_laws
+from doe_kc.discovery.search.laws import with_best_closed_laws, with_free_laws, with_friction_laws
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_TRAVELS
 from doe_kc.effects._backbone import nearest_backbone
 from doe_kc.effects._friction import BACKBONE_SHARES
@@ -152,7 +152,7 @@ def test_beside_another_effect_a_friction_gets_the_law_of_most_evidence(cost: fl
     """A friction of 208 N and a mount of 3275 N/mm were 320 +- 9 and 2178 +- 47 by the free shape that began
     at another law than the car's, with 20 of ln evidence less than that law."""
     asked = Answers(cost, best="iwan")
-    friction, _ = with_best_laws(beside_a_hub(), asked).model.members
+    friction, _ = with_best_closed_laws(beside_a_hub(), asked).model.members
     assert asked.laws == ["iwan", "duhem", "lognormal"]
     assert friction.law == law
 
@@ -168,7 +168,7 @@ def test_another_closed_law_is_given_up_only_beyond_doubt() -> None:
             return super().fits(starts, *told, **options)
 
     asked = Ceilings(0.0)
-    with_best_laws(beside_a_hub(), asked)
+    with_best_closed_laws(beside_a_hub(), asked)
     assert asked.most == [pytest.approx(beside_a_hub().cost + 2.0 * BEYOND_DOUBT)] * 3
 
 
@@ -180,7 +180,7 @@ def test_a_friction_that_is_a_trace_gets_no_law_of_more_numbers(cost: float, law
     z = found.z.copy()
     z[place.start] = 0.05
     trace = replace(found, z=z)
-    friction, _ = with_best_laws(trace, asked).model.members
+    friction, _ = with_best_closed_laws(trace, asked).model.members
     assert asked.laws == ["iwan"] and friction.law == law
     assert with_free_shapes(trace, asked) == (trace, None)
     assert asked.laws == ["iwan"]
@@ -188,7 +188,7 @@ def test_a_friction_that_is_a_trace_gets_no_law_of_more_numbers(cost: float, law
 
 def test_a_friction_alone_keeps_its_law() -> None:
     asked = Answers(-50.0)
-    assert with_best_laws(agreeing(), asked).model.members == agreeing().model.members
+    assert with_best_closed_laws(agreeing(), asked).model.members == agreeing().model.members
     assert with_free_shapes(agreeing(), asked)[0].model.members == agreeing().model.members
     assert asked.laws == []
 
@@ -200,7 +200,7 @@ def test_a_law_of_free_shape_gives_way_to_a_closed_one_of_more_evidence(cost: fl
     free, _ = with_free_shapes(beside_a_hub(), asked)
     asked.laws.clear()
     asked.cost = cost
-    friction, _ = with_best_laws(free, asked).model.members
+    friction, _ = with_best_closed_laws(free, asked).model.members
     assert asked.laws == ["", *CLOSED] and friction.law == law
 
 
@@ -210,7 +210,7 @@ def test_laws_that_have_been_compared_are_not_compared_again() -> None:
     assert compared == {found.model.members[0].name}
     asked.laws.clear()
     current = beside_a_hub()
-    assert with_best_laws(current, asked, compared) is current and not asked.laws
+    assert with_best_closed_laws(current, asked, compared) is current and not asked.laws
 
 
 @pytest.mark.parametrize(("later", "first"), [("", True), ("iwan", False), ("backbone", True)])

@@ -42,7 +42,7 @@ def tuned(data: np.ndarray, rng: np.random.Generator) -> Fit:
 
 def screened(hypothesis: Hypothesis, column: np.ndarray) -> Screened:
     one, none = np.ones(1), np.zeros(ROWS)
-    return Screened(hypothesis, one, one, 0.0, 0.0, column[:, None], column, none, 1.0, 0.0, one)
+    return Screened(hypothesis, one, one, 0.0, column[:, None], column, none, 1.0, 0.0, one)
 
 
 @pytest.fixture(scope="module")

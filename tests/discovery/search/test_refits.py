@@ -80,7 +80,7 @@ def screened(absorbed: float, detectability: float, failed: str = "") -> Screene
     (hypothesis,) = library("tie_rod_compliance")
     none: Any = np.zeros(1)
     return Screened(
-        hypothesis, none, none, -3.5, 0.0, none[:, None], none, none, detectability, absorbed, none, failed
+        hypothesis, none, none, -3.5, none[:, None], none, none, detectability, absorbed, none, failed
     )
 
 
