@@ -153,7 +153,7 @@ class Fit(FieldsOnly):
         total += log_kept(self.covariance, self.gradient, self.held)
         sd, held = np.sqrt(np.diag(self.covariance)), self.held
         for i, size in enumerate(self.model.sizes, start=self.model.dimension):
-            if not (size.signed or size.shape):
+            if not size.any_sign:
                 total += float(np.log(2.0)) + (0.0 if held[i] else float(log_ndtr(self.z[i] / sd[i])))
         return total
 
@@ -195,7 +195,7 @@ def size_weights(model: EffectModel, hypothesis: Hypothesis) -> FloatArray:
     do they of an effect on both sides and of its traces on either: a free play of 0.1268 mm was told as
     0.1274 +- 0.0043 mm, where the mean of both sides is 0.1265 +- 0.0007.
     """
-    place = next(p for h, p in model.places() if h == hypothesis)
+    place = model.place(hypothesis)
     weights = np.eye(model.dimension + len(model.sizes))[place]
     if hypothesis.effect == INPUT_EFFECT and hypothesis.location in model.cases:
         (size,) = hypothesis.sizes
@@ -215,7 +215,7 @@ def size_weights(model: EffectModel, hypothesis: Hypothesis) -> FloatArray:
 def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:
     """The same fit with one member's sizes behind those of all others."""
     model = fit.model
-    place = next(p for h, p in model.places() if h == hypothesis)
+    place = model.place(hypothesis)
     own = np.r_[place]
     order = np.concatenate([np.delete(np.arange(fit.z.size), own), own])
     moved = model.without(hypothesis).extended(hypothesis)

@@ -138,7 +138,7 @@ class EffectModel(FieldsOnly):
     @cached_property
     def lower(self) -> FloatArray:
         """(d + m,) lower bounds."""
-        free = [-AMPLITUDE_LIMIT * s.most if s.signed or s.shape else 0.0 for s in self.sizes]
+        free = [-AMPLITUDE_LIMIT * s.most if s.any_sign else 0.0 for s in self.sizes]
         rig = np.full(self.dimension - self.parameters, -NUISANCE_LIMIT)
         return np.concatenate([np.zeros(self.parameters), rig, free])
 
@@ -174,6 +174,10 @@ class EffectModel(FieldsOnly):
             yield h, slice(at, at + len(h.sizes))
             at += len(h.sizes)
 
+    def place(self, member: Hypothesis) -> slice:
+        """Where the amplitudes of a member are in z."""
+        return next(place for h, place in self.places() if h == member)
+
     def with_effects(self, z: FloatArray) -> Axle:
         """The nominal axle with the members at their amplitudes."""
         axle = self.axle
@@ -187,7 +191,7 @@ class EffectModel(FieldsOnly):
 
     def sizes_at(self, z: FloatArray, hypothesis: Hypothesis) -> dict[str, float]:
         """Amplitudes of a member by `Size.name`."""
-        place = next(p for h, p in self.places() if h == hypothesis)
+        place = self.place(hypothesis)
         return {s.name: float(a) for s, a in zip(hypothesis.sizes, z[place], strict=True)}
 
     def axle_at(self, z: FloatArray) -> Axle:

@@ -51,6 +51,11 @@ class Size:
         """Whether the number says how and not how much."""
         return self.growth in ("shape", "bend")
 
+    @property
+    def any_sign(self) -> bool:
+        """Whether its amplitude may be negative."""
+        return self.signed or self.shape
+
     def value(self, amplitude: float) -> float:
         """The option's number, in `unit`."""
         if self.growth == "bend":

@@ -149,7 +149,7 @@ def effort(hypothesis: Hypothesis) -> int:
 
 
 def _start(hypothesis: Hypothesis, first: float, shape: FloatArray) -> FloatArray:
-    start = np.array([0.0 if s.shape or s.signed else first for s in hypothesis.sizes])
+    start = np.array([0.0 if s.any_sign else first for s in hypothesis.sizes])
     start[[i for i, s in enumerate(hypothesis.sizes) if s.shape]] = shape
     return start
 

@@ -47,7 +47,7 @@ def with_law(
     known = model.sizes_at(z, member)
     alike = EFFECTS[law.effect].numbers_by(law.law, member.options(known))
     own = [_amplitude(s, alike) if s.key in alike else known.get(s.name, 0.0) for s in law.sizes]
-    place = next(p for h, p in model.places() if h == member)
+    place = model.place(member)
     return model.with_member(member, law), np.concatenate([z[: place.start], own, z[place.stop :]])
 
 

@@ -75,7 +75,7 @@ class LinearSets:
             hypotheses,
             tuple(slice(a, b) for a, b in pairwise(ends)),
             gram,
-            np.array([-AMPLITUDE_LIMIT * s.most if s.signed or s.shape else 0.0 for s in sizes]),
+            np.array([-AMPLITUDE_LIMIT * s.most if s.any_sign else 0.0 for s in sizes]),
             np.array([AMPLITUDE_LIMIT * s.most for s in sizes]),
             prior,
             len(model.members),

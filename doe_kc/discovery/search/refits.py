@@ -149,7 +149,7 @@ def useful_cost(current: Fit, hypothesis: Hypothesis, least: float, prior: SetPr
     """
     if np.isinf(least):
         return np.inf
-    halves = sum(not (s.signed or s.shape) for s in hypothesis.sizes) * float(np.log(2.0))
+    halves = sum(not s.any_sign for s in hypothesis.sizes) * float(np.log(2.0))
     odds = prior.log_odds(current.model.members, hypothesis)
     return current.cost - 2.0 * (least - odds - halves)
 
@@ -212,7 +212,7 @@ def plausible_beside(fit: Fit, others: Sequence[Hypothesis]) -> bool:
 
 def member_amounts(fit: Fit, member: Hypothesis) -> list[tuple[Size, float, float]]:
     """Sizes of a member that say how much, in typical ones, with their standard deviations."""
-    place = next(p for h, p in fit.model.places() if h == member)
+    place = fit.model.place(member)
     sd = np.sqrt(np.diag(fit.covariance)[place])
     known = zip(member.sizes, fit.z[place], sd, strict=True)
     return [(size, float(a), float(e)) for size, a, e in known if not size.shape]

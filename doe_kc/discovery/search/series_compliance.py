@@ -95,7 +95,7 @@ def _closed_laws(member: Hypothesis) -> list[Hypothesis]:
 def _starts(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothesis) -> list[FitStart]:
     """By another law of a friction: from its own limit and travel, and from those that it may have there."""
     near = _start(last, member, compliance, law)
-    far, place = near.z.copy(), next(p for h, p in near.model.places() if h == law)
+    far, place = near.z.copy(), near.model.place(law)
     for i, size in enumerate(law.sizes):
         factor = {LIMIT: COMPLIANT_LIMIT, TRAVEL: COMPLIANT_TRAVEL}.get(size.key, 1.0)
         at = place.start + i

@@ -132,12 +132,12 @@ def estimate(size: Size, amplitude: float, sd: float) -> ParameterEstimate:
     """
     shown = size.shape or sd < NOT_SHOWN
     limit = None
-    if not (size.signed or size.shape) and sd > 0.0:
+    if not size.any_sign and sd > 0.0:
         if shown and size.growth != "factor" and amplitude < SIZE_SEEN * sd:
             limit = size.value(_limit_by_records(amplitude, sd))
         amplitude, sd = half_line_moments(amplitude, sd)
     step = min(0.01, 0.1 * sd)
-    floor = 0.0 if size.signed or size.shape else step
+    floor = 0.0 if size.any_sign else step
     at = max(amplitude, floor)
     slope = (size.value(at + step) - size.value(at - step)) / (2.0 * step) if step > 0.0 else 0.0
     value, own = size.value(amplitude), abs(slope) * sd

@@ -106,7 +106,7 @@ def _law_changes(fit: Fit, member: Hypothesis, signal: EffectSignal, share: floa
 
 def _yielding(fit: Fit, member: Hypothesis, compliant: NDArray[np.bool_]) -> tuple[FloatArray, ...]:
     """Change (n,) of every curve by those sizes of a member alone. NotConverged without an equilibrium."""
-    place = next(p for h, p in fit.model.places() if h == member)
+    place = fit.model.place(member)
     rigid = fit.z.copy()
     rigid[place] = np.where(compliant, 0.0, rigid[place])
     yielding = fit.residual - fit.model.residual(rigid)
