@@ -127,8 +127,13 @@ def _promising_shape(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> Fl
 
 
 def _promise(model: EffectModel, fit: Fit, amplitudes: FloatArray) -> float:
-    """Decrease of the cost along the straight line to a true solution, as far as it goes one way."""
-    along = fit.changes(model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual)
+    """Decrease of the cost along the straight line to a true solution, as far as it goes one way; -inf
+    without one."""
+    try:
+        residual = model.residual(np.concatenate([fit.z, amplitudes]))
+    except NotConverged:
+        return -np.inf
+    along = fit.changes(residual - fit.residual)
     slope = min(0.0, float(fit.projection.inner(along, fit.remainder)[0, 0]))
     return slope**2 / (float(fit.projection.squares(along)[0]) + float(amplitudes @ amplitudes))
 
@@ -136,11 +141,17 @@ def _promise(model: EffectModel, fit: Fit, amplitudes: FloatArray) -> float:
 def _typical(model: EffectModel, fit: Fit, hypothesis: Hypothesis) -> FloatArray:
     """(M,) change of the data at typical size; to first order where the axle has no equilibrium there."""
     amplitudes = np.array([0.0 if s.shape else 1.0 for s in hypothesis.sizes])
-    try:
-        return model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual
-    except NotConverged:
-        small = model.residual(np.concatenate([fit.z, PROBE * amplitudes])) - fit.residual
-        return np.asarray(small / PROBE)
+    least = PROBE_FACTOR * PROBE
+    for share in (1.0, PROBE):
+        try:
+            return _change(model, fit, share * amplitudes) / share
+        except NotConverged:
+            continue
+    return _change(model, fit, least * amplitudes) / least
+
+
+def _change(model: EffectModel, fit: Fit, amplitudes: FloatArray) -> FloatArray:
+    return np.asarray(model.residual(np.concatenate([fit.z, amplitudes])) - fit.residual)
 
 
 def effort(hypothesis: Hypothesis) -> int:
@@ -176,12 +187,18 @@ def amplitude_solution(
     """Gauss-Newton steps of the amplitudes on true solutions, given up where they promise nothing.
 
     A promise that is worse than the model without the effect is none: along a straight line the effect could
-    be absent. Then the search begins anew, from `smaller`, where the effect is closer to linear.
+    be absent. Then the search begins anew, from `smaller`, where the effect is closer to linear; and so it
+    does where the axle has no equilibrium at `start`.
     """
     place = slice(fit.z.size, fit.z.size + start.size)
     low, high = model.lower[place], model.upper[place]
     without = fit.misfit_left
-    best = _derived(model, fit, _solved(model, fit, start), place)
+    try:
+        best = _derived(model, fit, _solved(model, fit, start), place)
+    except NotConverged:
+        if np.array_equal(start, smaller):
+            raise
+        return amplitude_solution(model, fit, smaller, smaller)
     for k in range(SCREEN_STEPS if start.size else 0):
         hessian = fit.projection.gram_of(best.columns) + np.eye(start.size)
         pulled = fit.projection.inner(best.columns, fit.remainder) + fit.projection.inner(

@@ -13,11 +13,14 @@ from scipy.stats import norm
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.jacobian import Jacobian
+from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection, changes
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import amplitude_solution, screen, shape_of
 from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR, SHAPE_STARTS, TRACE_SD
 from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver.result import NotConverged
 from tests.discovery.cases import library, model
 
 
@@ -25,6 +28,27 @@ def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
     gains = {h.name: screen(tuned, h).gain for h in library("hub_compliance", "strut_friction")}
     assert gains["hub_compliance"] > 50.0
     assert gains["strut_friction"] < 3.0
+
+
+@pytest.mark.parametrize(("most", "fails"), [(0.5, False), (0.1, False), (0.01, True)])
+def test_an_effect_that_has_equilibria_when_small_is_screened_from_there(
+    most: float, fails: bool, tuned: Fit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """most: amplitude beyond which none is found."""
+    (hub,) = library("hub_compliance")
+    whole, solved = screen(tuned, hub), EffectModel.residual
+
+    def residual(model: EffectModel, z: FloatArray) -> FloatArray:
+        if z.size > tuned.z.size and np.abs(z[tuned.z.size :]).max() > most:
+            raise NotConverged("too far")
+        return solved(model, z)
+
+    monkeypatch.setattr(EffectModel, "residual", residual)
+    near = screen(tuned, hub)
+    assert bool(near.failed) == fails
+    if not fails:
+        assert near.gain > 50.0 and np.abs(near.amplitudes).max() <= most
+        assert np.linalg.norm(near.change - whole.change) < 0.1 * np.linalg.norm(whole.change)
 
 
 def test_an_effect_of_one_parameter_absorbed_by_another_is_not_detectable(tuned: Fit) -> None:
