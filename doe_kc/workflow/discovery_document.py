@@ -208,9 +208,9 @@ def discovery_lines(discovery: Discovery) -> list[str]:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")
     lines += [f"unexplained: {contrast_words(c)}, {z:+.1f} sd" for c, z in discovery.unexplained[:3]]
     gap = discovery.gap
-    steps = [f"{gap.nominal:.2f} nominal", f"{gap.tuned:.2f} re-tuned"]
+    steps = [f"{gap.nominal:.2f} as handed in", f"{gap.tuned:.2f} re-tuned"]
     if discovery.fitted.model.members:
-        steps.append(f"{gap.with_effect:.2f} with effect")
+        steps.append(f"{gap.with_effect:.2f} with the effect")
     lines.append(f"gap: {' -> '.join(steps)} (noise floor {gap.noise_floor:.2f})")
     lines.append(adequacy_words(discovery.adequacy))
     if discovery.held_out:

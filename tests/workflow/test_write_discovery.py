@@ -227,7 +227,7 @@ def test_the_terminal_says_verdict_gap_and_what_next(car: str) -> None:
     lines = discovery_lines(found)
     assert found.sentences[0] in lines[0]
     gap = next(line for line in lines if line.startswith("gap: "))
-    assert ("with effect" in gap) is bool(found.fitted.model.members)
+    assert ("with the effect" in gap) is bool(found.fitted.model.members)
     assert sum(line.startswith(("effect: ", "lead: ")) for line in lines) == len(found.findings)
     assert any(line.startswith("next test: ") for line in lines) is bool(found.next_tests)
     assert all("\n" not in line for line in lines)

@@ -18,6 +18,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import case_label
 from doe_kc.reports.correlation.curves import BAND_SDS
 from doe_kc.reports.discovery.gaps import MODEL_COLOURS
+from doe_kc.reports.discovery.words import MODEL_LABELS
 from doe_kc.reports.drawing import style
 from doe_kc.reports.drawing.panel import Dash, PageBox, Panel
 from doe_kc.reports.drawing.panel_axis import ticks
@@ -124,11 +125,6 @@ PAGE_HEAD, PAGE_FOOT, PAIR_HEIGHT = 0.45, 0.5, 3.65
 TITLE_HEIGHT, CURVE_HEIGHT, PAIR_GAP, DEVIATION_HEIGHT = 0.42, 1.72, 0.13, 0.8
 """Inches of the parts of a pair from above; numbers and name of the input have the rest."""
 DASHES: Mapping[str, Dash] = {"tuned": "--", "with_effect": "-", "best_decoy": ":"}
-WORDS = {
-    "tuned": "re-tuned without an effect",
-    "with_effect": "with the effect",
-    "best_decoy": "with the best other effect",
-}
 WHEEL_WORDS = ("left wheel", "right wheel")
 
 
@@ -259,7 +255,7 @@ def _handles(worst: Sequence[WorstView]) -> list[Line2D | Patch]:
         Patch(color="#BBBBBB", label=f"±{BAND_SDS:g} sd of the noise"),
     ]
     out += [
-        Line2D([], [], color=MODEL_COLOURS[m], ls=dash, lw=1.4, label=WORDS[m])
+        Line2D([], [], color=MODEL_COLOURS[m], ls=dash, lw=1.4, label=MODEL_LABELS[m])
         for m, dash in DASHES.items()
         if m in models
     ]

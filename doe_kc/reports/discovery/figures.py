@@ -22,6 +22,7 @@ from doe_kc.reports.discovery.isolability_figure import isolability_figure
 from doe_kc.reports.discovery.parameter_figure import parameter_figure
 from doe_kc.reports.discovery.parameters import tuned_parameters
 from doe_kc.reports.discovery.tables import gain_words, gap_rows
+from doe_kc.reports.discovery.words import MODEL_LABELS
 from doe_kc.reports.drawing.panel import Panel
 from doe_kc.reports.drawing.series import Job, series_beside
 from doe_kc.reports.drawing.sheet import Sheet, sheet
@@ -65,9 +66,9 @@ def _row(panel: Panel, y: float, held: HeldOut) -> None:
 def _handles() -> list[Line2D]:
     return [
         Line2D([], [], color=MODEL_COLOURS["tuned"], ls="", marker="o", mfc="white", mew=1.3,
-               label="re-tuned without an effect"),
+               label=MODEL_LABELS["tuned"]),
         Line2D([], [], color=MODEL_COLOURS["with_effect"], ls="", marker="D", ms=4.5,
-               label="with the effect"),
+               label=MODEL_LABELS["with_effect"]),
         Line2D([], [], color="black", ls="--", lw=0.9, label="as good as predicted"),
     ]  # fmt: skip
 

@@ -90,14 +90,9 @@ def _row(panel: Panel, y: float, gap: Gap) -> None:
 
 def _legend(page: Sheet, gap: Gap) -> None:
     handles = [
-        Line2D([], [], color=MODEL_COLOURS[m], ls="", marker=MARKS[m], ms=4.5, mew=1.2, label=_label(m),
+        Line2D([], [], color=MODEL_COLOURS[m], ls="", marker=MARKS[m], ms=4.5, mew=1.2, label=MODEL_LABELS[m],
                mfc="white" if m == "tuned" else MODEL_COLOURS[m])
         for m in MODEL_LABELS if np.isfinite(getattr(gap, m))
     ]  # fmt: skip
     handles.append(Line2D([], [], color="black", ls="--", lw=0.9, label="noise floor"))
     page.add_legend(handles, 5)
-
-
-def _label(model: str) -> str:
-    words = {"tuned": "re-tuned without an effect", "with_effect": "re-tuned with the effect"}
-    return words.get(model, MODEL_LABELS[model] if model != "best_decoy" else "with the best other effect")

@@ -17,6 +17,7 @@ from doe_kc.load_cases import case_label
 from doe_kc.reports.correlation.curves import BAND_SDS
 from doe_kc.reports.discovery.curves import ModelView, model_views
 from doe_kc.reports.discovery.gaps import MODEL_COLOURS
+from doe_kc.reports.discovery.words import MODEL_LABELS, model_head
 from doe_kc.reports.drawing.panel import Dash, Panel
 from doe_kc.reports.drawing.panel_axis import ticks
 from doe_kc.reports.drawing.sheet import Sheet, sheet
@@ -99,7 +100,7 @@ def _pair(view: ModelView, side: int, sd: float, model: str) -> LoopPair:
 
 def loop_table(pairs: Sequence[LoopPair]) -> Table[LoopPair]:
     """Half-widths by load case, measured, before and after."""
-    last = "With the effect" if any(p.model == "with_effect" for p in pairs) else "Re-tuned"
+    last = model_head("with_effect" if any(p.model == "with_effect" for p in pairs) else "tuned")
     columns: tuple[Column[LoopPair], ...] = (
         Column("load_case", "Load case", lambda p: p.view.load_case, 
               words=lambda p: case_label(p.view.load_case), page=PageCell(style="first")),
@@ -108,7 +109,7 @@ def loop_table(pairs: Sequence[LoopPair]) -> Table[LoopPair]:
         Column("unit", "Unit", lambda p: p.unit, page=PageCell()),
         Column("measured", "Measured half-width ± sd", lambda p: p.measured, "0.000",
                page=PageCell(text=lambda p: with_sd(p.measured, p.sd), strong=lambda p: True)),
-        Column("before", "As handed in", lambda p: p.before, "0.000",
+        Column("before", model_head("nominal"), lambda p: p.before, "0.000",
                page=PageCell(text=lambda p: at_sd(p.before, p.sd))),
         Column("after", last, lambda p: p.after, "0.000",
                page=PageCell(text=lambda p: at_sd(p.after, p.sd))),
@@ -158,12 +159,11 @@ def _closed(inputs: FloatArray, half: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def _loop_handles(pairs: Sequence[LoopPair]) -> list[Line2D | Patch]:
-    words = {"nominal": "as handed in", "tuned": "re-tuned", "with_effect": "with the effect"}
     return [
         Line2D([], [], color="black", ls="", marker="o", ms=3, label="measured"),
         Patch(color="#BBBBBB", alpha=0.6, lw=0.0, label=f"±{BAND_SDS:g} standard deviations of its noise"),
         *(
-            Line2D([], [], color=MODEL_COLOURS[model], ls=dash, lw=1.3, label=words[model])
+            Line2D([], [], color=MODEL_COLOURS[model], ls=dash, lw=1.3, label=MODEL_LABELS[model])
             for model, dash in _looks(pairs[0]).items()
         ),
     ]

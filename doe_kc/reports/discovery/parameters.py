@@ -85,12 +85,13 @@ TUNED_COLUMNS: tuple[Column[TunedParameter], ...] = (
            page=PageCell(text=lambda p: at_sd(p.nominal, p.sd))),
     Column("tuned", "Re-tuned", lambda p: p.tuned, _format, 12,
            page=PageCell(text=lambda p: at_sd(p.tuned, p.sd))),
-    Column("with_effect", "With effect", lambda p: p.with_effect, _format, 12),
+    Column("with_effect", "With the effect", lambda p: p.with_effect, _format, 12),
     Column("sd", "sd", lambda p: p.sd, _format, 12),
     Column("tuned_distance", "Distance re-tuned, sd", lambda p: p.tuned_distance, "0.00", 14,
            page=PageCell("Re-tuned, times scatter", layout="+.2f")),
-    Column("with_effect_distance", "Distance with effect, sd", lambda p: p.with_effect_distance, "0.00", 14,
-           page=PageCell("With effect, times scatter", layout="+.2f")),
+    Column("with_effect_distance", "Distance with the effect, sd", lambda p: p.with_effect_distance, "0.00",
+           14,
+           page=PageCell("With the effect, times scatter", layout="+.2f")),
     Column("beyond", "Bounds", lambda p: p.beyond, width=10, words=lambda p: "outside" if p.beyond else ""),
 )  # fmt: skip
 

@@ -11,6 +11,7 @@ from doe_kc.curves import RESPONSE_LABELS, response_name
 from doe_kc.discovery.result import Discovery, Gap
 from doe_kc.discovery.verdict.held_out import HeldOut
 from doe_kc.load_cases import case_label
+from doe_kc.reports.discovery.words import MODEL_LABELS, model_head
 from doe_kc.reports.table import (
     NEUTRAL_FILL,
     POSITIVE_FILL,
@@ -57,9 +58,9 @@ def disagreement_rows(discovery: Discovery) -> list[DisagreementRow]:
         else np.full(len(discovery.residual_map.names), np.nan)
     )
     maps = {
-        "nominal": discovery.nominal_map,
-        "re-tuned": discovery.tuned_map,
-        "with effect": discovery.residual_map,
+        MODEL_LABELS["nominal"]: discovery.nominal_map,
+        MODEL_LABELS["tuned"]: discovery.tuned_map,
+        MODEL_LABELS["with_effect"]: discovery.residual_map,
     }
     rows = []
     for i, c in enumerate(discovery.nominal_map.names):
@@ -77,9 +78,9 @@ DISAGREEMENT_COLUMNS: tuple[Column[DisagreementRow], ...] = (
     Column("shape", "Shape", lambda r: r.shape, width=14),
     Column("wheels", "Wheels", lambda r: r.wheels, width=18,
            words=lambda r: "both alike" if r.wheels == "both" else "left against right"),
-    Column("z_nominal", "z nominal", lambda r: r.z_nominal, "0.0", 12),
+    Column("z_nominal", "z as handed in", lambda r: r.z_nominal, "0.0", 12),
     Column("z_tuned", "z re-tuned", lambda r: r.z_tuned, "0.0", 12),
-    Column("z_with_effect", "z with effect", lambda r: r.z_with_effect, "0.0", 12),
+    Column("z_with_effect", "z with the effect", lambda r: r.z_with_effect, "0.0", 12),
     Column("beyond", "Beyond noise", lambda r: r.beyond, width=30, csv=False),
 )  # fmt: skip
 
@@ -125,9 +126,9 @@ def gap_rows(discovery: Discovery) -> list[GapRow]:
     return [GapRow(r.case, r.response, Gap(**{**vars(r.gap), "with_effect": math.nan})) for r in rows]
 
 
-def _gap_column(key: str, head: str, page_head: str = "") -> Column[GapRow]:
-    """The gap of one model, on the page from white at noise to full colour at three times that; not there
-    without a head of its own."""
+def _gap_column(key: str) -> Column[GapRow]:
+    """The gap of one model, on the page from white at noise to full colour at three times that, or the noise
+    floor, which is not there."""
 
     def value(row: GapRow) -> float:
         return float(getattr(row.gap, key))
@@ -135,8 +136,10 @@ def _gap_column(key: str, head: str, page_head: str = "") -> Column[GapRow]:
     def shade(row: GapRow) -> dict[str, str]:
         return {"style": f"background:rgba(242,162,60,{_share(value(row))})"}
 
-    cell = PageCell(page_head, layout=".2f", attributes=shade) if page_head else None
-    return Column(key, head, value, "0.00", 13, page=cell)
+    if key not in MODEL_LABELS:
+        return Column(key, "Noise floor", value, "0.00", 13)
+    cell = PageCell(layout=".2f", attributes=shade)
+    return Column(key, model_head(key), value, "0.00", 13, page=cell)
 
 
 def _share(value: float) -> float:
@@ -152,11 +155,7 @@ GAP_COLUMNS: tuple[Column[GapRow], ...] = (
     Column("response", "Response", lambda r: r.response or "all", width=34,
            words=lambda r: RESPONSE_LABELS.get(r.response, "All"),
            page=PageCell(text=lambda r: response_name(r.response) if r.response else "all")),
-    _gap_column("nominal", "Nominal", "As handed in"),
-    _gap_column("tuned", "Re-tuned", "Re-tuned"),
-    _gap_column("with_effect", "With effect", "With the effect"),
-    _gap_column("best_decoy", "Best other effect", "With the best other effect"),
-    _gap_column("noise_floor", "Noise floor"),
+    *map(_gap_column, (*MODEL_LABELS, "noise_floor")),
 )  # fmt: skip
 
 
@@ -185,8 +184,8 @@ HELD_OUT_COLUMNS: tuple[Column[HeldOut], ...] = (
            page=PageCell(style="first")),
     Column("rms_tuned", "RMS re-tuned", lambda h: h.tuned.rms, "0.00", 15,
            page=PageCell("Deviation without an effect", layout=".2f")),
-    Column("rms_with_effect", "RMS with effect", lambda h: h.with_effect.rms, "0.00", 15,
-           page=PageCell("With the effect", layout=".2f", strong=lambda h: True)),
+    Column("rms_with_effect", "RMS with the effect", lambda h: h.with_effect.rms, "0.00", 15,
+           page=PageCell(model_head("with_effect"), layout=".2f", strong=lambda h: True)),
     Column("rms_law_granted", "RMS, law granted", lambda h: h.law_granted.rms, "0.00", 17),
     Column("gain_ln_density", "Gain, ln density", lambda h: h.gain, "0.0", 17,
            page=PageCell("Predicted better", text=lambda h: "yes" if h.gain > 0.0 else "no",

@@ -34,12 +34,17 @@ STATUS_WORDS: dict[Status, str] = {
     "no solution": "has no equilibrium in this axle",
 }
 MODEL_LABELS = {
-    "nominal": "nominal",
+    "nominal": "as handed in",
     "tuned": "re-tuned",
-    "with_effect": "with effect",
-    "best_decoy": "best other effect",
+    "with_effect": "with the effect",
+    "best_decoy": "with the best other effect",
 }
 """Names of the four models that are compared, by their field in `Gap`."""
+
+
+def model_head(model: str) -> str:
+    """Its name as the head of a column."""
+    return MODEL_LABELS[model].capitalize()
 
 
 def own_sentences(discovery: Discovery) -> list[str]:

@@ -46,10 +46,10 @@ DISCOVERY_LEGEND = {
         "effect missing: re-tuning explains all records. Unexplained: something is missing, but no effect"
         " of the library is convincing; what is listed are leads."
     ),
-    "Nominal": "The axle as it is in its file.",
+    "As handed in": "The axle as it is in its file.",
     "Re-tuned": "The most probable axle without any effect: parameters within their production scatter.",
-    "With effect": "The most probable axle with the effects found, all parameters re-tuned with them.",
-    "Best other effect": (
+    "With the effect": "The most probable axle with the effects found, all parameters re-tuned with them.",
+    "With the best other effect": (
         "The best other effect in place of the one found, refitted alike: a gap that it closes as "
         "well is no evidence for a name."
     ),
@@ -64,7 +64,7 @@ DISCOVERY_LEGEND = {
         "load only."
     ),
     "Re-tuned z": (
-        "Only what no re-tuning can absorb. With effect: the shape of its law is left open as far as the "
+        "Only what no re-tuning can absorb. With the effect: the shape of its law is left open as far as the "
         "records ask for."
     ),
     "Wheels": "Both alike: sum of both wheels; left against right: their difference.",

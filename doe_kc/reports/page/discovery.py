@@ -196,7 +196,7 @@ def _page_columns(has_effect: bool) -> Iterator[Column[TunedParameter]]:
     def last(p: TunedParameter) -> float:
         return p.with_effect if has_effect else p.tuned
 
-    head = f"{'With effect' if has_effect else 'Re-tuned'} ± sd"
+    head = f"{'With the effect' if has_effect else 'Re-tuned'} ± sd"
     shown = PageCell[TunedParameter](head, text=lambda p: with_sd(last(p), p.sd), strong=lambda p: True)
     yield Column("last", None, last, "0.0000", csv=False, page=shown)
     drawing = PageCell[TunedParameter](

@@ -14,6 +14,7 @@ from doe_kc.load_cases import case_label
 from doe_kc.reports.discovery.curves import ModelView, model_names, model_views, worst_views
 from doe_kc.reports.discovery.gaps import MODEL_COLOURS
 from doe_kc.reports.discovery.tables import gap_table
+from doe_kc.reports.discovery.words import MODEL_LABELS
 from doe_kc.reports.names import response_axis
 from doe_kc.reports.page.curves import ShownModel, curves_html
 from doe_kc.reports.render.page import Section, table_html
@@ -29,10 +30,10 @@ OTHER_EFFECT_WORDS = (
 )
 PREFIX = "effect-curves"
 DISCOVERY_MODELS = (
-    ShownModel("nominal", "as handed in", MODEL_COLOURS["nominal"], "2 3", shown=False),
-    ShownModel("best_decoy", "with the best other effect", MODEL_COLOURS["best_decoy"], "3 3", shown=False),
-    ShownModel("tuned", "re-tuned without an effect", MODEL_COLOURS["tuned"], "7 4"),
-    ShownModel("with_effect", "re-tuned with the effect", MODEL_COLOURS["with_effect"]),
+    ShownModel("nominal", MODEL_LABELS["nominal"], MODEL_COLOURS["nominal"], "2 3", shown=False),
+    ShownModel("best_decoy", MODEL_LABELS["best_decoy"], MODEL_COLOURS["best_decoy"], "3 3", shown=False),
+    ShownModel("tuned", MODEL_LABELS["tuned"], MODEL_COLOURS["tuned"], "7 4"),
+    ShownModel("with_effect", MODEL_LABELS["with_effect"], MODEL_COLOURS["with_effect"]),
 )
 
 

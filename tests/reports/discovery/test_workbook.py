@@ -70,7 +70,7 @@ def test_the_gap_chart_has_a_series_a_model_and_a_category_a_row(tmp_path: Path)
         assert isinstance(chart, LineChart) and len(chart.series) == models
         assert chart.y_axis.scaling.logBase == 2
         heads = [ws.cell(5, c).value for c in range(DATA_COLUMN, DATA_COLUMN + 2 + models)]
-        assert heads[:4] == ["Load case", "Response", "Nominal", "Re-tuned"]
+        assert heads[:4] == ["Load case", "Response", "As handed in", "Re-tuned"]
         tuned = [ws.cell(r, DATA_COLUMN + 3).value for r in range(7, 7 + len(gaps))]
         assert tuned == pytest.approx([g.gap.tuned for g in gaps])
         assert chart.series[1].val.numRef.f.endswith(f"${6 + len(gaps)}")
