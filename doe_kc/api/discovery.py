@@ -19,6 +19,7 @@ from doe_kc.reports.discovery.effects import effect_table
 from doe_kc.reports.discovery.library import library_table
 from doe_kc.reports.discovery.parameters import tuned_table
 from doe_kc.reports.discovery.tables import gap_table, held_out_table
+from doe_kc.reports.discovery.words import MODEL_LABELS
 from doe_kc.reports.render.csv import table_frame
 from doe_kc.study import Study
 from doe_kc.workflow.discover import discover_study
@@ -109,12 +110,12 @@ class DiscoveryResult(FrameResult):
         rows = self.discovery.gaps
         ax = axes_or_new(ax, (6.4, 1.6 + 0.19 * len(rows)))
         places = np.arange(len(rows))
-        kinds = {"nominal": ("nominal", "orange"), "tuned": ("re-tuned", "grey")}
+        colours = {"nominal": "orange", "tuned": "grey"}
         if self.discovery.fitted.model.members:
-            kinds["with_effect"] = ("with effect", "blue")
-        for key, (label, colour) in kinds.items():
-            values = [getattr(r.gap, key) for r in rows]
-            ax.plot(values, places, "o", ms=4, color=PALETTE[colour], label=label)
+            colours["with_effect"] = "blue"
+        for model, colour in colours.items():
+            values = [getattr(r.gap, model) for r in rows]
+            ax.plot(values, places, "o", ms=4, color=PALETTE[colour], label=MODEL_LABELS[model])
         ax.axvline(self.gap.noise_floor, color="black", lw=0.8, ls="--", label="noise")
         ax.set_xscale("log")
         ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}")

@@ -50,8 +50,8 @@ def test_its_progress(result: kc.DiscoveryResult, steps: list[tuple[str, int, in
 def test_its_picture(result: kc.DiscoveryResult) -> None:
     axes = result.plot()
     lines = {line.get_label(): np.asarray(line.get_xdata()) for line in axes.get_lines()}
-    assert len(axes.get_yticks()) == len(result.discovery.gaps) == len(lines["nominal"])
-    assert np.median(lines["with effect"]) < np.median(lines["nominal"])
+    assert len(axes.get_yticks()) == len(result.discovery.gaps) == len(lines["as handed in"])
+    assert np.median(lines["with the effect"]) < np.median(lines["as handed in"])
 
 
 def test_an_unknown_effect(folder: Path) -> None:
