@@ -49,8 +49,8 @@ def sentences(
     if beyond:
         out.append(_outside(beyond, widened))
     out.append(
-        f"Whitened RMS of all deviations: {gap.nominal:.2f} as handed in, {gap.tuned:.2f} re-tuned without an "
-        f"effect, {gap.with_effect:.2f} with what was found; {gap.noise_floor:.2f} is noise."
+        f"Whitened RMS of all deviations: {gap.nominal:.2f} as handed in, {gap.tuned:.2f} re-tuned without "
+        f"an effect, {gap.with_effect:.2f} with what was found; {gap.noise_floor:.2f} is noise."
     )
     return tuple(out)
 
