@@ -10,7 +10,8 @@ import pytest
 
 from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
-from doe_kc.discovery.discover import discover, resolved, shown_traces
+from doe_kc.discovery.discover import discover, gaps, resolved, shown_traces
+from doe_kc.discovery.fit import rewhitened_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import ResultCache
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -158,3 +159,15 @@ def test_a_measured_car_with_all_its_load_cases_and_parameters() -> None:
     assert abs(stiffness.value - 6500.0) < 3.0 * stiffness.sd < 0.3 * 6500.0
     assert max(h.with_effect.rms for h in found.held_out) < 1.1
     assert all(h.gain > 0.0 for h in found.held_out)
+
+
+def test_the_gap_of_a_decoy_is_in_the_errors_of_the_others() -> None:
+    found = discovery("named")
+    fitted = found.fitted
+    likelihood = fitted.model.likelihood
+    wide = replace(likelihood, curves=tuple(replace(c, root=2.0 * c.root) for c in likelihood.curves))
+    decoy = rewhitened_fit(fitted, wide)
+    assert np.sqrt(np.mean(decoy.residual**2)) < 0.6 * found.gap.with_effect
+    gap, each = gaps(likelihood, found.nominal, found.search.tuned, fitted, decoy)
+    assert gap.best_decoy == pytest.approx(gap.with_effect) == pytest.approx(found.gap.with_effect)
+    assert all(c.gap.best_decoy == pytest.approx(c.gap.with_effect) for c in each)

@@ -18,6 +18,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     with_discrepancy,
 )
+from doe_kc.effects import apply_effect
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import library, model
@@ -46,6 +47,16 @@ def test_only_what_the_effect_changes_is_widened() -> None:
             assert grown > 2.0
         if curve.load_case == "lateral_opposite" and curve.response == "tyre_load":
             assert grown < 1.05
+
+
+def test_a_compliance_is_no_friction_on_an_axle_that_has_one_already() -> None:
+    (hub,), (friction,) = library("hub_compliance"), library("strut_friction")
+    z = np.append(model("named").centre, [1.0, 1.0])
+    found = at("named", hub, z)
+    axle = apply_effect(found.model.axle, friction.effect, {"force_N": 100.0}, source="axle")
+    beside = replace(found, model=replace(found.model, axle=axle))
+    assert axle.topology.frictional
+    assert [s.friction for s in effect_signals(beside)] == [False]
 
 
 def test_a_change_of_scale_is_no_shape() -> None:

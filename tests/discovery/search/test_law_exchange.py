@@ -17,7 +17,7 @@ from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
-from tests.discovery.cases import discovery, known_to
+from tests.discovery.cases import discovery, known_to, library
 from tests.discovery.search.test_laws import Answers, agreeing, disagreeing
 
 LAWS = ["iwan", "duhem", "lognormal"]
@@ -130,3 +130,30 @@ class NoSolution(DiscoveryWorkers):
 
 def test_laws_without_an_equilibrium_are_passed_over(search: EffectSearch) -> None:
     assert with_exchanged_laws(search, [], NoSolution()) is search
+
+
+def test_a_set_by_another_law_may_have_lost_the_friction(
+    search: EffectSearch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a better set asks for may stand in its place."""
+    friction, hub = search.with_effects.model.members[0], library("hub_compliance")[0]
+    told: list[Hypothesis | None] = []
+
+    def gone_on(
+        before: EffectSearch, start: FitStart, changed: Hypothesis | None, *_: object
+    ) -> EffectSearch:
+        told.append(changed)
+        return before
+
+    monkeypatch.setattr(law_exchange, "search_from", gone_on)
+    for added in ((), (hub,)):
+
+        def without(
+            _: EffectSearch, fit: Fit, *__: object, added: tuple[Hypothesis, ...] = added
+        ) -> tuple[Fit, float]:
+            own = next(h for h in fit.model.members if h.name == friction.name)
+            return replace(fit, model=replace(fit.model.without(own), members=added)), 100.0
+
+        monkeypatch.setattr(law_exchange, "_best_set", without)
+        assert with_exchanged_laws(search, [], Answers(150.0)) is search
+    assert told == [None, hub]

@@ -64,3 +64,12 @@ def test_refits_that_lose_are_told_without_their_derivatives() -> None:
     last = found.steps[-1]
     assert [h.effect for h in last.members] == ["hub_compliance"] and not last.accepted
     assert any(c.joint and c.hypothesis.effect == "steering_ratio" for c in last.candidates)
+
+
+def test_what_passes_but_is_not_taken_is_told_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where a set has as many effects as it may have."""
+    monkeypatch.setattr(search_module, "EFFECTS_MOST", 0)
+    found = search(model("pair"), library("hub_compliance"), DiscoveryWorkers())
+    (step,) = found.steps
+    assert not found.with_effects.model.members and not step.accepted and not step.added
+    assert step.candidates[0].joint and step.candidates[0].gain > 100.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -202,3 +203,14 @@ def test_both_charts_work_on_one_page(browser: Page, tmp_path: Path) -> None:
 def test_a_page_of_sections_alone_is_whole() -> None:
     html = page_html("T", discovery_sections(discovery("none"), None))
     assert "No effect is missing" in html
+
+
+def test_an_unexplained_set_does_not_leave_nothing(tmp_path: Path) -> None:
+    """Where no contrast stands out, what keeps it from a name is said."""
+    one = discovery("unexplained")
+    against = "Against a name: load cases held out are not predicted better."
+    quiet = replace(one, unexplained=(), classes=(), beyond=(), sentences=(*one.sentences, against))
+    html = write_discovery_page(
+        tmp_path / "r.html", quiet, records("unexplained"), study="S", date="D", notes={}
+    ).read_text()
+    assert "which is noise." not in html and f"<li>{against}</li>" in html
