@@ -81,7 +81,7 @@ class Processes(Executor):
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Waits for what is under way; after an exception, which nobody takes it after, it ends that."""
+        """Waits for what is under way, or ends it after an exception: nobody takes its results then."""
         if kind is None:
             self.shutdown()
         else:
