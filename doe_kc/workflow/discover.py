@@ -63,7 +63,7 @@ def discover_study(
     count = workers or available_cores()
     space = discovery_space(axle, study.variables, str(study.source))
     model = EffectModel(axle, space, likelihood, solutions=Solutions(count))
-    done, total = 0, expected_steps(study)
+    done, total = 0, expected_steps(study, measurement, exclude)
     if measurement.cars:
         progress("re-tuning every car", done, total)
     model, remarks = mean_car(model, measurement)
@@ -97,9 +97,10 @@ def recorded(axle: Axle, measurement: Measurement) -> Axle:
     return replace(axle, load_cases=cases)
 
 
-def expected_steps(study: Study) -> int:
-    """Steps that a discovery reports at least: one for each screening, refit and held-out load case."""
-    return len(effect_library(study.axle)) + 2 * len(study.axle.load_cases) + 10
+def expected_steps(study: Study, measurement: Measurement, exclude: Sequence[str] = ()) -> int:
+    """Steps that a discovery reports about: one for each screening, refit and held-out load case."""
+    axle = recorded(study.axle, measurement)
+    return len(effect_library(axle, exclude)) + 2 * len(axle.load_cases) + 10
 
 
 def effect_library(axle: Axle, exclude: Sequence[str] = ()) -> tuple[Hypothesis, ...]:

@@ -56,5 +56,5 @@ def discovered(
     study: Study, records: Measurement, *, exclude: Sequence[str] = (), workers: int | None = None
 ) -> Discovery:
     """The discovery, its progress shown."""
-    with described_bar("discovery", expected_steps(study)) as tell:
+    with described_bar("discovery", expected_steps(study, records, exclude)) as tell:
         return discover_study(study, records, exclude=exclude, workers=workers, progress=tell)
