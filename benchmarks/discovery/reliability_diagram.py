@@ -35,7 +35,7 @@ def draw_reliability(believed: Believed, path: Path) -> None:
     axes.set(xlabel="stated probability of a name, %", ylabel="names that are right, %", ylim=(-3, 114))
     axes.set_title(f"{len(believed)} names: how sure, and how often right", loc="left")
     axes.grid(color="0.9", lw=0.6)
-    axes.legend(loc="lower right", frameon=False)
+    figure.legend(loc="outside lower center", ncols=2, frameon=False)
     figure.savefig(path, dpi=150)
 
 
