@@ -103,7 +103,7 @@ def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:
         Patch(color=CHOSEN, label="taken into the model"),
         Patch(color=REFITTED, label="refitted jointly, not taken"),
         Patch(fc=SCREENED, ec="#8A9199", label="screened only"),
-        Line2D([], [], color="black", ls="--", lw=0.9, label="needed: a hundred to one"),
+        Line2D([], [], color="black", ls="--", lw=0.9, label="needed, a hundred to one at least"),
     ]
     page.add_legend(handles, 4)
     page.set_heading(f"Evidence for effects: {study}", 1 - 0.06 / height)

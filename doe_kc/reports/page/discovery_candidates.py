@@ -17,7 +17,8 @@ from doe_kc.reports.table import Column, PageCell, PageLayout, Table
 CANDIDATES_LEAD = (
     "Effects are added one by one, each with all parameters re-tuned. The odds count how much better the "
     "records are explained, charge for the added freedom and for how many effects there are to choose from; "
-    "a hundred to one are needed. Screened ones were not worth a joint refit."
+    "a hundred to one are needed at least, more where much remains. Screened ones were not worth a joint "
+    "refit."
 )
 HELD_OUT = (
     "Each load case is left out, the models are fitted to all the others and predict it. A right effect "
