@@ -19,7 +19,7 @@ from report_text import number, table
 from doe_kc.correlation.assessment import harmed, inside
 from doe_kc.correlation.posterior import BOUND_SHARE
 from doe_kc.correlation.status import STATUS_LABELS
-from doe_kc.reports.discovery.words import size_words
+from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.solver.suite import solve
 from doe_kc.study import read_study
 from doe_kc.workflow.adopt import AdoptedEffect

@@ -17,9 +17,9 @@ from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.measurement import reduce_measurement
-from doe_kc.reports.discovery.words import size_words
 from doe_kc.variables import VariableOptions
 from doe_kc.workflow.discover import discovery_space, effect_library
 

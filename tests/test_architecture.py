@@ -5,7 +5,11 @@ from __future__ import annotations
 import ast
 from collections import defaultdict
 from functools import cache
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
+
+import pytest
 
 import doe_kc
 
@@ -77,6 +81,26 @@ def test_every_module_imports_downwards_only() -> None:
         if (floor := name.split(".")[1]) in FLOORS and FLOORS.index(floor) > FLOORS.index(_floor(path))
     ]
     assert not upwards
+
+
+@pytest.mark.parametrize("folder", ["reports", "benchmarks"])
+def test_scripts_beside_the_package_import_what_it_has(folder: str) -> None:
+    """No other test and no type checker runs most of them."""
+    wanted = {
+        n
+        for path in (ROOT.parent / folder).rglob("*.py")
+        for n in _imports(ast.parse(path.read_text("utf-8")))
+    }
+    assert wanted and not {name for name in wanted if not _there(name)}
+
+
+def _there(name: str) -> bool:
+    """Whether a dotted name is a module, or something that one defines."""
+    module, _, last = name.rpartition(".")
+    try:
+        return hasattr(import_module(module), last) or find_spec(name) is not None
+    except ModuleNotFoundError:
+        return False
 
 
 def test_no_correlation_method_imports_from_another() -> None:
