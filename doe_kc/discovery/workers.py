@@ -120,7 +120,7 @@ class DiscoveryWorkers:
         errors is asked by identity. derivatives: whether a fit keeps its own, see `Fit.without_derivatives`.
         enough: whether the fit from the first start will do; then that alone is given. It is done before the
         others are begun: they take up workers longer than it does. Those are given up where they promise to
-        end above it.
+        end further above it than a free shape may cost.
         """
         if enough is not None:
             first = self.fits(starts[:1], what, derivatives=derivatives)

@@ -15,6 +15,7 @@ from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.load_cases import CASE_ORDER, case_label
+from doe_kc.reports.discovery.words import model_head
 from doe_kc.reports.drawing.color_scale import STRIPS, draw_color_scale, outline
 from doe_kc.reports.drawing.panel import PageBox, Panel
 from doe_kc.reports.drawing.sheet import Sheet, sheet
@@ -70,11 +71,11 @@ def map_grid(title: str, disagreement: Map) -> MapGrid:
 def discovery_grids(discovery: Discovery) -> list[MapGrid]:
     """Nominal, re-tuned and, where there is any, with the effects."""
     grids = [
-        map_grid("Nominal axle", discovery.nominal_map),
-        map_grid("Re-tuned without an effect", discovery.tuned_map),
+        map_grid(model_head("nominal"), discovery.nominal_map),
+        map_grid(model_head("tuned"), discovery.tuned_map),
     ]
     if discovery.fitted.model.members:
-        grids.append(map_grid("Re-tuned with the effect", discovery.residual_map))
+        grids.append(map_grid(model_head("with_effect"), discovery.residual_map))
     return grids
 
 
