@@ -119,6 +119,12 @@ def step_rows(inputs: FloatArray, case: LoadCase) -> NDArray[np.bool_]:
     return np.isclose(inputs[:, None], case.inputs(), rtol=0.0, atol=1e-9 * case.amplitude).any(axis=1)
 
 
+def common_rows(one: FloatArray, other: FloatArray) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """(n,) and (m,) which inputs of either branch both have."""
+    same = np.isclose(one[:, None], other, rtol=0.0, atol=1e-9 * np.abs(one).max())
+    return same.any(axis=1), same.any(axis=0)
+
+
 def _at_steps(curves: CaseCurves, case: LoadCase) -> CaseCurves:
     rows = step_rows(curves.input, case)
     assert rows.sum() == 2 * case.steps + 1

@@ -44,7 +44,8 @@ class LoadCase(ABC):
     """A quasi-static sweep, 0 -> +amplitude and 0 -> -amplitude (a loop when friction is on).
 
     amplitude: largest input, in `unit`.
-    steps: equilibria per branch.
+    steps: equilibria per branch from zero; a loop that is driven before the one that counts has as many from
+        end to end.
     conditioning: loops with friction that are driven before the one that counts, so that it closes. A rig
         records a steady loop; with 0, the loop begins right after the first rise from the static state.
     gain: true input per input given, for a rig that applies another one than it says.

@@ -125,18 +125,23 @@ def _notice_once(reason: str) -> None:
 
 
 def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
-    """Inputs of every branch, the first being where it starts: two from zero, or loops with friction."""
+    """Inputs of every branch, the first being where it starts: two from zero, or loops with friction.
+
+    What is driven before the loop that counts has half as many: nothing but its end is asked for, and that
+    hangs on where motions under friction reverse, not on the equilibria between.
+    """
     up = np.linspace(0.0, 1.0, case.steps + 1) * case.amplitude
     if not loop:
         return {"pos": up, "neg": -up}
     around = case.loop_inputs()
-    falling, rising = around[::-1].copy(), around
+    first = np.linspace(0.0, 1.0, (case.steps + 1) // 2 + 1) * case.amplitude
+    across = np.linspace(-1.0, 1.0, case.steps + 1) * case.amplitude
     before = {
         f"{name}_{k}": values
         for k in range(1, case.conditioning + 1)
-        for name, values in (("unload", falling), ("load", rising))
+        for name, values in (("unload", across[::-1].copy()), ("load", across))
     }
-    return {"init": up, **before, "unload": falling, "load": rising}
+    return {"init": first, **before, "unload": around[::-1].copy(), "load": around}
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,13 @@ import pytest
 from doe_kc.axle import Axle, parameter_value, with_values
 from doe_kc.axle.model import HARDPOINTS
 from doe_kc.effects import apply_effect
+from doe_kc.ground.typing import FloatArray
+from doe_kc.load_cases import LoadCase
+from doe_kc.solver import suite
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.library import find_compiler
-from doe_kc.solver.suite import solve
-from tests.reference import nominal, step_rows
+from doe_kc.solver.suite import branch_inputs, solve
+from tests.reference import common_rows, nominal, step_rows
 
 needs_compiler = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 
@@ -79,8 +82,34 @@ def test_a_lifted_wheel_held_by_friction_does_not_depend_on_the_steps(law: str, 
     load = solve(axle, compiled=False).column("tyre_load@L")
     assert min(b.y[:, load].min() for b in coarse) == 0.0
     for a, b in zip(coarse, fine, strict=True):
-        rows, same = (step_rows(x.input, axle.load_cases["roll"]) for x in (a, b))
+        rows, same = common_rows(a.input, b.input)
         assert np.abs(a.y[rows, load] - b.y[same, load]).max() < 0.02 * force / 4
+
+
+def test_what_is_driven_before_the_loop_needs_half_the_equilibria(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of curves that noise of 5 N and 0.002 deg covers on a rig."""
+    axle = nominal().conditioned(1)
+    for ident, options in (
+        ("rubber_hysteresis", {"share": 0.2}),
+        ("strut_friction", {"force_N": 150.0, "law": "iwan"}),
+        ("steering_friction", {"force_N": 200.0}),
+    ):
+        axle = apply_effect(axle, ident, options, source="test")
+    found = curve_set(solve(axle))
+
+    def all_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
+        own = branch_inputs(case, loop=loop)
+        assert loop and own["unload_1"].size == case.steps + 1 < own["unload"].size
+        first = case.inputs()[case.steps :]
+        return own | {"init": first, "unload_1": own["unload"], "load_1": own["load"]}
+
+    monkeypatch.setattr(suite, "branch_inputs", all_inputs)
+    exact = curve_set(solve(axle))
+    for ident, case in exact.cases.items():
+        for response, off in (("toe", 1e-5), ("wc_x", 1e-4), ("tyre_load", 0.05)):
+            for kind in ("mean", "half_width"):
+                one, other = (getattr(c, kind)[response] for c in (found.cases[ident], case))
+                np.testing.assert_allclose(one, other, rtol=0.0, atol=off, err_msg=f"{ident} {response}")
 
 
 def test_a_loop_is_as_smooth_at_its_ends_as_with_a_quarter_of_the_step() -> None:

@@ -9,6 +9,9 @@ its own discrepancy alone, and a compliance's where nothing else does.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence, Set
+from dataclasses import replace
+
+import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
@@ -17,7 +20,7 @@ from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.free_shapes import best_fit, frictions_to_free, with_most_numbers
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
 from doe_kc.discovery.search.law_variants import frictions, open_laws, other_laws, with_law
-from doe_kc.discovery.thresholds import BEYOND_DOUBT, NOISE_CHANCE
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_SHAPE_LOSS, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
@@ -99,18 +102,20 @@ def _until_explained(
     return exact, compared
 
 
-def with_best_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers) -> Fit:
+def with_best_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers, useful: float = np.inf) -> Fit:
     """The fit with the law of most evidence for a friction by a closed law: its own, another closed one, or
     where noise does not explain what those leave a free one, which begins from the best of them.
 
-    A free shape pays for the width of its prior: of a strut friction by Prandtl-Iwan's law it had 26 to 81 of
-    ln evidence less than that, and kept other effects out.
+    useful: cost above which no law is of use. A free shape pays for the width of its prior, so that it has to
+    end below the closed law: of a strut friction by Prandtl-Iwan's law it had 26 to 81 of ln evidence less
+    than that, and kept other effects out.
     """
-    best = _with_closed_law(current, member, other_laws(member), workers)
+    best = _with_closed_law(current, member, other_laws(member), workers, useful)
     if best.residual_map.chance >= NOISE_CHANCE:
         return best
     closed = next(h for h in best.model.members if h.name == member.name)
-    free = best_fit(with_most_numbers(best, [closed]), workers)
+    start = with_most_numbers(best, [closed])
+    free = best_fit(replace(start, ceiling=min(useful, best.cost + 2.0 * FREE_SHAPE_LOSS)), workers)
     return best if free is None or free.evidence <= best.evidence else free
 
 
@@ -146,11 +151,15 @@ def with_best_closed_laws(current: Fit, workers: DiscoveryWorkers, compared: Set
 
 
 def _with_closed_law(
-    current: Fit, member: Hypothesis, laws: Sequence[Hypothesis], workers: DiscoveryWorkers
+    current: Fit,
+    member: Hypothesis,
+    laws: Sequence[Hypothesis],
+    workers: DiscoveryWorkers,
+    useful: float = np.inf,
 ) -> Fit:
     # from the numbers of another law a fit promises little at first: one given up 40 of cost behind Dahl's
     # was 46 better at its end, and a hub's stiffness beside Dahl's 5309 +- 719 for 13 900
-    most = current.cost + 2.0 * BEYOND_DOUBT
+    most = min(useful, current.cost + 2.0 * BEYOND_DOUBT)
     starts = [FitStart(*with_law(current.model, current.z, member, law), current, most) for law in laws]
     refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
     return max([current, *refits], key=lambda f: f.evidence)

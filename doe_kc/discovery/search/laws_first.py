@@ -5,7 +5,7 @@ An effect that comes in while a law is not the car's may be what that law lacks.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
@@ -13,20 +13,24 @@ from doe_kc.discovery.gauss_newton import FitStart, refit_to_errors
 from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.free_shapes import with_most_numbers
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
-from doe_kc.discovery.search.law_variants import frictions, open_laws
+from doe_kc.discovery.search.law_variants import frictions, open_laws, other_laws, with_law
 from doe_kc.discovery.search.laws import with_best_law
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.thresholds import ACCEPTED_ODDS, FEW_CONTRASTS, NOISE_CHANCE, PROPOSAL_GAIN
+from doe_kc.discovery.thresholds import (
+    ACCEPTED_ODDS,
+    BEYOND_DOUBT,
+    FEW_CONTRASTS,
+    NOISE_CHANCE,
+    PROPOSAL_GAIN,
+)
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.effects.hypothesis import Hypothesis
 
 
 def laws_instead(
     current: Fit, further: HypothesisFit, own: Likelihood, workers: DiscoveryWorkers
 ) -> Fit | None:
     """The fit with the best laws of its frictions, where they say more of the records than a further effect
-    would, by the laws that it came in with and by the best ones beside it; else None. own: the records' own
-    errors.
+    would, beside the laws that it came in with and beside those; else None. own: the records' own errors.
 
     Asked where noise explains what remains, but for single contrasts, as it does once the discrepancy of a
     friction's law is among the errors. An effect that comes in then may be what that law lacks: a steering
@@ -37,20 +41,40 @@ def laws_instead(
     if not _few_contrasts(current) or not members:
         return None
     exact, rival = fit_to_errors(current, own, workers), refit_to_errors(further.fit, own)
-    best = _with_best_laws(exact, members, workers)
     (added,) = workers.fits([FitStart(rival.model, rival.z, rival)], "freeing laws")
+    best, useful = exact, np.inf if added is None else _useful_cost(exact, added.evidence + further.prior)
+    for member in members:
+        best = with_best_law(best, member, workers, useful)
     if best is exact or added is None:
         return None if best is exact else best
+    with_effect = [added.evidence]
     if best.evidence > added.evidence + further.prior:
-        added = _with_best_laws(added, members, workers)
-    return best if best.evidence > added.evidence + further.prior else None
+        beside = workers.fits(_by_laws_of(best, added), "exchanging laws")
+        with_effect += [fit.evidence for fit in beside if fit is not None]
+    return best if best.evidence > max(with_effect) + further.prior else None
 
 
-def _with_best_laws(fit: Fit, members: Sequence[Hypothesis], workers: DiscoveryWorkers) -> Fit:
-    """The fit with the best law of each of its frictions, one after the other."""
-    for member in members:
-        fit = with_best_law(fit, member, workers)
-    return fit
+def _useful_cost(exact: Fit, evidence: float) -> float:
+    """Largest cost with which the same set by other laws need be fitted to its end for an evidence."""
+    return exact.cost - 2.0 * (evidence - exact.evidence) + 2.0 * BEYOND_DOUBT
+
+
+def _by_laws_of(best: Fit, added: Fit) -> list[FitStart]:
+    """Starts of the set of `added` by the laws of `best`, free shapes where noise does not explain what it
+    leaves: from either fit's numbers."""
+    laws = {h.name: h for h in best.model.members}
+    explained = added.residual_map.chance >= NOISE_CHANCE
+    model, z = added.model, added.z
+    for member in added.model.members:
+        law = laws.get(member.name, member)
+        if law.law != member.law and (not explained or law in other_laws(member)):
+            model, z = with_law(model, z, member, law)
+    if model is added.model:
+        return []
+    known = {(h.name, h.law): best.z[place] for h, place in best.model.places()}
+    sizes = [known.get((h.name, h.law), z[place]) for h, place in model.places()]
+    fixed = best.model.dimension
+    return [FitStart(model, z, added), FitStart(model, np.concatenate([best.z[:fixed], *sizes]), best)]
 
 
 def needless_beside_laws(

@@ -24,7 +24,7 @@ class Answers(DiscoveryWorkers):
     """Gives the fit of the start itself, better or worse by some cost, and notes the laws asked for."""
 
     def __init__(self, cost: float, best: str = "") -> None:
-        """best: a law whose cost is 100 less."""
+        """best: a law whose cost is 100 less than that of another."""
         super().__init__()
         self.cost, self.best, self.laws = cost, best, [""] * 0
 
@@ -44,14 +44,17 @@ class Answers(DiscoveryWorkers):
         )
 
     def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
-        laws = [
-            next(h.law for h in s.model.members if len(EFFECTS[h.effect].variants(h)) > 1) for s in starts
-        ]
+        laws = [self._law(s.model) for s in starts]
         self.laws += laws
+        exchanged = [law == self.best != self._law(s.near.model) for s, law in zip(starts, laws, strict=True)]
         return [
-            self._fit(s.model, s.z, s.near, self.cost - (100.0 if law == self.best != "" else 0.0))
-            for s, law in zip(starts, laws, strict=True)
+            self._fit(s.model, s.z, s.near, self.cost - 100.0 * better)
+            for s, better in zip(starts, exchanged, strict=True)
         ]
+
+    @staticmethod
+    def _law(model: EffectModel) -> str:
+        return next(h.law for h in model.members if len(EFFECTS[h.effect].variants(h)) > 1)
 
     def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
         more, known = z.size - found.z.size, found.jacobian.own

@@ -36,8 +36,8 @@ def test_where_noise_explains_what_remains_another_law_comes_before_an_effect(
     further = HypothesisFit(hub, beside_a_hub(), 12.0, prior)
     asked, own = Answers(0.0, best), agreeing().model.likelihood
     found = laws_instead(agreeing(), further, own, asked)
-    beside = CLOSED if best else []
-    assert asked.laws == [*CLOSED, "", *beside], "first beside the law that the effect came in with"
+    beside = [best, best] if best else []
+    assert asked.laws == ["", *CLOSED, *beside], "beside the law that it came in with, and beside the better"
     assert (found is not None) is instead
     assert found is None or found.model.members[0].law == best
 
