@@ -46,8 +46,7 @@ def discover(
     started = time.perf_counter()
     return_large_arrays()
     workers = workers or DiscoveryWorkers()
-    search, widened = search_within_bounds(model, library, workers)
-    search, compared = exchanged(search, library, workers)
+    search, compared = exchanged(search_within_bounds(model, library, workers), library, workers)
     nominal = model.residual(model.centre)
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
@@ -71,7 +70,7 @@ def discover(
     return Discovery(
         verdict=outcome.kind,
         sentences=sentences(
-            outcome, relevant, set_adequacy, gap, residual_map, interface_scan, outside, widened
+            outcome, relevant, set_adequacy, gap, residual_map, interface_scan, outside, tuned.model.widened
         ),
         findings=relevant,
         traces=traces,
@@ -91,7 +90,7 @@ def discover(
         next_tests=next_tests(outcome, relevant, groups, statuses, separating),
         seconds=time.perf_counter() - started,
         scan=interface_scan,
-        widened=widened,
+        widened=tuned.model.widened,
         beyond=outside,
         separating=separating,
     )

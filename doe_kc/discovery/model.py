@@ -62,6 +62,8 @@ class EffectModel(FieldsOnly):
     own_scatter: tuple[float, ...] | None = None
     """(d,) standard deviations of parameters and nuisances as the records show them, over those assumed; None
     for those."""
+    widened: float = 1.0
+    """Factor by which all ranges of the parameters are wider than those asked for."""
     solutions: Solutions = field(default_factory=Solutions, compare=False, repr=False)
     """Solver of its axles, the same for all models that come of one another."""
 

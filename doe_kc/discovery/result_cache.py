@@ -30,7 +30,7 @@ LENGTH = 8
 WRITES_BEGUN = 4
 """Results that wait to be written at most: of some 8 MB each."""
 TABLE = "packed_results"
-FORMAT = "7"
+FORMAT = "8"
 """Format of what is stored: raise it with every change of what a result means, of how it is computed so far
 that its numbers differ, or of what is packed. Results of another format are not taken up, and computed
 anew."""

@@ -24,8 +24,8 @@ from doe_kc.variables import Space
 
 def search_within_bounds(
     model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers
-) -> tuple[EffectSearch, float]:
-    """The search, and by how much all ranges are wider in it than the model's: 1 where that is not asked for.
+) -> EffectSearch:
+    """The search, its ranges wider than the model's where the records ask for that.
 
     Wider ranges are tried only where what re-tuning could not absorb agrees with noise, so that they
     cannot bend parameters in place of an effect; then the search begins anew between them.
@@ -34,10 +34,9 @@ def search_within_bounds(
     first = search(model, library, workers)
     factor = bound_evidence(first.with_law_discrepancy, workers)
     if factor == 1.0:
-        return first, factor
-    wider = search(replace(model, space=model.space.widened(factor)), library, workers)
-    gain = wider.evidence - first.evidence
-    return (wider, factor) if gain > BOUND_EVIDENCE else (first, 1.0)
+        return first
+    wider = search(replace(model, space=model.space.widened(factor), widened=factor), library, workers)
+    return wider if wider.evidence - first.evidence > BOUND_EVIDENCE else first
 
 
 def bound_evidence(fit: Fit, workers: DiscoveryWorkers) -> float:
