@@ -8,6 +8,8 @@ from typing import Literal
 from doe_kc.axle.structure import Structure
 
 FrictionLaw = Literal["none", "dahl", "iwan", "duhem", "lognormal", "backbone"]
+NEARLY_DAHL = 1e-6
+"""Exponent of Duhem's law less 1 that stands for Dahl's, where the closed form is 0 / 0."""
 
 TOPOLOGY_CACHE = 64
 """Topologies whose kernels are kept: a search for effects tries dozens."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS, IWAN_ELEMENTS, iwan_yields, yield_ratios
-from doe_kc.axle.topology import FrictionLaw
+from doe_kc.axle.topology import NEARLY_DAHL, FrictionLaw
 from doe_kc.ground.typing import FloatArray
 
 DISTANCES = np.geomspace(0.05, 20.0, 80)
@@ -78,6 +78,6 @@ def _loading(law: FrictionLaw, exponent: float, spread: float) -> FloatArray:
 def _rest(distances: FloatArray, exponent: float) -> FloatArray:
     """r = 1 - F / limit at some distances from the other limit: r' = -r^exponent, r(0) = 2."""
     over = exponent - 1.0
-    if abs(over) < 1e-6:
+    if abs(over) < NEARLY_DAHL:
         return np.asarray(2.0 * np.exp(-distances))
     return np.asarray(np.maximum(2.0**-over + over * distances, 0.0) ** (-1.0 / over))

@@ -15,7 +15,7 @@ from doe_kc.discovery.verdict.sentences import adequacy_words, odds_words
 from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
-from doe_kc.reports.discovery.words import HEADLINES, contrast_words
+from doe_kc.reports.discovery.words import contrast_words, headline
 
 HIDDEN = ("not testable", "no solution")
 
@@ -199,7 +199,7 @@ def _finite(value: Any) -> Any:
 
 def discovery_lines(discovery: Discovery) -> list[str]:
     """The outcome for a terminal."""
-    lines = [f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}"]
+    lines = [f"{headline(discovery)}. {discovery.sentences[0]}"]
     lines += [
         f"{'lead' if f.verdict == 'lead' else 'effect'}: {_line(discovery, f)}" for f in discovery.findings
     ]

@@ -18,7 +18,7 @@ from doe_kc.reports.discovery.isolability import isolability_table
 from doe_kc.reports.discovery.library import library_table
 from doe_kc.reports.discovery.parameters import tuned_table
 from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery.words import HEADLINES
+from doe_kc.reports.discovery.words import headline
 from doe_kc.reports.discovery.workbook import write_discovery_workbook
 from doe_kc.reports.page.discovery import write_discovery_page
 from doe_kc.reports.page.links import link_pages
@@ -82,4 +82,4 @@ def axle_note(discovery: Discovery) -> str:
     members = ", ".join(hypothesis_words(h) for h in discovery.fitted.model.members)
     unsure = [f for f in discovery.findings if f.verdict == "lead"]
     lead = "leads, not confirmed: " if unsure and len(unsure) == len(discovery.findings) else ""
-    return f"{HEADLINES[discovery.verdict].lower()}; re-tuned" + (f" with {lead}{members}" if members else "")
+    return f"{headline(discovery).lower()}; re-tuned" + (f" with {lead}{members}" if members else "")

@@ -19,7 +19,7 @@ from doe_kc.effects.words import effect_label
 from doe_kc.ground.numbers import number, unit_words
 from doe_kc.load_cases import case_label
 
-HEADLINES: dict[VerdictKind, str] = {
+_HEADLINES: dict[VerdictKind, str] = {
     "named": "Effect named",
     "class": "One of several effects",
     "none": "No effect missing",
@@ -40,6 +40,12 @@ MODEL_LABELS = {
     "best_decoy": "with the best other effect",
 }
 """Names of the four models that are compared, by their field in `Gap`."""
+
+
+def headline(discovery: Discovery) -> str:
+    """The verdict in a few words."""
+    several = discovery.verdict == "named" and len(discovery.findings) > 1
+    return "Effects named" if several else _HEADLINES[discovery.verdict]
 
 
 def model_head(model: str) -> str:

@@ -21,7 +21,7 @@ from doe_kc.reports.discovery.isolability import isolability_table
 from doe_kc.reports.discovery.library import library_table
 from doe_kc.reports.discovery.parameters import tuned_table
 from doe_kc.reports.discovery.tables import GapRow, disagreement_table, gap_table, held_out_table
-from doe_kc.reports.discovery.words import HEADLINES, contrast_words, own_sentences
+from doe_kc.reports.discovery.words import contrast_words, headline, own_sentences
 from doe_kc.reports.render.charts import add_marks, chart_sheet
 from doe_kc.reports.render.workbook import lines_sheet, new_book, table_sheet, write_book
 from doe_kc.reports.table import Column, Table, Value
@@ -176,7 +176,7 @@ def write_discovery_workbook(
 def verdict_lines(discovery: Discovery) -> list[tuple[str, str]]:
     """(head, sentence): the verdict, each effect, how far model and records are apart, what stays open, what
     to test next, the statistics last; heads only once."""
-    out = [("Verdict", f"{HEADLINES[discovery.verdict]}. {discovery.sentences[0]}")]
+    out = [("Verdict", f"{headline(discovery)}. {discovery.sentences[0]}")]
     for head, leads in (("Effect", False), ("Lead", True)):
         listed = [f for f in discovery.findings if (f.verdict == "lead") is leads]
         out += _headed(head, [finding_words(discovery, f) for f in listed])

@@ -35,7 +35,7 @@ from doe_kc.reports.discovery.library import library_table
 from doe_kc.reports.discovery.loops import LOOPS_DRAWN, loop_figure, loop_pairs, loop_table
 from doe_kc.reports.discovery.parameter_figure import arrow_colour
 from doe_kc.reports.discovery.parameters import TunedParameter, tuned_table
-from doe_kc.reports.discovery.words import HEADLINES, contrast_words, own_sentences
+from doe_kc.reports.discovery.words import contrast_words, headline, own_sentences
 from doe_kc.reports.page.axle import svg_data
 from doe_kc.reports.page.discovery_candidates import (
     candidates_section,
@@ -56,7 +56,7 @@ def verdict_section(discovery: Discovery, notes: Mapping[str, str]) -> Section:
     steps = gap_steps(discovery)
     html = render(
         "discovery_verdict.html",
-        headline=_headline(discovery),
+        headline=headline(discovery),
         fill=VERDICT_FILLS[discovery.verdict],
         ink=ink_on(VERDICT_FILLS[discovery.verdict]),
         sentence=discovery.sentences[0],
@@ -93,11 +93,6 @@ def _loops(discovery: Discovery) -> dict[str, Any]:
         "loops_width": LOOP_REMS * min(len(pairs), LOOPS_DRAWN),
         "loop_rows": table_html(loop_table(pairs)),
     }
-
-
-def _headline(discovery: Discovery) -> str:
-    several = discovery.verdict == "named" and len(discovery.findings) > 1
-    return "Effects named" if several else HEADLINES[discovery.verdict]
 
 
 VERDICT_FILLS: Mapping[VerdictKind, str] = {

@@ -15,14 +15,12 @@ from __future__ import annotations
 import casadi as ca
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS, IWAN_ELEMENTS, iwan_yields
-from doe_kc.axle.topology import FrictionLaw
+from doe_kc.axle.topology import NEARLY_DAHL, FrictionLaw
 from doe_kc.solver.builder import LOAD_CASE, Builder
 from doe_kc.solver.elements._sliders import lognormal_yields, slider_deflections
 
 LEAST_REST = 1e-9
 """Distance from the limit, over the limit, that stands for none: its powers stay finite."""
-NEARLY_DAHL = 1e-6
-"""Exponent less 1 that stands for 1, where the closed form is 0 / 0."""
 
 
 def dahl_force(x: ca.SX, x0: ca.SX, f0: ca.SX, level: ca.SX, presliding: ca.SX) -> ca.SX:
