@@ -15,8 +15,13 @@ from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_variants import open_laws
-from doe_kc.discovery.search.laws import with_best_closed_laws, with_free_laws, with_friction_laws
-from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_TRAVELS
+from doe_kc.discovery.search.laws import (
+    with_best_closed_laws,
+    with_best_law,
+    with_free_laws,
+    with_friction_laws,
+)
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_SHAPE_LOSS, FREE_TRAVELS
 from doe_kc.effects._backbone import nearest_backbone
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.ground.typing import FloatArray
@@ -170,6 +175,24 @@ def test_another_closed_law_is_given_up_only_beyond_doubt() -> None:
     asked = Ceilings(0.0)
     with_best_closed_laws(beside_a_hub(), asked)
     assert asked.most == [pytest.approx(beside_a_hub().cost + 2.0 * BEYOND_DOUBT)] * 3
+
+
+@pytest.mark.parametrize("above", [150.0, np.inf], ids=["what is useful", "no less than the closed law"])
+def test_laws_are_given_up_where_they_are_of_no_use(above: float) -> None:
+    """Beside an effect that explains more, and a free shape, which pays for the width of its prior, above the
+    closed law that it begins from."""
+    ceilings: dict[str, float] = {}
+
+    class Kept(Answers):
+        def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
+            ceilings.update({s.model.members[0].law: s.ceiling for s in starts})
+            return super()._answers(starts)
+
+    current = disagreeing()
+    with_best_law(current, current.model.members[0], Kept(50.0), current.cost - 300.0 + above)
+    least = current.cost - 150.0 if np.isfinite(above) else current.cost + 2.0 * BEYOND_DOUBT
+    assert {law: ceilings[law] for law in CLOSED} == dict.fromkeys(CLOSED, least)
+    assert ceilings["backbone"] == min(least, current.cost + 2.0 * FREE_SHAPE_LOSS)
 
 
 @pytest.mark.parametrize(("cost", "law"), [(-5.0, "iwan"), (5.0, "")])

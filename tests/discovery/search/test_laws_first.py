@@ -81,6 +81,8 @@ def test_a_free_law_comes_first_where_one_contrast_alone_remains() -> None:
     (hub,) = library("hub_compliance")
     freed = laws_instead(one, HypothesisFit(hub, beside_a_hub(), 12.0), found.model.likelihood, asked)
     assert freed is not None and freed.model.members[0].law == "backbone"
+    assert asked.laws[-1] == "backbone", "the effect that explains all was asked for no free law"
+    assert asked.laws.count("") == 1
 
 
 def test_a_free_law_does_not_replace_an_effect_where_more_is_missing_or_no_friction_is_there() -> None:
