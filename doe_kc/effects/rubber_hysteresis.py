@@ -141,7 +141,7 @@ class RubberHysteresis(Effect):
         ratios = ", ".join(f"{each.ratio:.2f}" for each in at)
         angles = ", ".join(f"{each.loss_angle:.1f}" for each in at)
         return (
-            f"Over +-{travels} mm such a bushing is {ratios} times as stiff as its elastic law, its loss "
+            f"Over ±{travels} mm such a bushing is {ratios} times as stiff as its elastic law, its loss "
             f"angle {angles} deg: a supplier's dynamic stiffness, measured over a small travel, is not "
             "the stiffness that the rig sees."
         )

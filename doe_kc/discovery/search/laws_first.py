@@ -30,12 +30,14 @@ def laws_instead(
     current: Fit, further: HypothesisFit, own: Likelihood, workers: DiscoveryWorkers
 ) -> Fit | None:
     """The fit with the best laws of its frictions, where they say more of the records than a further effect
-    would, beside the laws that it came in with and beside those; else None. own: the records' own errors.
+    beside the laws that it came in with: without the effect, or with it where it says something beside them
+    too; else None. own: the records' own errors.
 
     Asked where noise explains what remains, but for single contrasts, as it does once the discrepancy of a
     friction's law is among the errors. An effect that comes in then may be what that law lacks: a steering
     friction of two stages, 383 N, became one of 978 N beside a rack mount of 18 000 N/mm. Beside a mount of
-    5780 N/mm that is there, Dahl's law was better than a worse law with it, and 240 N became 185 +- 2 N.
+    5780 N/mm that is there, Dahl's law was better than a worse law with it, and 240 N became 185 +- 2 N. Four
+    effects came in beside Dahl's law where Prandtl-Iwan's had 400 of ln evidence more in every step.
     """
     members = [h for h in frictions(current) if open_laws(h)]
     if not _few_contrasts(current) or not members:
@@ -47,11 +49,13 @@ def laws_instead(
         best = with_best_law(best, member, workers, useful)
     if best is exact or added is None:
         return None if best is exact else best
-    with_effect = [added.evidence]
-    if best.evidence > added.evidence + further.prior:
-        beside = workers.fits(_by_laws_of(best, added), "exchanging laws")
-        with_effect += [fit.evidence for fit in beside if fit is not None]
-    return best if best.evidence > max(with_effect) + further.prior else None
+    if best.evidence <= added.evidence + further.prior:
+        return None
+    beside = [fit for fit in workers.fits(_by_laws_of(best, added), "exchanging laws") if fit is not None]
+    both = max(beside, key=lambda fit: fit.evidence, default=added)
+    if best.evidence > both.evidence + further.prior:
+        return best
+    return both if both.evidence - added.evidence > ACCEPTED_ODDS else None
 
 
 def _useful_cost(exact: Fit, evidence: float) -> float:

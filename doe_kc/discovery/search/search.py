@@ -168,15 +168,18 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         before = current.model.likelihood
         instead = None
         if decision.accepted:
-            instead = laws_instead(current, decision.trials[0], model.likelihood, workers)
+            taken = decision.trials[0]
+            instead = laws_instead(current, taken, model.likelihood, workers)
             if instead is not None and _laws(instead) in tried:
                 instead = None
-            needless = instead is None and needless_beside_laws(
-                current, decision.trials[0], model.likelihood, workers
-            )
-            if needless:
-                decision = replace(decision, accepted=False)
-                steps[-1] = decision.step(model.likelihood, prior)
+            if instead is None or _names(instead) == _names(taken.fit):
+                if needless_beside_laws(current, taken, model.likelihood, workers):
+                    decision = replace(decision, accepted=False)
+                    steps[-1] = decision.step(model.likelihood, prior)
+                elif instead is not None:
+                    decision = replace(decision, trials=(replace(taken, fit=instead), *decision.trials[1:]))
+                instead = None
+            del taken
         if instead is not None:
             steps.pop()
             current = instead
@@ -241,6 +244,11 @@ def _laws(current: Fit) -> tuple[tuple[str, str], ...]:
     """Each member's name and law. A set whose laws were exchanged does not return to laws that it had: a free
     shape has several optima, and what is better from one of them may not be from another."""
     return tuple((h.name, h.law) for h in current.model.members)
+
+
+def _names(current: Fit) -> set[str]:
+    """Of its members."""
+    return {h.name for h in current.model.members}
 
 
 def _with_loops(
