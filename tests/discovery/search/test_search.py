@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from doe_kc.discovery.search import decision as decision_module
@@ -48,6 +50,23 @@ def test_a_search_goes_back_to_no_laws_that_it_had(monkeypatch: pytest.MonkeyPat
     found = search(model("pair"), library("steering_friction", "hub_compliance"), DiscoveryWorkers())
     assert {h.effect for h in found.with_effects.model.members} == {"steering_friction", "hub_compliance"}
     assert 1 <= len(asked) <= 6
+
+
+def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not with those of the set before it, which Prandtl-Iwan's law of a strut friction left far behind."""
+    given, taken = [], []
+    monkeypatch.setattr(
+        search_module,
+        "laws_instead",
+        lambda _, further, *__: given.append(replace(further.fit)) or given[-1],
+    )
+    with_loops = search_module._with_loops
+    monkeypatch.setattr(
+        search_module, "_with_loops", lambda fit, *a, **k: taken.append(fit) or with_loops(fit, *a, **k)
+    )
+    found = search(model("pair"), library("steering_friction", "hub_compliance"), DiscoveryWorkers())
+    assert [step.accepted for step in found.steps] == [True, True, False]
+    assert len(taken) == len(given) == 2 and all(a is b for a, b in zip(taken, given, strict=True))
 
 
 def test_an_effect_that_a_law_makes_needless_does_not_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
