@@ -120,8 +120,9 @@ def step_rows(inputs: FloatArray, case: LoadCase) -> NDArray[np.bool_]:
 
 
 def common_rows(one: FloatArray, other: FloatArray) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """(n,) and (m,) which inputs of either branch both have."""
+    """(n,) and (m,) which inputs of either branch both have, both ends among them."""
     same = np.isclose(one[:, None], other, rtol=0.0, atol=1e-9 * np.abs(one).max())
+    assert same[0, 0] and same[-1, -1] and same.sum() > 2
     return same.any(axis=1), same.any(axis=0)
 
 

@@ -35,7 +35,7 @@ def search_within_bounds(
     factor = bound_evidence(first.with_law_discrepancy, workers)
     if factor == 1.0:
         return first
-    wider = search(replace(model, space=model.space.widened(factor), widened=factor), library, workers)
+    wider = search(_widened(model, factor), library, workers)
     return wider if wider.evidence - first.evidence > BOUND_EVIDENCE else first
 
 
@@ -64,10 +64,13 @@ def at_bounds(fit: Fit) -> NDArray[np.bool_]:
 
 def with_wider_bounds(fit: Fit, factor: float) -> tuple[EffectModel, FloatArray]:
     """The model with wider ranges, and the fit's point in it."""
-    model = fit.model
-    space, count = model.space.widened(factor), model.parameters
-    z = np.concatenate([space.unit(model.space.values(fit.z[:count])), fit.z[count:]])
-    return replace(model, space=space), z
+    count, wider = fit.model.parameters, _widened(fit.model, factor)
+    places = wider.space.unit(fit.model.space.values(fit.z[:count]))
+    return wider, np.concatenate([places, fit.z[count:]])
+
+
+def _widened(model: EffectModel, factor: float) -> EffectModel:
+    return replace(model, space=model.space.widened(factor), widened=factor)
 
 
 def _stretch(fit: Fit, wider: EffectModel, z: FloatArray) -> FloatArray:

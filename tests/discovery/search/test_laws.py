@@ -177,8 +177,8 @@ def test_another_closed_law_is_given_up_only_beyond_doubt() -> None:
     assert asked.most == [pytest.approx(beside_a_hub().cost + 2.0 * BEYOND_DOUBT)] * 3
 
 
-@pytest.mark.parametrize("above", [150.0, np.inf], ids=["what is useful", "no less than the closed law"])
-def test_laws_are_given_up_where_they_are_of_no_use(above: float) -> None:
+@pytest.mark.parametrize("useful", [-150.0, np.inf], ids=["beside an effect", "none beside it"])
+def test_laws_are_given_up_where_they_are_of_no_use(useful: float) -> None:
     """Beside an effect that explains more, and a free shape, which pays for the width of its prior, above the
     closed law that it begins from."""
     ceilings: dict[str, float] = {}
@@ -189,8 +189,8 @@ def test_laws_are_given_up_where_they_are_of_no_use(above: float) -> None:
             return super()._answers(starts)
 
     current = disagreeing()
-    with_best_law(current, current.model.members[0], Kept(50.0), current.cost - 300.0 + above)
-    least = current.cost - 150.0 if np.isfinite(above) else current.cost + 2.0 * BEYOND_DOUBT
+    with_best_law(current, current.model.members[0], Kept(50.0), current.cost + useful)
+    least = current.cost + min(useful, 2.0 * BEYOND_DOUBT)
     assert {law: ceilings[law] for law in CLOSED} == dict.fromkeys(CLOSED, least)
     assert ceilings["backbone"] == min(least, current.cost + 2.0 * FREE_SHAPE_LOSS)
 

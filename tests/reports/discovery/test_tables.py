@@ -117,8 +117,14 @@ def test_effects_have_a_row_for_each_number(car: str, kinds: list[str]) -> None:
     assert sorted({r.kind for r in rows if r.finding.relevant}) == kinds
     sizes = sum(max(1, len(f.estimates)) for f in (*found.findings, *found.traces))
     assert len(table_frame(effect_table(found))) == len(rows) == sizes
-    several = len(found.findings) > 1 and found.verdict == "named"
-    assert (headline(found) == "Effects named") is several
+
+
+def test_the_headline_says_whether_several_effects_are_named() -> None:
+    one = discovery("named")
+    (finding,) = one.findings
+    assert headline(one) == "Effect named"
+    assert headline(replace(one, findings=(finding, finding))) == "Effects named"
+    assert headline(replace(one, verdict="unexplained", findings=(finding, finding))) == "Unexplained"
 
 
 def test_a_size_that_cannot_be_told_from_none_is_a_limit() -> None:
