@@ -188,6 +188,15 @@ def amplitude_estimates(fit: Fit, hypothesis: Hypothesis) -> tuple[FloatArray, F
     return np.asarray(weights @ fit.z), np.asarray(np.sqrt(np.diag(covariance)))
 
 
+def member_detectability(fit: Fit, member: Hypothesis) -> float:
+    """Standard deviations of the records that a member makes at its size, all else re-tuned."""
+    place = fit.model.place(member)
+    covariance = fit.covariance[place, place]
+    information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
+    sizes = fit.z[place]
+    return float(np.sqrt(max(0.0, float(sizes @ information @ sizes))))
+
+
 def size_weights(model: EffectModel, hypothesis: Hypothesis) -> FloatArray:
     """(s, d + m) what of the unknowns makes each amplitude of a member, in typical sizes.
 

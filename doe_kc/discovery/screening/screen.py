@@ -33,6 +33,9 @@ from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
+REWHITENED_TOGETHER = 16
+"""Hypotheses that are rewhitened at the same time: of all at once three copies of 18 MB lie side by side."""
+
 
 @dataclass(frozen=True)
 class Screened:
@@ -78,9 +81,15 @@ def rewhitened_screenings(
     """Their changes in units of other errors of the same records; what was concluded stays."""
     if before is after or not screened:
         return list(screened)
+    units = Rewhitening(before, after)
+    parts = (screened[i : i + REWHITENED_TOGETHER] for i in range(0, len(screened), REWHITENED_TOGETHER))
+    return [one for part in parts for one in _rewhitened(part, units)]
+
+
+def _rewhitened(screened: Sequence[Screened], units: Rewhitening) -> list[Screened]:
     blocks = [np.column_stack([s.change, s.bend, s.columns]) for s in screened]
     ends = np.cumsum([block.shape[1] for block in blocks])
-    every = np.hsplit(Rewhitening(before, after)(np.hstack(blocks)), ends[:-1])
+    every = np.hsplit(units(np.hstack(blocks)), ends[:-1])
     return [
         replace(s, change=own[:, 0].copy(), bend=own[:, 1].copy(), columns=own[:, 2:].copy())
         for s, own in zip(screened, every, strict=True)

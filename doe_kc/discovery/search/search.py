@@ -23,7 +23,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     without_own_discrepancy,
 )
 from doe_kc.discovery.search.laws import may_open, with_best_closed_laws, with_free_laws, with_friction_laws
-from doe_kc.discovery.search.laws_first import laws_instead, needless_beside_laws
+from doe_kc.discovery.search.laws_first import effect_or_laws, laws_of
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.refits import HypothesisFit
@@ -151,7 +151,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     compared: Set[str] = frozenset()
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
-    tried = {_laws(current)}
+    tried = {laws_of(current)}
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
         laws_open = not laws_tried and may_open(current)
@@ -168,22 +168,17 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         before = current.model.likelihood
         instead = None
         if decision.accepted:
-            taken = decision.trials[0]
-            instead = laws_instead(current, taken, model.likelihood, workers)
-            if instead is not None and _laws(instead) in tried:
-                instead = None
-            if instead is None or _names(instead) == _names(taken.fit):
-                if needless_beside_laws(current, taken, model.likelihood, workers):
-                    decision = replace(decision, accepted=False)
-                    steps[-1] = decision.step(model.likelihood, prior)
-                elif instead is not None:
-                    decision = replace(decision, trials=(replace(taken, fit=instead), *decision.trials[1:]))
-                instead = None
+            instead, taken = effect_or_laws(current, decision.trials[0], tried, model.likelihood, workers)
+            if taken is not None:
+                decision = replace(decision, trials=(taken, *decision.trials[1:]))
+            elif instead is None:
+                decision = replace(decision, accepted=False)
+                steps[-1] = decision.step(model.likelihood, prior)
             del taken
         if instead is not None:
             steps.pop()
             current = instead
-            tried.add(_laws(current))
+            tried.add(laws_of(current))
         elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_loops(current, added, model.axle, workers, known=loops_known)
@@ -238,17 +233,6 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         shape_loss,
         other,
     )
-
-
-def _laws(current: Fit) -> tuple[tuple[str, str], ...]:
-    """Each member's name and law. A set whose laws were exchanged does not return to laws that it had: a free
-    shape has several optima, and what is better from one of them may not be from another."""
-    return tuple((h.name, h.law) for h in current.model.members)
-
-
-def _names(current: Fit) -> set[str]:
-    """Of its members."""
-    return {h.name for h in current.model.members}
 
 
 def _with_loops(

@@ -7,12 +7,13 @@ explain the same is put in its place, all else refitted.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
-from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.fit import Fit, member_detectability
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
@@ -28,10 +29,14 @@ from doe_kc.discovery.search.refits import (
 )
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import NAME_ALWAYS_LEVEL
-from doe_kc.discovery.verdict.removals import Removal, ceiling_of, in_groups, own_errors, removals
+from doe_kc.discovery.verdict.removals import Removal, ceiling_of, own_errors, removals
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
+
+T = TypeVar("T")
+AT_ONCE = 3
+"""Members that are compared at the same time: the fit without one and its derivatives take some 25 MB."""
 
 
 @dataclass(frozen=True)
@@ -120,29 +125,58 @@ def _loss(trials: Sequence[HypothesisFit]) -> float:
 
 
 def alternatives(search: EffectSearch, temper: float, workers: DiscoveryWorkers) -> tuple[Alternatives, ...]:
-    """The alternatives of every member of the last set, in its order.
+    """The alternatives of every member of the last set, in its order."""
+    return in_set_order(
+        search, [one for group in alternatives_by_group(search, temper, workers) for one in group]
+    )
 
-    A decoy of another kind is put in the place of the one whose removal costs most, where a reader looks
-    for it.
+
+def in_set_order(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Alternatives, ...]:
+    """The alternatives of every member of the last set."""
+    by_name = {one.hypothesis.name: one for one in compared}
+    return tuple(by_name[h.name] for h in search.with_law_discrepancy.model.members)
+
+
+def alternatives_by_group(
+    search: EffectSearch, temper: float, workers: DiscoveryWorkers
+) -> Iterator[list[Alternatives]]:
+    """The alternatives of a few members at a time, the weakest ones first: what is exchanged is among those.
+
+    The derivatives of ten members at once were a quarter of all memory. A decoy of another kind is put in the
+    place of the strongest one, where a reader looks for it.
     """
     if _is_first(search):
-        return (_from_first_step(search, temper, workers),)
-    taken_out = removals(search, workers)
-    most = max((removal.loss for removal in taken_out), default=0.0)
-    out: list[Alternatives] = []
-    for group in in_groups(taken_out):
-        out += _compared(search, group, most, temper, workers)
-    return tuple(out)
+        yield [_from_first_step(search, temper, workers)]
+        return
+    members = sorted(search.with_law_discrepancy.model.members, key=lambda h: _strength(search, h))
+    for group in in_groups(members):
+        yield _compared(search, group, members[-1], temper, workers)
+
+
+def in_groups(members: Sequence[T]) -> list[Sequence[T]]:
+    """AT_ONCE of them each, the last group fewer."""
+    return [members[i : i + AT_ONCE] for i in range(0, len(members), AT_ONCE)]
+
+
+def _strength(search: EffectSearch, member: Hypothesis) -> float:
+    """Standard deviations that a member makes at its size, all else re-tuned; one without a size, as it was
+    screened."""
+    if member.sizes:
+        return member_detectability(search.with_effects, member)
+    return next(s.detectability for s in search.screened if s.hypothesis.name == member.name)
 
 
 def _compared(
-    search: EffectSearch, group: Sequence[Removal], most: float, temper: float, workers: DiscoveryWorkers
+    search: EffectSearch,
+    group: Sequence[Hypothesis],
+    strongest: Hypothesis,
+    temper: float,
+    workers: DiscoveryWorkers,
 ) -> list[Alternatives]:
-    """The alternatives of some members; most: ln evidence that the costliest removal of all loses."""
-    fits = workers.fits([removal.start for removal in group], "taking effects out")
+    """The alternatives of some members."""
     places = [
-        _place(search, removal.base, fit or search.tuned, decoy=removal.loss == most)
-        for removal, fit in zip(group, fits, strict=True)
+        _place(search, removal, decoy=removal.base.model.members[-1] == strongest)
+        for removal in removals(search, group, workers)
     ]
     places = _on_true_solutions(places, workers)
     rivals = [refit_starts(p.without, p.near, ceiling_of(p.base)) for p in places]
@@ -207,8 +241,9 @@ def _from_first_step(search: EffectSearch, temper: float, workers: DiscoveryWork
     return comparison(first.before, screened, change, (own, *rivals), temper)
 
 
-def _place(search: EffectSearch, base: Fit, without: Fit, *, decoy: bool) -> _Place:
-    """The place of the last member of `base`, and what is worth a refit in it."""
+def _place(search: EffectSearch, removal: Removal, *, decoy: bool) -> _Place:
+    """The place of an effect that was taken out, and what is worth a refit in it."""
+    base, without = removal.base, removal.without
     known = {s.hypothesis.name: s for s in _screened(search, without)}
     own = hypothesis_fit(base, without, search.prior)
     itself = known.pop(own.hypothesis.name)

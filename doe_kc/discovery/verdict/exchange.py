@@ -19,7 +19,7 @@ from doe_kc.discovery.search.law_exchange import with_exchanged_laws
 from doe_kc.discovery.search.search import EffectSearch, search_from
 from doe_kc.discovery.search.series_compliance import with_series_compliances
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
-from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
+from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives_by_group, in_set_order
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
@@ -31,19 +31,36 @@ def exchanged(
     long as those are more probable.
 
     With the alternatives of every member of its last set. It ends, since the probability of the last set, its
-    errors its own, grows with each exchange.
+    errors its own, grows with each exchange. The first members that are exchanged for something are not
+    compared with what follows: the others change with the set.
     """
     while True:
         search = _with_other_laws(search, library, workers)
-        compared = alternatives(search, temper(search.with_law_discrepancy), workers)
-        better = better_set(compared)
-        if better is None:
-            return search, compared
-        other = search_from(search, _start(search, better), better.rival, better.gain, library, workers)
-        if other.log_posterior <= search.log_posterior:
-            return search, compared
+        compared: list[Alternatives] = []
+        for some in alternatives_by_group(search, temper(search.with_law_discrepancy), workers):
+            compared += some
+            other = _exchanged_by(search, some, library, workers)
+            if other is not search:
+                break
+        else:
+            return search, in_set_order(search, compared)
         search = other
-        del compared, better, other  # before the next ones: fits of both sets at once took 50 MB more
+        del compared, some, other  # before the next ones: fits of both sets at once took 50 MB more
+
+
+def _exchanged_by(
+    search: EffectSearch,
+    some: Sequence[Alternatives],
+    library: Sequence[Hypothesis],
+    workers: DiscoveryWorkers,
+) -> EffectSearch:
+    """The search, gone on from the best set by the alternatives of some members; the same where that ends no
+    more probable."""
+    better = better_set(some)
+    if better is None:
+        return search
+    other = search_from(search, _start(search, better), better.rival, better.gain, library, workers)
+    return other if other.log_posterior > search.log_posterior else search
 
 
 def _start(search: EffectSearch, better: BetterSet) -> FitStart:

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.special import logsumexp, ndtr
 
-from doe_kc.discovery.fit import Fit, amplitude_estimates
+from doe_kc.discovery.fit import amplitude_estimates, member_detectability
 from doe_kc.discovery.half_lines import half_line_limit, half_line_moments
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
@@ -37,10 +37,7 @@ NO_EFFECT = ""
 def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
     sized = size_fit(search)
-    return tuple(
-        _finding(search, one, place, compared, sized)
-        for one, (_, place) in zip(compared, search.with_law_discrepancy.model.places(), strict=True)
-    )
+    return tuple(_finding(search, one, compared, sized) for one in compared)
 
 
 def _stands_out(own: Alternatives) -> bool:
@@ -54,9 +51,8 @@ def _stands_out(own: Alternatives) -> bool:
 
 
 def _finding(
-    search: EffectSearch, own: Alternatives, place: slice, compared: Sequence[Alternatives], sized: SizeFit
+    search: EffectSearch, own: Alternatives, compared: Sequence[Alternatives], sized: SizeFit
 ) -> Finding:
-    """place: of its sizes in z of the last set's fits."""
     hypothesis = own.hypothesis
     logs = log_probabilities(own)
     against, odds = best_alternative(logs, hypothesis.effect)
@@ -68,7 +64,9 @@ def _finding(
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
     sd = np.hypot(sd, spread_in_larger_sets(hypothesis, assumed, search.larger))
-    detectability = _detectability(search.with_effects, place) if sizes else own.screened[0].detectability
+    detectability = own.screened[0].detectability
+    if sizes:
+        detectability = member_detectability(search.with_effects, hypothesis)
     counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
     chances = _wrong_name_chances(own, detectability)
     for effect, chance in _confusion_chances(own).items():
@@ -150,14 +148,6 @@ def _limit_by_records(amplitude: float, sd: float) -> float:
     information = sd**-2.0 - 1.0
     alone = amplitude * sd**-2.0 / information
     return half_line_limit(alone, float(information**-0.5), ONE_SIDED)
-
-
-def _detectability(fit: Fit, place: slice) -> float:
-    """Standard deviations that the effect makes at its size, all else re-tuned."""
-    covariance = fit.covariance[place, place]
-    information = np.linalg.inv(covariance) - np.eye(covariance.shape[0])
-    sizes = fit.z[place]
-    return float(np.sqrt(max(0.0, float(sizes @ information @ sizes))))
 
 
 def _wrong_name_chances(own: Alternatives, detectability: float) -> dict[str, float]:

@@ -1,10 +1,9 @@
-"""The last set without each of its effects: what that loses."""
+"""The last set without each of its effects."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, last_member
@@ -15,10 +14,6 @@ from doe_kc.discovery.thresholds import BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
-T = TypeVar("T")
-AT_ONCE = 3
-"""Members whose fits have their derivatives at the same time: of some 15 MB each, and as much again."""
-
 
 @dataclass(frozen=True)
 class Removal:
@@ -26,34 +21,25 @@ class Removal:
 
     base: Fit
     """The set with it as the last member, in its own errors, without derivatives."""
-    start: FitStart
-    """Of the fit without it, which the cache of results has from here on."""
-    loss: float
-    """ln evidence lost by it."""
+    without: Fit
+    """The set without it in the same errors, fitted as far as anything turns on it; the re-tuned axle where
+    that has no equilibrium."""
 
 
-def removals(search: EffectSearch, workers: DiscoveryWorkers) -> list[Removal]:
-    """Of every member of the last set, fitted as far as anything turns on it. Their derivatives are taken up
-    again by a few at a time: those of ten members at once were a quarter of all memory."""
+def removals(search: EffectSearch, members: Sequence[Hypothesis], workers: DiscoveryWorkers) -> list[Removal]:
+    """Of some members of the last set."""
     final = search.with_law_discrepancy
-    out: list[Removal] = []
-    for members in in_groups(final.model.members):
-        nears = fits_to_errors(final, [own_errors(search, member) for member in members], workers)
-        bases = [last_member(near, m).without_derivatives for near, m in zip(nears, members, strict=True)]
-        starts = [
-            FitStart(near.model.without(m), base.z[: base.z.size - len(m.sizes)], near, ceiling_of(base))
-            for near, base, m in zip(nears, bases, members, strict=True)
-        ]
-        fits = workers.fits(starts, "taking effects out", derivatives=lambda _: False)
-        for base, start, fit in zip(bases, starts, fits, strict=True):
-            without = fit or search.tuned  # no equilibrium without it: nothing in the model at all
-            out.append(Removal(base, replace(start, near=final), base.evidence - without.evidence))
-    return out
-
-
-def in_groups(members: Sequence[T]) -> list[Sequence[T]]:
-    """AT_ONCE of them each, the last group fewer."""
-    return [members[i : i + AT_ONCE] for i in range(0, len(members), AT_ONCE)]
+    nears = fits_to_errors(final, [own_errors(search, member) for member in members], workers)
+    bases = [last_member(near, m).without_derivatives for near, m in zip(nears, members, strict=True)]
+    starts = [
+        FitStart(near.model.without(m), base.z[: base.z.size - len(m.sizes)], near, ceiling_of(base))
+        for near, base, m in zip(nears, bases, members, strict=True)
+    ]
+    workers.fits(starts, "taking effects out", derivatives=lambda _: False)
+    starts = [replace(start, near=final) for start in starts]
+    del nears  # before the cache of results gives those fits with derivatives: 25 MB
+    fits = workers.fits(starts, "taking effects out")
+    return [Removal(base, fit or search.tuned) for base, fit in zip(bases, fits, strict=True)]
 
 
 def own_errors(search: EffectSearch, member: Hypothesis) -> Likelihood:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 
 from doe_kc.discovery.search import decision as decision_module
+from doe_kc.discovery.search import laws_first
 from doe_kc.discovery.search import search as search_module
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -46,7 +47,7 @@ def test_a_step_whose_laws_gain_nothing_is_told_once(monkeypatch: pytest.MonkeyP
 def test_a_search_goes_back_to_no_laws_that_it_had(monkeypatch: pytest.MonkeyPatch) -> None:
     """A friction of 299 N went between two laws without end, each better than the effect that came next."""
     asked = []
-    monkeypatch.setattr(search_module, "laws_instead", lambda fit, *_: asked.append(1) or fit)
+    monkeypatch.setattr(laws_first, "laws_instead", lambda fit, *_: asked.append(1) or fit)
     found = search(model("pair"), library("steering_friction", "hub_compliance"), DiscoveryWorkers())
     assert {h.effect for h in found.with_effects.model.members} == {"steering_friction", "hub_compliance"}
     assert 1 <= len(asked) <= 6
@@ -56,7 +57,7 @@ def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.Mon
     """Not with those of the set before it, which Prandtl-Iwan's law of a strut friction left far behind."""
     given, taken = [], []
     monkeypatch.setattr(
-        search_module,
+        laws_first,
         "laws_instead",
         lambda _, further, *__: given.append(replace(further.fit)) or given[-1],
     )
@@ -71,7 +72,7 @@ def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.Mon
 
 def test_an_effect_that_a_law_makes_needless_does_not_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
-    monkeypatch.setattr(search_module, "needless_beside_laws", lambda *_: asked.append(1) or len(asked) > 1)
+    monkeypatch.setattr(laws_first, "needless_beside_laws", lambda *_: asked.append(1) or len(asked) > 1)
     found = search(model("pair"), library("hub_compliance", "strut_bending"), DiscoveryWorkers())
     assert len(found.with_law_discrepancy.model.members) == 1, "the car has both"
     assert [step.accepted for step in found.steps] == [True, False] and not found.steps[-1].added

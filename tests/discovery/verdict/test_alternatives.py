@@ -7,10 +7,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from doe_kc.discovery.fit import last_member
+from doe_kc.discovery.fit import last_member, member_detectability
 from doe_kc.discovery.search.refits import HypothesisFit, plausible
 from doe_kc.discovery.search.search import EffectSearch
-from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives, effect_change
+from doe_kc.discovery.verdict import alternatives as alternatives_module
+from doe_kc.discovery.verdict.alternatives import (
+    Alternatives,
+    alternatives,
+    alternatives_by_group,
+    effect_change,
+    in_groups,
+)
 from doe_kc.discovery.verdict.findings import findings
 from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import discovery
@@ -115,3 +122,29 @@ def test_what_an_effect_makes_of_the_records_is_seen_in_the_set_without_it() -> 
     assert change.correlations == (("hub_compliance", pytest.approx(1.0)),)
     worst = search.tuned.model.contrasts.names[int(np.argmax(change.contrasts))]
     assert worst.response == "camber" and "lateral" in worst.load_case
+
+
+def test_members_are_taken_a_few_at_a_time() -> None:
+    assert in_groups([1, 2, 3, 4, 5, 6, 7]) == [[1, 2, 3], [4, 5, 6], [7]]
+    assert in_groups([]) == []
+
+
+def test_the_weakest_member_is_compared_first(
+    compared: tuple[Alternatives, ...], found: EffectSearch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One group or several, each is the same."""
+    monkeypatch.setattr(alternatives_module, "AT_ONCE", 1)
+    groups = list(alternatives_by_group(found, 1.0, DiscoveryWorkers()))
+    strengths = [member_detectability(found.with_effects, one.hypothesis) for (one,) in groups]
+    assert strengths == sorted(strengths) and len(groups) == len(BOTH)
+    again = {one.hypothesis.name: one for (one,) in groups}
+    for one in compared:
+        assert again[one.hypothesis.name].loss == pytest.approx(one.loss, rel=1e-12)
+
+
+def test_a_decoy_stands_in_the_place_of_the_strongest_member(
+    compared: tuple[Alternatives, ...], found: EffectSearch
+) -> None:
+    """Which the verdict begins with."""
+    strongest = max(compared, key=lambda one: member_detectability(found.with_effects, one.hypothesis))
+    assert {t.hypothesis.effect for t in strongest.trials} > {strongest.hypothesis.effect}
