@@ -60,10 +60,12 @@ def size_fit(search: EffectSearch) -> SizeFit:
     shares of the discrepancies are raised anew. Derivatives of the last fit lead to it but where sizes and
     factors of theirs trade places, as with rubber: a share of 0.12 was told as 0.08.
     """
-    last, exact = with_friction_traces(search.with_law_discrepancy), search.with_effects
+    exact, last = search.with_effects, with_friction_traces(search.with_law_discrepancy)
     signals, scales = effect_signals(exact), systematic_scales(last)
-    own = with_systematic_errors(exact.model.likelihood, scales)
-    settled, shares = fit_discrepancy(rewhitened_fit(last, own), signals)
+    start = rewhitened_fit(last, with_systematic_errors(exact.model.likelihood, scales))
+    del last  # its derivatives: those of candidates are beside them otherwise
+    settled, shares = fit_discrepancy(start, signals)
+    del start
     own_fit = with_own_scatter(chord_fit(settled, settled.model))
     if not own_fit.converged:
         own_fit = optimum(own_fit.model, own_fit.z)
