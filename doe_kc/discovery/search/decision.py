@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,6 +51,8 @@ class HypothesisGain:
     """ln of the posterior odds of the model with it against that without it."""
     joint: bool
     """Whether that is of a joint refit, else of its screening."""
+    beside: tuple[Hypothesis, ...] = ()
+    """Further effects of that refit that the model did not have before."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +115,7 @@ class Decision:
         before = self.before.model.members
         names = {h.name for h in before}
         refits = {t.hypothesis.name for t in self.trials}
-        candidates = [HypothesisGain(t.hypothesis, t.gain, True) for t in self.trials]
+        candidates = [HypothesisGain(t.hypothesis, t.gain, True, _beside(t, names)) for t in self.trials]
         others = [
             HypothesisGain(s.hypothesis, s.gain + prior.log_odds(before, s.hypothesis), False)
             for s in self.screened
@@ -125,6 +127,12 @@ class Decision:
         residual = Rewhitening(self.before.model.likelihood, own)(self.before.residual)
         gap = float(np.sqrt(np.mean(residual**2)))
         return Step(before, gap, tuple(candidates), self.temper, added, self.accepted)
+
+
+def _beside(trial: HypothesisFit, names: Set[str]) -> tuple[Hypothesis, ...]:
+    """Effects of a refit but its own, and but those of some names."""
+    own = trial.hypothesis.name
+    return tuple(h for h in trial.fit.model.members if h.name != own and h.name not in names)
 
 
 def threshold(count: int) -> float:

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from doe_kc.discovery.result import Discovery
-from doe_kc.discovery.search.decision import Step
+from doe_kc.discovery.search.decision import HypothesisGain, Step
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.effects.words import hypothesis_label, hypothesis_words
 from doe_kc.reports.drawing import style
@@ -74,9 +74,17 @@ def evidence_steps(discovery: Discovery) -> list[EvidenceStep]:
 
 def _candidates(step: Step) -> tuple[EvidenceBar, ...]:
     return tuple(
-        EvidenceBar(hypothesis_label(c.hypothesis), c.gain, c.joint, step.accepted and i == 0)
+        EvidenceBar(candidate_label(c), c.gain, c.joint, step.accepted and i == 0)
         for i, c in enumerate(step.candidates[:CANDIDATES_SHOWN])
     )
+
+
+def candidate_label(candidate: HypothesisGain) -> str:
+    """Name and place, and what came in with it, e.g. `Strut friction + steering friction`."""
+    label, others = hypothesis_label(candidate.hypothesis), candidate.beside
+    if len(others) > 1:
+        return f"{label} + {len(others)} others"
+    return " + ".join([label, *map(hypothesis_words, others)])
 
 
 def evidence_figure(steps: Sequence[EvidenceStep], study: str) -> Sheet:

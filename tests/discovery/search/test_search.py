@@ -9,9 +9,10 @@ import pytest
 from doe_kc.discovery.search import decision as decision_module
 from doe_kc.discovery.search import laws_first
 from doe_kc.discovery.search import search as search_module
+from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
-from tests.discovery.cases import library, model
+from tests.discovery.cases import discovery, library, model
 
 
 @pytest.mark.parametrize(
@@ -93,3 +94,16 @@ def test_what_passes_but_is_not_taken_is_told_so(monkeypatch: pytest.MonkeyPatch
     (step,) = found.steps
     assert not found.with_effects.model.members and not step.accepted and not step.added
     assert step.candidates[0].joint and step.candidates[0].gain > 100.0
+
+
+def test_a_refit_of_several_effects_tells_all_of_them() -> None:
+    """It stands by the last of them, the others beside it; what was screened stands alone."""
+    ended = discovery("pair").search
+    both = ended.with_effects
+    *others, last = both.model.members
+    decision = replace(ended.first, trials=(HypothesisFit(last, both, 9.0),), accepted=True)
+    step = decision.step(both.model.likelihood, ended.prior)
+    first, *screened = step.candidates
+    assert (first.hypothesis, first.beside) == (last, tuple(others)) and others
+    assert step.added == both.model.members
+    assert screened and not any(c.beside for c in screened)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from doe_kc.discovery.search.decision import HypothesisGain
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
 from doe_kc.discovery.verdict.size_words import size_estimates, size_words
 from doe_kc.effects import EFFECTS
@@ -14,7 +15,7 @@ from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.effects.words import hypothesis_label, place_words
 from doe_kc.reports.discovery.curves import model_values, model_views, view_gaps
 from doe_kc.reports.discovery.effects import effect_rows, effect_table
-from doe_kc.reports.discovery.evidence import evidence_steps
+from doe_kc.reports.discovery.evidence import candidate_label, evidence_steps
 from doe_kc.reports.discovery.heat_map import discovery_grids
 from doe_kc.reports.discovery.isolability import (
     Isolability,
@@ -26,7 +27,7 @@ from doe_kc.reports.discovery.parameters import tuned_parameters, tuned_table
 from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
 from doe_kc.reports.discovery.words import headline, limit_words
 from doe_kc.reports.render.csv import table_frame
-from tests.discovery.cases import LOAD_CASES, discovery, records
+from tests.discovery.cases import LOAD_CASES, discovery, library, records
 
 
 def test_disagreement_has_every_contrast_and_every_map() -> None:
@@ -168,6 +169,17 @@ def test_steps_are_ranked_and_the_last_takes_nothing() -> None:
         gains = [c.gain for c in step.candidates if c.refitted]
         assert gains == sorted(gains, reverse=True)
     assert steps[0].candidates[0].label == "Strut friction"
+
+
+def test_a_candidate_of_several_effects_says_so() -> None:
+    """The first step of a car with five had a compliant hub twice, and neither was told to come in with the
+    friction of the strut."""
+    hub, friction, bending = library("hub_compliance", "steering_friction", "strut_bending")
+    alone = HypothesisGain(hub, 9.0, True)
+    assert candidate_label(alone) == "Hub and wheel-bearing compliance"
+    pair = replace(alone, beside=(friction,))
+    assert candidate_label(pair) == "Hub and wheel-bearing compliance + steering friction"
+    assert candidate_label(replace(pair, beside=(friction, bending))).endswith("compliance + 2 others")
 
 
 def test_isolability_is_a_symmetric_table_of_all_hypotheses() -> None:
