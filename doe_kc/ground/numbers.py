@@ -6,8 +6,9 @@ import math
 
 MOST_DECIMALS = 7
 """Of a number that is read: a nanometre of a millimetre, a tenth of a microdegree."""
-SD_DIGITS = 3
-"""Significant digits of a standard deviation: its value is written to the last of them."""
+SD_DIGITS = 2
+"""Significant digits of a standard deviation, to the last of which its value is written: two at most are
+usual (JCGM 100:2008, Guide to the expression of uncertainty in measurement, 7.2.6)."""
 
 
 def short(value: float) -> str:
@@ -42,7 +43,7 @@ def _place(sd: float) -> int:
 
 
 def with_sd(value: float, sd: float) -> str:
-    """`value ± sd`, both to the third significant digit of sd; four digits of a value without one."""
+    """`value ± sd`, both to the second significant digit of sd; four digits of a value without one."""
     digits = decimals(sd)
     if digits is None:
         return short(value)

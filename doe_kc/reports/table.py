@@ -203,7 +203,7 @@ def _ordered(columns: list[Column[Row]], first: Sequence[str]) -> list[Column[Ro
 
 
 def row_digits(sd: float, value: float) -> str:
-    """Number format of a row's values: three digits of their standard deviation, else three of `value`."""
+    """Number format of a row's values: two digits of their standard deviation, else three of `value`."""
     return sd_format(sd) if math.isfinite(sd) and sd > 0.0 else three_digits(value)
 
 

@@ -158,7 +158,7 @@ def test_zero_has_neither_sign_nor_decimals() -> None:
 
 
 def test_digits_follow_the_standard_deviation_or_the_size() -> None:
-    assert [row_digits(sd, 123.0) for sd in (0.012, 0.5, math.nan)] == ["0.0000", "0.000", "0"]
+    assert [row_digits(sd, 123.0) for sd in (0.012, 0.5, math.nan)] == ["0.000", "0.00", "0"]
     assert [four_digits(v) for v in (-8507.02, -0.4051, 0.0, math.nan)] == ["0", "0.0000", "0", "0"]
 
 

@@ -137,7 +137,7 @@ def characteristic_rows(correlation: Correlation) -> list[CharacteristicRow]:
 
 
 def value_format(row: CharacteristicRow) -> str:
-    """Number format of its values: three digits of the target's standard deviation."""
+    """Number format of its values: two digits of the target's standard deviation."""
     return row_digits(row.entry.target.sd, row.entry.target.value or row.entry.final)
 
 

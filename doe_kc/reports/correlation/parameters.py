@@ -139,7 +139,7 @@ def _plain(path: str, role: Role, before: dict[str, float], after: dict[str, flo
 
 
 def parameter_format(row: ParameterRow) -> str:
-    """Number format of its values: three digits of their sd, else three of a tenth of the range."""
+    """Number format of its values: two digits of their sd, else three of a tenth of the range."""
     return row_digits(row.sd, (row.upper - row.lower) / 10.0 if row.upper > row.lower else row.final)
 
 

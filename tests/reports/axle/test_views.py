@@ -58,7 +58,7 @@ def test_a_move_across_the_view_has_no_length_in_it(moved: AxleView) -> None:
 
 def test_moves_stand_in_the_table_with_their_standard_deviations(moved: AxleView) -> None:
     words = [w.text for w in axle_figure(moved).words]
-    assert "+2.000 ± 0.300" in words
+    assert "+2.00 ± 0.30" in words
     assert "move, 50 times as long as it is" in words
 
 
