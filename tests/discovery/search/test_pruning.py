@@ -12,7 +12,7 @@ from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns, refit_to
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import BEYOND_DOUBT
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS, BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
@@ -59,6 +59,23 @@ def test_a_removal_beyond_doubt_is_given_up() -> None:
     found = backward_elimination(exact, least, Watched(), {}, SetPrior({}))
     assert [s.ceiling for s in starts] == [exact.cost + 2.0 * BEYOND_DOUBT]
     assert found.model.members == ()
+
+
+def test_one_member_goes_at_a_time_the_least_needed_first() -> None:
+    """What is needless beside another may be needed without it. All are tried at once."""
+    both, hub = two_fitted()
+    asked: list[list[tuple[str, ...]]] = []
+
+    class Watched(DiscoveryWorkers):
+        def fits(self, given: Sequence[FitStart], what: str, **more: Any) -> list[Fit | None]:
+            if what == "taking effects out":
+                asked.append([tuple(h.effect for h in s.model.members) for s in given])
+            return super().fits(given, what, **more)
+
+    assert backward_elimination(both, ACCEPTED_ODDS, Watched(), {}, SetPrior({})).model.members == (hub,)
+    asked.clear()
+    assert backward_elimination(both, 1e6, Watched(), {}, SetPrior({})).model.members == ()
+    assert asked == [[("strut_bending",), ("hub_compliance",)], [()]]
 
 
 def hub_fitted() -> tuple[Fit, Hypothesis]:
