@@ -90,10 +90,11 @@ def frictions_to_free(current: Fit) -> list[Hypothesis]:
     others = [h for h in current.model.members if h not in free and not EFFECTS[h.effect].on_rig]
     if not others:
         return [h for h in free if not EFFECTS[h.effect].laws]
-    return [h for h in free if _more_than_trace(current, h)]
+    return [h for h in free if beyond_trace(current, h)]
 
 
-def _more_than_trace(current: Fit, member: Hypothesis) -> bool:
+def beyond_trace(current: Fit, member: Hypothesis) -> bool:
+    """Whether a member of the set is surely more than a trace."""
     amplitudes, sds = amplitude_estimates(current, member)
     numbers = zip(member.sizes, np.abs(amplitudes).tolist(), sds.tolist(), strict=True)
     return more_than_trace([(size, a, sd) for size, a, sd in numbers if not size.shape])

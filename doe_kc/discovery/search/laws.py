@@ -17,7 +17,7 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.convergence import fit_to_errors
-from doe_kc.discovery.search.free_shapes import best_fit, frictions_to_free, with_most_numbers
+from doe_kc.discovery.search.free_shapes import best_fit, beyond_trace, frictions_to_free, with_most_numbers
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
 from doe_kc.discovery.search.law_variants import frictions, open_laws, other_laws, with_law
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_SHAPE_LOSS, NOISE_CHANCE
@@ -133,18 +133,18 @@ def _explained(exact: Fit) -> bool:
 
 
 def with_best_closed_laws(current: Fit, workers: DiscoveryWorkers, compared: Set[str] = frozenset()) -> Fit:
-    """The fit with the closed law of most evidence for every friction on which other sizes may hang, but
-    those that have been compared.
+    """The fit with the closed law of most evidence for every friction but those that have been compared: on
+    it hang its own size and those of others.
 
     The free shape begins from it, and does not find back from a wrong one: its sliders make the cost rough.
-    A trace has the laws of no more numbers to choose from: 5 N in a strut by Dahl's law where Prandtl-Iwan's
-    is the car's left 0.7 standard deviations in a tyre's compliance.
+    A trace has the laws of no more numbers to choose from, beside another effect: 5 N in a strut by Dahl's
+    law where Prandtl-Iwan's is the car's left 0.7 standard deviations in a tyre's compliance.
     """
     free = frictions_to_free(current)
     others = any(h not in frictions(current) for h in current.model.members)
     for member in (h for h in frictions(current) if h.name not in compared):
         laws = other_laws(member)
-        if member not in free:
+        if member not in free and not beyond_trace(current, member):
             laws = [law for law in laws if others and len(law.sizes) <= len(member.sizes)]
         current = _with_closed_law(current, member, laws, workers)
     return current

@@ -209,9 +209,13 @@ def test_a_friction_that_is_a_trace_gets_no_law_of_more_numbers(cost: float, law
     assert asked.laws == ["iwan"]
 
 
-def test_a_friction_alone_keeps_its_law() -> None:
-    asked = Answers(-50.0)
-    assert with_best_closed_laws(agreeing(), asked).model.members == agreeing().model.members
+def test_a_friction_alone_gets_the_law_of_most_evidence_and_no_free_shape() -> None:
+    """A steering friction of 321.6 N over 0.042 mm was 336.1 +- 2.6 N over 0.074 mm by Dahl's law, which a
+    trace in the strut made better than Prandtl-Iwan's without that: 27 of ln evidence behind it with both."""
+    asked = Answers(-50.0, best="iwan")
+    (friction,) = with_best_closed_laws(agreeing(), asked).model.members
+    assert friction.law == "iwan" and asked.laws == ["iwan", "duhem", "lognormal"]
+    asked.laws.clear()
     assert with_free_shapes(agreeing(), asked)[0].model.members == agreeing().model.members
     assert asked.laws == []
 
