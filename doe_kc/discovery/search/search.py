@@ -64,8 +64,9 @@ class EffectSearch:
     where those fit as well but leave what closed laws explain; None where there is none."""
 
     larger: tuple[HypothesisFit, ...] = ()
-    """Sets with one effect more, which one of its members may hide: more probable than the last one, by less
-    than an effect needs. To the records' own errors, without derivatives; see `with_series_compliances`."""
+    """Sets with one effect more, which one of its members may hide, as probable as the last one, or more so by
+    less than an effect needs. To the records' own errors, without derivatives; see
+    `with_series_compliances`."""
 
     @property
     def evidence(self) -> float:
