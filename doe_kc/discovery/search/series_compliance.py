@@ -90,11 +90,11 @@ def _pairs(search: EffectSearch, library: Sequence[Hypothesis]) -> list[tuple[Hy
 
 
 def _has_more_numbers(search: EffectSearch, member: Hypothesis) -> bool:
-    """Whether the law of a friction has more numbers than its default one, its closed law where it has a free
-    shape for the sizes."""
-    closed = search.with_other_laws or search.with_effects
-    own = next(h for h in closed.model.members if h.name == member.name)
-    return len(own.sizes) > len(default_law(own).sizes)
+    """Whether the law of a friction has more numbers than its default one: the closed law, where the last set
+    has a free shape of it besides."""
+    fits = (search.with_effects, search.with_other_laws)
+    laws = [h for fit in fits if fit is not None for h in fit.model.members if h.name == member.name]
+    return min(len(law.sizes) for law in laws) > len(default_law(member).sizes)
 
 
 def _closed_laws(member: Hypothesis) -> list[Hypothesis]:

@@ -83,7 +83,7 @@ def test_a_mount_that_is_not_there_is_asked_for_once(taken: list[FitStart]) -> N
     assert asked.count == 1 and not taken
 
 
-@pytest.mark.parametrize(("shape_freed", "asked_for"), [(False, 9), (True, 1)])
+@pytest.mark.parametrize(("shape_freed", "asked_for"), [(False, 9), (True, 1)], ids=["closed", "free"])
 def test_a_friction_whose_closed_law_has_more_numbers_is_asked_by_every_closed_law(
     shape_freed: bool, asked_for: int, taken: list[FitStart]
 ) -> None:
