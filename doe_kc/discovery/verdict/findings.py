@@ -13,6 +13,7 @@ from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
+    CONSTANT_TO,
     DECISIVE_EVIDENCE,
     LINEAR_TO,
     NAME_LEVEL,
@@ -27,6 +28,8 @@ from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
 from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_between_sets, spread_in_larger_sets
 from doe_kc.discovery.verdict.size_fit import SizeFit, size_fit
+from doe_kc.effects import EFFECTS
+from doe_kc.effects._friction import LIMIT
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
 from doe_kc.ground.typing import FloatArray
 
@@ -95,12 +98,19 @@ def _finding(
 
 
 def _with_linearity(hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray) -> FloatArray:
-    """(m,) standard deviations; a stiffness is one number to `LINEAR_TO` at best."""
+    """(m,) standard deviations; a stiffness is one number to `LINEAR_TO` at best, a friction's force to
+    `CONSTANT_TO`."""
     own = [
-        LINEAR_TO * a if s.growth == "compliance" else 0.0
-        for s, a in zip(hypothesis.sizes, most_probable, strict=True)
+        _one_number_to(hypothesis, size) * a for size, a in zip(hypothesis.sizes, most_probable, strict=True)
     ]
     return np.asarray(np.hypot(sd, own))
+
+
+def _one_number_to(hypothesis: Hypothesis, size: Size) -> float:
+    """Relative standard deviation of what one number stands for, at all loads and travels."""
+    if size.growth == "compliance":
+        return LINEAR_TO
+    return CONSTANT_TO if EFFECTS[hypothesis.effect].frictional and size.key == LIMIT else 0.0
 
 
 def log_probabilities(own: Alternatives) -> dict[str, float]:

@@ -10,11 +10,11 @@ from scipy.stats import norm
 
 import doe_kc.discovery.verdict.findings as findings_module
 from doe_kc.discovery.fit import Fit, amplitude_estimates
-from doe_kc.discovery.result import Finding
+from doe_kc.discovery.result import Finding, ParameterEstimate
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import LINEAR_TO
-from doe_kc.discovery.verdict.alternatives import Alternatives, comparison, effect_change
+from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives, comparison, effect_change
 from doe_kc.discovery.verdict.findings import (
     NO_EFFECT,
     best_alternative,
@@ -23,6 +23,7 @@ from doe_kc.discovery.verdict.findings import (
     log_probabilities,
 )
 from doe_kc.discovery.verdict.size_fit import size_fit
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Size
 from tests.discovery.cases import discovery, library
 
@@ -185,6 +186,21 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
         assert camber.sd / camber.value == pytest.approx(
             np.sqrt((sd[0] / amplitudes[0]) ** 2 + share**2 + LINEAR_TO**2), rel=0.02
         )
+
+
+def test_a_friction_s_force_is_one_number_to_a_thousandth_at_best(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its travel is not: a friction of 187.7 N was told as 187.45 +- 0.095 N."""
+    answer = discovery("pair")
+
+    def told(share: float) -> list[ParameterEstimate]:
+        monkeypatch.setattr(findings_module, "CONSTANT_TO", share)
+        every = findings(answer.search, alternatives(answer.search, 1.0, DiscoveryWorkers()))
+        return list(next(f for f in every if f.hypothesis.effect == "steering_friction").estimates)
+
+    assert findings_module.CONSTANT_TO == 0.001
+    (force, *others), (wider, *same) = told(0.0), told(0.1)
+    assert wider.sd == pytest.approx(np.hypot(force.sd, 0.1 * force.value), rel=1e-6)
+    assert others == same
 
 
 def test_a_size_that_the_records_do_not_tell_from_none_has_a_limit() -> None:
