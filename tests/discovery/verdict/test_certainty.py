@@ -14,7 +14,7 @@ from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives
 from doe_kc.discovery.verdict.certainty import certain, explained, name_doubt
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.discovery.workers import DiscoveryWorkers
-from tests.discovery.cases import discovery
+from tests.discovery.cases import discovery, library
 
 OPEN = Verdict("unexplained", ("something remains",))
 
@@ -69,6 +69,20 @@ def test_it_is_a_lead_where_much_remains_or_a_rival_is_probable(
     assert not certain(finding, own, much)
     unsure = replace(finding, probability=0.5, rivals=(Rival("strut_bending", 0.5),))
     assert not certain(unsure, own, final)
+
+
+@pytest.mark.parametrize(
+    ("effect", "named"),
+    [("rig_channel_gain", False), ("rig_input_gain", False), ("roll_technique", True)],
+)
+def test_a_gain_of_the_rig_is_certain_of_no_set_that_leaves_something(
+    effect: str, named: bool, hub: tuple[Finding, Alternatives, Fit]
+) -> None:
+    """Another roll technique is: it has no number that could fit anything."""
+    finding, own, final = hub
+    fault = replace(finding, hypothesis=library(effect)[0])
+    assert bool(fault.hypothesis.sizes) is not named
+    assert certain(fault, own, final) is named
 
 
 def test_the_probability_falls_with_what_remains_and_is_no_constant(
