@@ -11,10 +11,9 @@ import pytest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, fit
 from doe_kc.discovery.search import series_compliance
-from doe_kc.discovery.search.law_variants import other_laws
+from doe_kc.discovery.search.law_variants import open_laws, other_laws
 from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.search.series_compliance import with_series_compliances
-from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import discovery, library, model
@@ -27,7 +26,7 @@ EVERY = [FRICTION, MOUNT, *library("hub_compliance", "tie_rod_compliance", "stru
 @cache
 def alone(car: str, law: str = "") -> EffectSearch:
     """A search that ended with a steering friction by some law and nothing else."""
-    friction = next(h for h in (FRICTION, *other_laws(FRICTION)) if h.law == law)
+    friction = next(h for h in (FRICTION, *other_laws(FRICTION), *open_laws(FRICTION)) if h.law == law)
     without = model(car).extended(friction)
     begun = [0.0 if size.shape else 1.0 for size in friction.sizes]
     last = fit(without, np.append(np.zeros(without.dimension), begun))
@@ -83,18 +82,46 @@ def test_a_mount_that_is_not_there_is_asked_for_once(taken: list[FitStart]) -> N
     assert asked.count == 1 and not taken
 
 
-@pytest.mark.parametrize(("shape_freed", "asked_for"), [(False, 9), (True, 1)], ids=["closed", "free"])
-def test_a_friction_whose_closed_law_has_more_numbers_is_asked_by_every_closed_law(
-    shape_freed: bool, asked_for: int, taken: list[FitStart]
+@cache
+def freed(car: str, law: str) -> EffectSearch:
+    """A search that ended with a steering friction of free shape, beside which a closed law was the best."""
+    (shape,) = open_laws(FRICTION)[-1:]
+    return replace(alone(car, shape.law), with_other_laws=alone(car, law).with_effects)
+
+
+@pytest.mark.parametrize(
+    ("law", "asked_for"), [("duhem", 9), ("iwan", 1)], ids=["of more numbers", "of as few as the default one"]
+)
+def test_a_free_shape_in_place_of_a_law_of_more_numbers_asks_every_closed_law(
+    law: str, asked_for: int, taken: list[FitStart]
 ) -> None:
-    """236 N on a mount of 7600 N/mm were 155.1 +- 4.0 N by Duhem's law, by which the mount brought nothing.
-    A mount that is not there is not taken. What a free shape has more for the sizes does not count."""
-    before, asked = alone("friction", "duhem"), Counted()
-    if shape_freed:
-        before = replace(before, with_other_laws=alone("friction").with_effects)
-    kept = with_series_compliances(before, EVERY, asked)
+    """236 N on a mount of 7600 N/mm were 155.1 +- 4.0 N by Duhem's law, by which the mount brought nothing. A
+    mount that is not there is not taken: the free shape fits as well."""
+    before, asked = freed("friction", law), Counted()
+    assert with_series_compliances(before, EVERY, asked) is before
     assert asked.count == asked_for and not taken
-    assert all(one.gain < ACCEPTED_ODDS for one in kept.larger)
+
+
+@pytest.mark.parametrize(("worse", "counts"), [(1e9, True), (0.0, False)])
+def test_a_mount_must_fit_better_than_the_free_shape_without_it(
+    worse: float, counts: bool, taken: list[FitStart], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A friction of two stages, 276 N, had become 397 +- 33 N on a mount that is not there."""
+    before = freed("friction", "duhem")
+    last = before.with_effects
+    monkeypatch.setattr(series_compliance, "ACCEPTED_ODDS", -np.inf)
+    poor = replace(before, with_effects=replace(last, cost=last.cost + worse))
+    with_series_compliances(poor, EVERY, NoPromise())
+    assert bool(taken) is counts
+
+
+class NoPromise(DiscoveryWorkers):
+    """By its own law a friction has no equilibrium with a mount."""
+
+    def fits(self, starts: list[FitStart], *args: object, **kwargs: object) -> list[Fit | None]:  # type: ignore[override]
+        if len(starts) == 1:
+            return [None]
+        return super().fits(starts, *args, **kwargs)  # type: ignore[arg-type]
 
 
 def test_nothing_is_in_series_with_what_is_no_friction() -> None:
