@@ -62,6 +62,8 @@ def with_series_compliances(
         starts = [s for law in _closed_laws(member) for s in _starts(last, member, compliance, law)]
         reached = [(start, fit), *zip(starts, _fits(starts, workers), strict=True)]
         there = [(f.evidence, k, f) for k, (_, f) in enumerate(reached) if f is not None]
+        if not there:
+            continue
         evidence, k, best = max(there)
         if not probable and best.cost + 2.0 * FREE_SHAPE_LOSS >= last.cost:
             continue

@@ -10,18 +10,20 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
+from doe_kc.correlation.likelihood import Rewhitening
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.projection import Projection, changes
+from doe_kc.discovery.screening import screen as screen_module
 from doe_kc.discovery.screening.score_test import score_tests
-from doe_kc.discovery.screening.screen import amplitude_solution, screen, shape_of
+from doe_kc.discovery.screening.screen import amplitude_solution, rewhitened_screenings, screen, shape_of
 from doe_kc.discovery.thresholds import PROBE, PROBE_FACTOR, SHAPE_STARTS, TRACE_SD
 from doe_kc.discovery.verdict.exclusion import hypothesis_statuses, trusted_detectability, wrong_name_chance
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
-from tests.discovery.cases import library, model
+from tests.discovery.cases import discovery, library, model
 
 
 def test_the_hidden_effect_gains_most(tuned: Fit) -> None:
@@ -192,3 +194,20 @@ def test_what_is_left_of_a_large_change_is_trusted_where_bounds_leave_it() -> No
     assert trusted_detectability(visible=8.0, before=100.0, by_bounds=0.0) == 8.0
     assert trusted_detectability(visible=6.0, before=100.0, by_bounds=1.0) == 1.0
     assert trusted_detectability(visible=16.0, before=300.0, by_bounds=15.9) == 15.9
+
+
+def test_every_change_is_told_in_units_of_other_errors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A few at a time, the last part fewer: all of them, in their order."""
+    search = discovery("named").search
+    before = search.tuned.model.likelihood
+    wider = tuple(replace(c, root=(1.0 + 0.1 * i) * c.root) for i, c in enumerate(before.curves))
+    after = replace(before, curves=wider)
+    monkeypatch.setattr(screen_module, "REWHITENED_TOGETHER", 4)
+    known = search.first.screened
+    assert len(known) % 4
+    units = Rewhitening(before, after)
+    for one, other in zip(known, rewhitened_screenings(known, before, after), strict=True):
+        assert other.hypothesis == one.hypothesis
+        np.testing.assert_allclose(other.change, units(one.change), rtol=1e-12)
+        np.testing.assert_allclose(other.bend, units(one.bend), rtol=1e-12)
+        np.testing.assert_allclose(other.columns, units(one.columns), rtol=1e-12)

@@ -115,6 +115,15 @@ def test_a_mount_must_fit_better_than_the_free_shape_without_it(
     assert bool(taken) is counts
 
 
+def test_a_mount_with_which_there_is_no_equilibrium_is_left_out(taken: list[FitStart]) -> None:
+    class NoSolution(DiscoveryWorkers):
+        def fits(self, starts: list[FitStart], *_: object, **__: object) -> list[Fit | None]:  # type: ignore[override]
+            return [None] * len(starts)
+
+    before = freed("friction", "duhem")
+    assert with_series_compliances(before, EVERY, NoSolution()) is before and not taken
+
+
 class NoPromise(DiscoveryWorkers):
     """By its own law a friction has no equilibrium with a mount."""
 
