@@ -26,7 +26,8 @@ class Size:
     value = typical a, a shape that may go either way and is none at 0.
     signed: whether a may be negative (shapes always may). most: largest |a| that such a part is believed to
     have. needed: whether without it what is left is another effect. present: whether every car has a little
-    of it that nothing else of a model stands for, so that its trace has a mean.
+    of it that nothing else of a model stands for, so that its trace has a mean. starts:
+    amplitudes that fits begin from as well, where the cost along the number has several optima.
     """
 
     key: str
@@ -40,6 +41,7 @@ class Size:
     needed: bool = False
     present: bool = False
     log_sd: float = SHAPE_LOG_SD
+    starts: tuple[float, ...] = ()
 
     @property
     def name(self) -> str:

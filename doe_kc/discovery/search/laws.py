@@ -142,7 +142,9 @@ def with_best_closed_laws(current: Fit, workers: DiscoveryWorkers, compared: Set
     """
     free = frictions_to_free(current)
     others = any(h not in frictions(current) for h in current.model.members)
-    for member in (h for h in frictions(current) if h.name not in compared):
+    for member in frictions(current):
+        if member.name in compared or not EFFECTS[member.effect].laws:
+            continue
         laws = other_laws(member)
         if member not in free and not beyond_trace(current, member):
             laws = [law for law in laws if others and len(law.sizes) <= len(member.sizes)]

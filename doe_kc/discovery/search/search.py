@@ -11,10 +11,11 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
-from doe_kc.discovery.search.baseline import tune, with_sides_anew, with_traces, with_traces_anew
+from doe_kc.discovery.search.baseline import tune, with_sides_anew, with_traces
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
-from doe_kc.discovery.search.convergence import at_optimum, both_optima, converged_fit, fit_to_errors
+from doe_kc.discovery.search.convergence import both_optima, converged_fit, fit_to_errors
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
+from doe_kc.discovery.search.final_laws import with_final_laws
 from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
@@ -22,7 +23,8 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     without_own_discrepancy,
 )
-from doe_kc.discovery.search.laws import may_open, with_best_closed_laws, with_free_laws, with_friction_laws
+from doe_kc.discovery.search.law_variants import frictions
+from doe_kc.discovery.search.laws import may_open, with_free_laws, with_friction_laws
 from doe_kc.discovery.search.laws_first import effect_or_laws, laws_of
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -148,11 +150,11 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     """The search from there to its end."""
     tuned, prior, current = state.tuned, state.prior, state.current
     model, first = tuned.model, None
-    steps, loops_known, laws_tried = list(state.steps), False, False
+    steps, loops_known, laws_tried, ended = list(state.steps), False, False, False
     compared: Set[str] = frozenset()
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
-    tried = {laws_of(current)}
+    tried, shape_loss = {laws_of(current)}, 0.0
     del state  # derivatives go as soon as nothing begins from them: so here, and below
     while True:
         laws_open = not laws_tried and may_open(current)
@@ -165,6 +167,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
         if full or len(steps) >= MOST_STEPS:
             steps[-1] = replace(decision, accepted=False).step(model.likelihood, prior)
+            current, shape_loss, _ = with_final_laws(current, compared, workers)
             break
         before = current.model.likelihood
         instead = None
@@ -183,25 +186,31 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_loops(current, added, model.axle, workers, known=loops_known)
-            laws_tried, compared = False, frozenset()
+            laws_tried, compared = ended, compared if ended else frozenset()
         elif (anew := refit_anew(current, workers)) is not None:
             current = anew
             del anew
-        elif not laws_tried:
-            laws_tried = True
+        else:
+            opened = current
             if laws_open:
                 opened, compared = with_free_laws(current, model.likelihood, workers)
-            else:
+                if opened is current:
+                    laws_tried = True
+                    steps.pop()  # the same step again, now with every other effect
+                    continue
+            elif not laws_tried:
                 opened, compared = with_friction_laws(current, model.likelihood, shares, workers)
+            laws_tried = True
             if opened is current:
-                if not laws_open:
+                opened, cost, changed = with_final_laws(current, compared, workers)
+                shape_loss += cost
+                if ended or not changed:
+                    current = opened
                     break
-                steps.pop()  # the same step again, now with every other effect
-                continue
+                ended, compared = True, {h.name for h in frictions(opened)}
+                steps.pop()  # the same step again, beside other laws
             current = opened
             del opened
-        else:
-            break
         count = len(current.model.members)
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         if len(current.model.members) != count:  # laws were compared beside an effect that has gone
@@ -213,11 +222,9 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     if len(current.model.members) != 1:
         first = first.without_derivatives
     decision = decision.without_trials
-    current = at_optimum(with_traces_anew(current), workers)
-    current = with_best_closed_laws(current, workers, compared)
     before_shapes = current.evidence
     current, other = with_free_shapes(current, workers)
-    shape_loss = before_shapes - current.evidence
+    shape_loss += before_shapes - current.evidence
     other = None if other is None else other.without_derivatives
     last = tuple(_latest(screened, decision, current))
     current, with_effects = both_optima(current, model.likelihood, workers)

@@ -20,7 +20,7 @@ from tests.discovery.cases import discovery, library, model
     [
         ("ball_joint_compliance", ["others"]),
         ("hub_compliance", ["laws", "others"]),
-        ("steering_friction", ["laws", "others"]),
+        ("steering_friction", ["laws", "others", "others"]),  # at the end by another closed law
     ],
     ids=["beside an effect of one law", "beside a compliance", "beside a friction"],
 )
