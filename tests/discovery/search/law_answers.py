@@ -85,3 +85,15 @@ def beside_a_hub() -> Fit:
     model, z = found.model.extended(hub), np.append(found.z, none)
     own = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
     return replace(found, model=model, z=z, jacobian=model.jacobian(own))
+
+
+def rubber_alone() -> Fit:
+    """Rubber of no size, which moves nothing."""
+    rubber = EFFECTS["rubber_hysteresis"].hypotheses()[0]
+    found, count = agreeing(), len(rubber.sizes)
+    (friction,) = found.model.members
+    model = found.model.with_member(friction, rubber)
+    rest = found.z.size - len(friction.sizes)
+    own = np.hstack([found.jacobian.own[:, : -len(friction.sizes)], np.zeros((found.residual.size, count))])
+    z = np.append(found.z[:rest], np.zeros(count))
+    return replace(found, model=model, z=z, jacobian=model.jacobian(own))

@@ -10,13 +10,13 @@ import pytest
 
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.free_shapes import with_free_shapes
+from doe_kc.discovery.search.free_shapes import with_free_shapes, with_unlike_bushings
 from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.thresholds import FREE_TRAVELS
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
-from tests.discovery.search.law_answers import Answers, agreeing, beside_a_hub
+from tests.discovery.search.law_answers import Answers, agreeing, beside_a_hub, rubber_alone
 
 
 @pytest.mark.parametrize(("cost", "free"), [(-50.0, True), (19.0, True), (21.0, False)])
@@ -67,23 +67,20 @@ def test_a_free_shape_that_leaves_what_the_closed_law_explains_only_widens_sizes
     assert found.model.members[0].law == "backbone" and other is closed
 
 
-def rubber_alone() -> Fit:
-    """Rubber of no size, which moves nothing."""
-    rubber = EFFECTS["rubber_hysteresis"].hypotheses()[0]
-    found, count = agreeing(), len(rubber.sizes)
-    (friction,) = found.model.members
-    model = found.model.with_member(friction, rubber)
-    rest = found.z.size - len(friction.sizes)
-    own = np.hstack([found.jacobian.own[:, : -len(friction.sizes)], np.zeros((found.residual.size, count))])
-    z = np.append(found.z[:rest], np.zeros(count))
-    return replace(found, model=model, z=z, jacobian=model.jacobian(own))
-
-
 def test_rubber_alone_is_estimated_with_bushings_that_differ() -> None:
     """Its share is a mean over them, less sure than if all were alike."""
     asked = Answers(0.0)
     (rubber,) = with_free_shapes(rubber_alone(), asked)[0].model.members
     assert rubber.law == "each" and asked.laws == ["each"]
+
+
+@pytest.mark.parametrize(("cost", "law"), [(19.0, "each"), (21.0, "")])
+def test_bushings_are_unlike_beside_dry_frictions_as_they_are(cost: float, law: str) -> None:
+    asked = Answers(cost)
+    (rubber,) = with_unlike_bushings(rubber_alone(), asked).model.members
+    assert rubber.law == law and asked.laws == ["each"]
+    friction = beside_a_hub()
+    assert with_unlike_bushings(friction, asked) is friction and asked.laws == ["each"]
 
 
 def test_the_size_of_an_effect_beside_a_friction_is_estimated_beside_a_free_shape() -> None:

@@ -71,6 +71,27 @@ def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.Mon
     assert len(taken) == len(given) == 2 and all(a is b for a, b in zip(taken, given, strict=True))
 
 
+@pytest.mark.parametrize("changes", [0, 1, 9])
+def test_effects_are_asked_for_once_more_beside_the_laws_that_a_set_ends_with(
+    changes: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Though those laws go on changing; the step is told once."""
+    asked = []
+    decisions: list[int] = []
+    next_decision = search_module.next_decision
+    monkeypatch.setattr(
+        search_module, "with_final_laws", lambda fit, *_: asked.append(1) or (fit, 0.0, len(asked) <= changes)
+    )
+    monkeypatch.setattr(
+        search_module,
+        "next_decision",
+        lambda fit, *a, **k: decisions.append(len(fit.model.members)) or next_decision(fit, *a, **k),
+    )
+    found = search(model("named"), library("hub_compliance"), DiscoveryWorkers())
+    assert decisions == [0, 1] + [1] * min(changes, 1)
+    assert [len(step.members) for step in found.steps] == [0, 1]
+
+
 def test_an_effect_that_a_law_makes_needless_does_not_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
     monkeypatch.setattr(laws_first, "needless_beside_laws", lambda *_: asked.append(1) or len(asked) > 1)

@@ -1,0 +1,27 @@
+"""The laws and the optimum that a set ends with."""
+
+from __future__ import annotations
+
+import pytest
+
+from doe_kc.discovery.search.final_laws import with_final_laws
+from tests.discovery.search.law_answers import Answers, beside_a_hub, rubber_alone
+
+
+def test_a_set_whose_laws_are_the_best_ends_as_it_is() -> None:
+    ended, cost, changed = with_final_laws(beside_a_hub(), frozenset(), Answers(5.0))
+    assert [h.law for h in ended.model.members] == ["", ""]
+    assert cost == 0.0 and not changed
+
+
+def test_the_best_closed_law_of_a_friction_changes_a_set() -> None:
+    ended, cost, changed = with_final_laws(beside_a_hub(), frozenset(), Answers(-1.0, best="iwan"))
+    assert [h.law for h in ended.model.members] == ["iwan", ""]
+    assert cost == 0.0 and changed
+
+
+def test_bushings_that_differ_change_a_set_and_cost_evidence() -> None:
+    """Here half of what they are worse by: their numbers move no curve, so that the prior loses nothing."""
+    ended, cost, changed = with_final_laws(rubber_alone(), frozenset(), Answers(3.0))
+    assert [h.law for h in ended.model.members] == ["each"] and changed
+    assert cost == pytest.approx(1.5)
