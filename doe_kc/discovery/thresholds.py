@@ -226,7 +226,8 @@ FREE_TRAVELS = (0.7, 1.4)
 """times the travel of the backbone nearest to the law before, other starts of a friction of free shape. Its
 sliders stand in ratios of 1.4 to 2.3, so that shares and travel move from one of them to the next."""
 NEAR_START = 0.5
-"""standard deviations of its logarithm, within which a number is where another start would begin."""
+"""prior standard deviations, within which a number is where another start would begin. Half of the distance
+between two starts of rubber's spread."""
 COMPLIANT_LIMIT = 2.0
 """times the limit of a friction, from which fits with a compliance in series with it begin too. Without a
 mount of the rack that is there, limits were told that are 0.48, 0.50 and 0.57 of the car's."""

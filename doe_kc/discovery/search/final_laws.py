@@ -17,9 +17,9 @@ def with_final_laws(current: Fit, compared: Set[str], workers: DiscoveryWorkers)
     """The set by the best closed laws of its frictions, at the best optimum that its fits reach, its bushings
     unlike; with the ln evidence that this last one costs, and whether any of the three changed it.
 
-    compared: see `with_best_closed_laws`. Beside a steering friction of free shape, a trace in the strut by
-    Dahl's law and bushings alike, a bushing's progression of 0.13 1/mm^2 had odds of 1 in 15; it has 7 of ln
-    odds beside Prandtl-Iwan's law for both frictions and bushings that differ.
+    compared: see `with_best_closed_laws`. Beside a steering friction of free shape and a trace in the
+    strut by Dahl's law a bushing's progression of 0.13 1/mm^2 was less likely than none; beside
+    Prandtl-Iwan's law for both it has odds of 1600.
     """
     ended = at_optimum(with_traces_anew(current), workers)
     best = at_best_optimum(with_best_closed_laws(ended, workers, compared), workers)
