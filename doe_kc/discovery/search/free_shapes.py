@@ -47,8 +47,7 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> tuple[Fit, Fit 
 def with_unlike_bushings(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with rubber whose bushings differ, where sizes may hang on it and it fits as well.
 
-    Further effects are asked for beside it: bushings alike took up a bushing's progression of 0.13 1/mm^2, 11
-    of ln posterior odds beside bushings that differ.
+    Further effects are asked for beside it: what one bushing has more than the others can hide an effect.
     """
     rubber = [h for h in frictions_to_free(current) if not EFFECTS[h.effect].laws]
     return _with_shapes(current, rubber, workers)[0]

@@ -167,7 +167,8 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
         if full or len(steps) >= MOST_STEPS:
             steps[-1] = replace(decision, accepted=False).step(model.likelihood, prior)
-            current, shape_loss, _ = with_final_laws(current, compared, workers)
+            current, cost, _ = with_final_laws(current, compared, workers)
+            shape_loss += cost
             break
         before = current.model.likelihood
         instead = None
