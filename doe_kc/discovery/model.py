@@ -203,14 +203,15 @@ class EffectModel(FieldsOnly):
     def axles_beside(
         self, z: FloatArray, here: Axle, places: Sequence[int], step: float
     ) -> Iterator[tuple[int, Axle]]:
-        """Each place of an amplitude, and the axle at z, `here`, with that amplitude larger by a step."""
+        """Each place of an amplitude, and the axle at z, `here`, with that amplitude larger by a step, see
+        `Size.beside`."""
         values, before, plain = self.space.values(z[: self.parameters]), self.axle, self.with_effects(z)
         tuned, members = names_touched(plain, tuple(values)), list(self.places())
         tables = [(h, h.options(self.sizes_at(z, h))) for h, _ in members]
         for k, (member, own) in enumerate(members):
             for i in (i for i in places if own.start <= i < own.stop):
                 beside = z.copy()
-                beside[i] += step
+                beside[i] = member.sizes[i - own.start].beside(float(z[i]), step)
                 axle = self._with(before, member, beside)
                 for other, options in tables[k + 1 :]:
                     axle = apply_effect(axle, other.effect, options, source=other.name)

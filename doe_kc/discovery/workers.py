@@ -21,7 +21,6 @@ from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS, FREE_SHAPE_LOSS
 from doe_kc.discovery.verdict.held_out import HeldOut, held_out
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.ground.memory import return_free_pages
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
 
@@ -143,6 +142,7 @@ class DiscoveryWorkers:
         if out:
             self.watch(what, len(out))
         missing = [i for i in range(len(starts)) if i not in out]
+        missing.sort(key=lambda i: -starts[i].z.size)  # the long ones first, or one worker ends alone
         tasks = (
             (s.model, s.z, known_columns(s.near, s.model), s.ceiling) for s in (starts[i] for i in missing)
         )
@@ -208,33 +208,24 @@ class DiscoveryWorkers:
                 place = begun.pop(future)
                 for i, call in islice(following, 1):
                     begun[self._executor.submit(task, *call)] = i
-                return_free_pages()
                 yield place, future.result()
-                return_free_pages()
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:
-    try:
-        return [screen(fit, h, shape) for h, shape in starts]
-    finally:
-        return_free_pages()
+    return [screen(fit, h, shape) for h, shape in starts]
 
 
 def _held_out_many(
     tuned: Fit, with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
 ) -> list[HeldOut]:
-    return_free_pages()
     return [held_out(tuned, with_effects, with_discrepancy, case) for case in cases]
 
 
 def _scan(tuned: Fit, temper: float) -> Scan | None:
-    return_free_pages()
     try:
         return scan(tuned, temper=temper)
     except NotConverged:
         return None
-    finally:
-        return_free_pages()
 
 
 def _no_worse(start: FitStart, first: Fit) -> FitStart:
@@ -252,5 +243,3 @@ def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: 
         return fit_arrays(fit(model, start, known=known, ceiling=ceiling))
     except NotConverged:
         return fit_arrays(None)
-    finally:
-        return_free_pages()

@@ -58,6 +58,12 @@ class Size:
         """Whether its amplitude may be negative."""
         return self.signed or self.shape
 
+    def beside(self, amplitude: float, step: float) -> float:
+        """An amplitude larger by a step; of one that stands for none, larger than the smallest that does not,
+        to which it has the same value."""
+        clipped = self.growth == "compliance" or (self.growth == "amount" and not self.signed)
+        return (max(amplitude, ABSENT) if clipped else amplitude) + step
+
     def value(self, amplitude: float) -> float:
         """The option's number, in `unit`."""
         if self.growth == "bend":

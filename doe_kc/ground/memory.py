@@ -34,13 +34,3 @@ def return_large_arrays() -> None:
             library.mallopt(MMAP_THRESHOLD, LARGE_ARRAY)
             library.mallopt(TRIM_THRESHOLD, TOP_KEPT)
             library.mallopt(ARENA_MAX, 1)
-
-
-def return_free_pages() -> None:
-    """Ask the C library to give back what lies free between smaller arrays: glibc keeps all but the last.
-
-    Takes a few milliseconds. Elsewhere than on Linux with glibc nothing is asked for.
-    """
-    if sys.platform == "linux":
-        with suppress(AttributeError, OSError):
-            ctypes.CDLL(None).malloc_trim(0)

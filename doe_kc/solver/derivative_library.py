@@ -28,7 +28,8 @@ from doe_kc.solver.program_library import (
 
 _INT, _ADDRESS = ctypes.c_int, ctypes.c_void_p
 _ARGUMENTS = (
-    *(_INT,) * 4, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 6,
+    *(_INT,) * 4, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 3, _INT, *(_ADDRESS,) * 2,
+    _INT, *(_ADDRESS,) * 5,
 )  # fmt: skip
 """Of `sensitivity` in sensitivity.c, in its order."""
 

@@ -39,8 +39,8 @@ class StateSequence:
 
 @dataclass(frozen=True)
 class StateDerivatives:
-    """To np parameters. dx: (n, nx, np), empty unless asked for; dy: (1 + wanted, ny, np), row 0 of what the
-    sequence starts from; dz: (nz, np) after the last."""
+    """To np parameters. dx: (n, nx, np), empty unless asked for; dy: (1 + wanted, kept, np) of the outputs
+    that are kept, row 0 of what the sequence starts from; dz: (nz, np) after the last."""
 
     dx: FloatArray
     dy: FloatArray
@@ -54,14 +54,15 @@ class Derivatives(Protocol):
         self,
         states: StateSequence,
         directions: FloatArray,
+        kept: np.ndarray,
         dy: FloatArray,
         dz: FloatArray,
         *,
         unknowns: bool = False,
     ) -> StateDerivatives:
-        """directions: (d, np) derivatives of the directions; dy: (ny, np), dz: (nz, np) those of the outputs
-        and friction states before the first; unknowns: whether dx is asked for. LinAlgError where an
-        equilibrium is singular.
+        """directions: (d, np) derivatives of the directions; kept: places of the outputs asked for; dy:
+        (kept, np), dz: (nz, np) those of the outputs and friction states before the first; unknowns: whether
+        dx is asked for. LinAlgError where an equilibrium is singular.
         """
         ...
 
@@ -94,6 +95,7 @@ class InterpretedDerivatives:
         self,
         states: StateSequence,
         directions: FloatArray,
+        kept: np.ndarray,
         dy: FloatArray,
         dz: FloatArray,
         *,
@@ -114,7 +116,7 @@ class InterpretedDerivatives:
         outputs = explicit["Y"] + block["Y_x"].times_each(points, dx)
         if self._kernel.nz:
             outputs += block["Y_z"].times_each(points, before)
-        outputs = np.concatenate([dy[None], outputs[states.wanted]])
+        outputs = np.concatenate([dy[None], outputs[states.wanted][:, kept]])
         return StateDerivatives(dx if unknowns else dx[:0], outputs, dz)
 
     def _carried(
@@ -153,6 +155,7 @@ class CompiledDerivatives:
         self,
         states: StateSequence,
         directions: FloatArray,
+        kept: np.ndarray,
         dy: FloatArray,
         dz: FloatArray,
         *,
@@ -161,7 +164,7 @@ class CompiledDerivatives:
         """See `Derivatives.along`."""
         k, n, columns = self.kernel, len(states.x), self.dc.shape[1]
         place = np.where(states.wanted, np.cumsum(states.wanted), -1).astype(np.int32)
-        outputs = np.empty((1 + np.count_nonzero(states.wanted), k.ny, columns))
+        outputs = np.empty((1 + np.count_nonzero(states.wanted), len(kept), columns))
         outputs[0] = dy
         dx = np.empty((n if unknowns else 0, k.nx, columns))
         after = np.array(dz, dtype=float, order="C")
@@ -170,10 +173,11 @@ class CompiledDerivatives:
             for a in (states.x, states.u, states.z, states.gradient, directions)
         )
         start, column, value = (a.ctypes.data for a in self._sparse)
+        own = np.ascontiguousarray(kept, dtype=np.int32)
         code = self.library.sensitivity(
             *(k.nx, k.nu, k.nz, k.ny, k.scale.ctypes.data, k.layout.order.ctypes.data, self.c.ctypes.data),
             *(n, x.ctypes.data, u.ctypes.data, z.ctypes.data, columns, start, column, value),
-            *(len(way), way.ctypes.data, gradient.ctypes.data, place.ctypes.data),
+            *(len(way), way.ctypes.data, gradient.ctypes.data, len(kept), own.ctypes.data, place.ctypes.data),
             *(outputs.ctypes.data, dx.ctypes.data if unknowns else None, after.ctypes.data),
         )
         if code < 0:

@@ -249,6 +249,8 @@ INLINE void compress(int n, const double *a, const int *pair, by_rows *out) {
 
 typedef struct {
     int nx, ny, nz;
+    int count;
+    const int *kept;                    /* (count) outputs that are asked for */
     const double *scale;
     const int *pair;                    /* (nx) equation and unknown that are eliminated together */
     block *of;                          /* BLOCKS of them, with their numbers at the point */
@@ -281,11 +283,12 @@ INLINE void differentiate_tile(int width, point *e, right_side *p, const double 
     }
     if (dy) {
         explicit_part(width, of + Y_C, of + Y_U, gradient, p, number, first, e->dy);
-        for (int i = 0; i < e->ny; i++) {
-            tile s = add_row(width, load(width, e->dy + i * width), &of[Y_X].ordered, i, e->dx);
-            if (e->nz) s = add_row(width, s, &of[Y_Z].ordered, i, dz);
-            store(width, e->dy + i * width, s);
-            memcpy(dy + (size_t)i * p->columns + first, e->dy + i * width, sizeof(double) * count);
+        for (int k = 0; k < e->count; k++) {
+            double *row = e->dy + e->kept[k] * width;
+            tile s = add_row(width, load(width, row), &of[Y_X].ordered, e->kept[k], e->dx);
+            if (e->nz) s = add_row(width, s, &of[Y_Z].ordered, e->kept[k], dz);
+            store(width, row, s);
+            memcpy(dy + (size_t)k * p->columns + first, row, sizeof(double) * count);
         }
     }
     if (!e->nz) return;
@@ -297,7 +300,7 @@ INLINE void differentiate_tile(int width, point *e, right_side *p, const double 
     memcpy(dz, e->dz_next, sizeof(double) * e->nz * width);
 }
 
-/* One equilibrium; dy (ny, columns), dx (nx, columns): where they are wanted. 0, or 1 where it is singular. */
+/* One equilibrium; dy (kept outputs, columns), dx (nx, columns): where they are wanted. 0, or 1 where it is singular. */
 static int differentiate(point *e, right_side *p, const double *gradient, double *dy, double *dx) {
     const block *r_x = e->of + R_X;
     int n = e->nx;
@@ -374,18 +377,19 @@ static void copy_states(const right_side *p, int nz, double *rows, double *tiles
 /* pair: (nx) equation and unknown that are eliminated together, in this order.
    n equilibria x, u, after the friction states z, at constants c; they move with `columns` parameters by dc
    (rows of c, sparse) and du = gradient (n, nu, directions) direction (directions, columns).
-   dy: (., ny, columns); place: the row there that each equilibrium goes to, below 0 for none.
+   kept: (kept_count) outputs that are asked for. dy: (., kept_count, columns); place: the row there that each
+   equilibrium goes to, below 0 for none.
    dx: (n, nx, columns), or NULL. dz: (nz, columns), before the first and then after the last.
    Returns 0, 1 + index of a singular equilibrium, or -1 without memory. */
 int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const int *pair, const double *c, int n, const double *x,
                 const double *u, const double *z, int columns, const int *dc_start, const int *dc_column,
                 const double *dc_value, int directions, const double *direction, const double *gradient,
-                const int *place, double *dy, double *dx, double *dz) {
+                int kept_count, const int *kept, const int *place, double *dy, double *dx, double *dz) {
     int count = nz ? BLOCKS : R_Z, failed = 0, closed = 0;
     block of[BLOCKS];
     side_by_side points;
     right_side p;
-    point e = {nx, ny, nz, scale, pair, of};
+    point e = {nx, ny, nz, kept_count, kept, scale, pair, of};
     memset(of, 0, sizeof(of));
     for (int b = 0; b < count; b++) closed |= open_block(of + b, b);
     const int nc = of[R_C].columns, sizes[4] = {nx, nc, nu, nz};
@@ -413,7 +417,7 @@ int sensitivity(int nx, int nu, int nz, int ny, const double *scale, const int *
                 integer numbers = of[b].start[of[b].columns];
                 for (integer k = 0; k < numbers; k++) of[b].value[k] = from[k * LANES];
             }
-            double *own_y = place[i] >= 0 ? dy + (size_t)place[i] * ny * columns : NULL;
+            double *own_y = place[i] >= 0 ? dy + (size_t)place[i] * kept_count * columns : NULL;
             double *own_x = dx ? dx + (size_t)i * nx * columns : NULL;
             if (differentiate(&e, &p, gradient + (size_t)i * nu * directions, own_y, own_x)) failed = i + 1;
         }

@@ -145,7 +145,7 @@ class _Differentiator:
         moved = Block(constants_gradient(axle.topology))(p) @ self._parameter_directions()
         self._derivatives = derivatives_of(axle.topology, c, sparse.csr_array(moved))
         self._outputs, self._columns = self._kernel.layout.output_names, columns
-        self._kept = [self._outputs.index(name) for name in columns]
+        self._kept = np.array([self._outputs.index(name) for name in columns])
 
     def _parameter_directions(self) -> FloatArray:
         """(internal parameters, paths): how internal values move with each path or direction."""
@@ -175,7 +175,7 @@ class _Differentiator:
         k = self._kernel
         states = StateSequence(x[None], u[None], np.zeros((1, k.nz)), gradient[None], np.ones(1, dtype=bool))
         none = np.zeros((k.ny, len(self._paths))), np.zeros((k.nz, len(self._paths)))
-        return self._derivatives.along(states, directions, *none, unknowns=True)
+        return self._derivatives.along(states, directions, np.arange(k.ny), *none, unknowns=True)
 
     def _static_state(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Derivatives of the outputs and friction states at rest, and of its datum as in `DATUM`."""
@@ -207,13 +207,14 @@ class _Differentiator:
         """(n, ny, np) of each branch; a loop with friction hands its states from branch to branch."""
         out: list[FloatArray] = []
         loop = self._kernel.topology.frictional
+        dy0 = dy0[self._kept]
         dy, dz = dy0, dz0
         for branch in branches:
             if not loop:
                 dy, dz = dy0, dz0
             gradient = control_gradient(self._kernel, case, branch.input, self._static.datum)
-            after = self._derivatives.along(_states(branch, gradient), datum, dy, dz)
-            out.append(after.dy if self._columns == self._outputs else after.dy[:, self._kept])
+            after = self._derivatives.along(_states(branch, gradient), datum, self._kept, dy, dz)
+            out.append(after.dy)
             dy, dz = after.dy[-1], after.dz
         return tuple(out)
 

@@ -23,6 +23,7 @@ from doe_kc.discovery.search.baseline import tune, with_traces
 from doe_kc.discovery.thresholds import TRACE_SD
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import ABSENT
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import library, model
 
@@ -102,7 +103,7 @@ def moves(model: EffectModel, z: FloatArray, places: Sequence[int]) -> Direction
 
 
 def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
-    """Of a friction and its shape, a compliance and a preload; of a size that is absent, differences only."""
+    """Of a friction and its shape, a compliance and a preload."""
     members = [*library("steering_friction", "hub_compliance"), library("bushing_preload")[0]]
     car = model("friction", ("lateral", "steer"))
     for member in members:
@@ -114,11 +115,25 @@ def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
         differences = amplitude_differences(extended, z, residual, places)
         np.testing.assert_allclose(amplitude_columns(extended, z, residual, places), exact, atol=1e-9)
         assert np.linalg.norm(exact - differences) < 0.01 * np.linalg.norm(differences)
-    (friction, hub, _), absent = members, extended.centre[: car.dimension]
-    places, (size, other) = [car.dimension, car.dimension + 1], map(str, (car.dimension, car.dimension + 1))
-    assert moves(car.extended(hub), np.append(absent, [0.0, 0.5]), places).keys() == {other}
-    assert moves(car.extended(friction), np.append(absent, [0.5, 0.0]), places).keys() == {size, other}
-    assert moves(car.extended(friction), np.append(absent, [0.5, 0.0]), places[1:]).keys() == {other}
+
+
+@pytest.mark.parametrize(
+    "effect", ["bushing_progression", "hub_compliance", "rubber_hysteresis", "steering_friction"]
+)
+def test_derivatives_to_a_size_that_stands_for_none_are_exact(effect: str) -> None:
+    """To where the records first show it: from 0 up to ABSENT nothing changes."""
+    member = library(effect)[0]
+    car = model("friction", ("lateral", "steer")).extended(member)
+    z = np.append(car.centre[: car.dimension], np.zeros(len(member.sizes)))
+    places = range(car.dimension, z.size)
+    assert moves(car, z, places).keys() == {str(i) for i in places}
+    residual, step = car.residual(z), 1e-3
+    columns = amplitude_columns(car, z, residual, places)
+    for column, size, i in zip(columns.T, member.sizes, places, strict=True):
+        if not size.shape:
+            beyond = car.residual(z + step * np.eye(z.size)[i])
+            difference = (beyond - residual) / (step - ABSENT)
+            assert np.linalg.norm(column - difference) < 0.02 * np.linalg.norm(difference) + 1e-3, size.name
 
 
 @pytest.mark.parametrize("fault", ["rig_channel_gain", "rig_input_gain"])

@@ -33,30 +33,6 @@ def test_freed_arrays_leave_no_holes() -> None:
     assert done.returncode == 0, done.stderr
 
 
-TRIMMED = """
-import numpy as np
-from doe_kc.ground.memory import return_free_pages
-
-def resident() -> int:
-    return int(open("/proc/self/statm").read().split()[1]) * 4096
-
-before, small, kept = resident(), [], []
-for _ in range(1000):
-    small.append(np.ones(10_000))
-    kept.append(np.ones(100))
-small.clear()
-assert resident() - before > 60e6
-return_free_pages()
-assert resident() - before < 15e6
-"""
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="asks glibc")
-def test_holes_between_small_arrays_are_given_back() -> None:
-    done = subprocess.run([sys.executable, "-c", TRIMMED], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
 KEPT = """
 import resource
 import numpy as np

@@ -299,7 +299,7 @@ def test_a_singular_equilibrium_has_no_sensitivity() -> None:
         np.zeros((1, k.nx)), np.zeros((1, k.nu)), np.zeros((1, 0)), np.zeros((1, k.nu, 1)), np.ones(1, bool)
     )
     with pytest.raises(np.linalg.LinAlgError, match="no sensitivity exists"):
-        derivatives.along(states, np.zeros((1, 1)), np.zeros((k.ny, 1)), np.zeros((0, 1)))
+        derivatives.along(states, np.zeros((1, 1)), np.arange(k.ny), np.zeros((k.ny, 1)), np.zeros((0, 1)))
 
 
 def test_characteristics_of_every_design_parameter() -> None:

@@ -24,4 +24,4 @@ def with_final_laws(current: Fit, compared: Set[str], workers: DiscoveryWorkers)
     ended = at_optimum(with_traces_anew(current), workers)
     best = at_best_optimum(with_best_closed_laws(ended, workers, compared), workers)
     unlike = with_unlike_bushings(best, workers)
-    return unlike, best.evidence - unlike.evidence, unlike is not ended
+    return unlike, max(0.0, best.evidence - unlike.evidence), unlike is not ended

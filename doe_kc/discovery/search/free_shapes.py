@@ -30,26 +30,20 @@ def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> tuple[Fit, Fit 
     """The fit with every friction by the law of most numbers, where sizes may hang on it; and the other one
     of both, None where no such law fits as well.
 
-    Its evidence is not asked: what a law of free shape loses is the width of its prior. Where it fits worse,
-    as a law with drifting loops could make it, dry frictions stay as they are. Rubber does not: bushings that
-    differ are never worse than bushings alike, by which its share is surer than its mean can be. Beside
-    frictions that no free shape came near it was told 12 standard deviations too large or too small.
+    Its evidence is not asked: what a law of free shape loses is the width of its prior.
     """
-    members = frictions_to_free(current)
-    rubber = [h for h in members if not EFFECTS[h.effect].laws]
-    free, other = _with_shapes(current, members, workers)
-    if free is current and len(rubber) < len(members):
-        free, alike = _with_shapes(current, rubber, workers)
-        other = other or alike
-    return free, other
+    return _with_shapes(current, frictions_to_free(current), workers)
 
 
 def with_unlike_bushings(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit with rubber whose bushings differ, where sizes may hang on it and it fits as well.
 
-    Further effects are asked for beside it: what one bushing has more than the others can hide an effect.
+    Bushings that differ are never worse than bushings alike, by which rubber's share is surer than its mean
+    can be: beside frictions that no free shape came near it was told 12 standard deviations too large or too
+    small. And further effects are asked for beside it: what one bushing has more than the others can hide an
+    effect.
     """
-    rubber = [h for h in frictions_to_free(current) if not EFFECTS[h.effect].laws]
+    rubber = [h for h in frictions_to_free(current) if _is_rubber(h)]
     return _with_shapes(current, rubber, workers)[0]
 
 
@@ -98,8 +92,13 @@ def frictions_to_free(current: Fit) -> list[Hypothesis]:
     free = [h for h in frictions(current) if len(EFFECTS[h.effect].variants(default_law(h))) > 1]
     others = [h for h in current.model.members if h not in free and not EFFECTS[h.effect].on_rig]
     if not others:
-        return [h for h in free if not EFFECTS[h.effect].laws]
+        return [h for h in free if _is_rubber(h)]
     return [h for h in free if beyond_trace(current, h)]
+
+
+def _is_rubber(member: Hypothesis) -> bool:
+    """Whether a friction is that of bushings: dry ones have several laws."""
+    return not EFFECTS[member.effect].laws
 
 
 def beyond_trace(current: Fit, member: Hypothesis) -> bool:

@@ -60,7 +60,8 @@ class EffectSearch:
     prior: SetPrior
     """Probabilities of sets before the records."""
     shape_loss: float
-    """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any."""
+    """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any, and
+    where one has more than the closed law."""
     with_other_laws: Fit | None
     """`with_law_discrepancy` by closed laws of its frictions where those have free shapes, or by free shapes
     where those fit as well but leave what closed laws explain; None where there is none."""
@@ -150,7 +151,8 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     """The search from there to its end."""
     tuned, prior, current = state.tuned, state.prior, state.current
     model, first = tuned.model, None
-    steps, loops_known, laws_tried, ended = list(state.steps), False, False, False
+    steps, loops_known, laws_tried = list(state.steps), False, False
+    ended = last_laws = False  # every effect asked for beside the laws of the end; the set has those
     compared: Set[str] = frozenset()
     shares, without_own = state.shares, state.without_own
     screened: Sequence[Screened] = state.screened
@@ -184,10 +186,12 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
             steps.pop()
             current = instead
             tried.add(laws_of(current))
+            last_laws = False
         elif decision.accepted:
             current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
             current, loops_known = _with_loops(current, added, model.axle, workers, known=loops_known)
             laws_tried, compared = ended, compared if ended else frozenset()
+            last_laws = False
         elif (anew := refit_anew(current, workers)) is not None:
             current = anew
             del anew
@@ -203,19 +207,21 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
                 opened, compared = with_friction_laws(current, model.likelihood, shares, workers)
             laws_tried = True
             if opened is current:
+                if last_laws:
+                    break
                 opened, cost, changed = with_final_laws(current, compared, workers)
                 shape_loss += cost
                 if ended or not changed:
                     current = opened
                     break
-                ended, compared = True, {h.name for h in frictions(opened)}
+                ended, last_laws, compared = True, True, {h.name for h in frictions(opened)}
                 steps.pop()  # the same step again, beside other laws
             current = opened
             del opened
         count = len(current.model.members)
         current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
         if len(current.model.members) != count:  # laws were compared beside an effect that has gone
-            compared = frozenset()
+            compared, last_laws = frozenset(), False
         screened = _latest(screened, decision, current)
         del decision
         if len(current.model.members) != 1:
@@ -225,7 +231,7 @@ def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: Disc
     decision = decision.without_trials
     before_shapes = current.evidence
     current, other = with_free_shapes(current, workers)
-    shape_loss += before_shapes - current.evidence
+    shape_loss += max(0.0, before_shapes - current.evidence)
     other = None if other is None else other.without_derivatives
     last = tuple(_latest(screened, decision, current))
     current, with_effects = both_optima(current, model.likelihood, workers)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +12,6 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.free_shapes import with_free_shapes, with_unlike_bushings
 from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.thresholds import FREE_TRAVELS
-from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 from tests.discovery.search.law_answers import Answers, agreeing, beside_a_hub, rubber_alone
@@ -91,23 +89,3 @@ def test_the_size_of_an_effect_beside_a_friction_is_estimated_beside_a_free_shap
     hub = next(h for h in found.with_effects.model.members if h.effect == "hub_compliance")
     sizes, sd = amplitude_estimates(found.with_effects, hub)
     np.testing.assert_array_less(np.abs(sizes - [6000.0 / 4000.0, 9000.0 / 7000.0]), 3.0 * sd)
-
-
-@pytest.mark.parametrize(("cost", "law"), [(-5.0, "backbone"), (50.0, "")])
-def test_rubber_opens_where_no_dry_friction_does(cost: float, law: str) -> None:
-    """0.214 +- 0.004 for 0.163 beside two frictions by Prandtl-Iwan's law, which no backbone came near."""
-    closed, rubber = beside_a_hub(), EFFECTS["rubber_hysteresis"].hypotheses()[0]
-    none = np.zeros(len(rubber.sizes))
-    model, z = closed.model.extended(rubber), np.append(closed.z, none + 9.0)
-    own = np.hstack([closed.jacobian.own, np.zeros((closed.residual.size, none.size))])
-    both = replace(closed, model=model, z=z, jacobian=model.jacobian(own))
-
-    class Dry(Answers):
-        def _fit(self, model: EffectModel, z: FloatArray, found: Fit, cost: float) -> Fit:
-            dry = any(h.law == "backbone" for h in model.members)
-            return super()._fit(model, z, found, self.cost if dry else -1.0)
-
-    found, other = with_free_shapes(both, Dry(cost))
-    friction, _, bushings = found.model.members
-    assert (friction.law, bushings.law) == (law, "each")
-    assert other is both
