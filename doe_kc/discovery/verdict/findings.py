@@ -20,6 +20,7 @@ from doe_kc.discovery.thresholds import (
     NOISE_CHANCE,
     NOT_SHOWN,
     ONE_SIDED,
+    OPTIMA_TO,
     RIVAL_LISTED,
     SIZE_SEEN,
     WRONG_NAME_CHANCE,
@@ -63,7 +64,7 @@ def _finding(
     assumed, _ = amplitude_estimates(last, hypothesis)
     most_probable, sd = amplitude_estimates(sized.fit, hypothesis)
     sizes = [(s, float(a)) for s, a in zip(hypothesis.sizes, most_probable, strict=True)]
-    sd = np.hypot(_with_linearity(hypothesis, most_probable, sd), sized.law_sd(hypothesis))
+    sd = np.hypot(sd_of_one_number(hypothesis, most_probable, sd), sized.law_sd(hypothesis))
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
     sd = np.hypot(sd, spread_in_larger_sets(hypothesis, assumed, search.larger))
@@ -97,20 +98,23 @@ def _finding(
     )
 
 
-def _with_linearity(hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray) -> FloatArray:
+def sd_of_one_number(hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray) -> FloatArray:
     """(m,) standard deviations; a stiffness is one number to `LINEAR_TO` at best, a friction's force to
-    `CONSTANT_TO`."""
-    own = [
-        _one_number_to(hypothesis, size) * a for size, a in zip(hypothesis.sizes, most_probable, strict=True)
-    ]
+    `CONSTANT_TO`, a shape along which the cost has several optima to `OPTIMA_TO`."""
+    amplitudes = zip(hypothesis.sizes, most_probable, strict=True)
+    own = [_one_number_to(hypothesis, size, float(a)) for size, a in amplitudes]
     return np.asarray(np.hypot(sd, own))
 
 
-def _one_number_to(hypothesis: Hypothesis, size: Size) -> float:
-    """Relative standard deviation of what one number stands for, at all loads and travels."""
+def _one_number_to(hypothesis: Hypothesis, size: Size, amplitude: float) -> float:
+    """Standard deviation of an amplitude, as far as one number stands for what it is at all loads and
+    travels, and as fits end at the optimum that is the car's."""
+    if size.starts:
+        return OPTIMA_TO / size.log_sd
     if size.growth == "compliance":
-        return LINEAR_TO
-    return CONSTANT_TO if EFFECTS[hypothesis.effect].frictional and size.key == LIMIT else 0.0
+        return LINEAR_TO * amplitude
+    friction = EFFECTS[hypothesis.effect].frictional and size.key == LIMIT
+    return CONSTANT_TO * amplitude if friction else 0.0
 
 
 def log_probabilities(own: Alternatives) -> dict[str, float]:

@@ -21,9 +21,11 @@ from doe_kc.discovery.verdict.findings import (
     estimate,
     findings,
     log_probabilities,
+    sd_of_one_number,
 )
 from doe_kc.discovery.verdict.size_fit import size_fit
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
 from tests.discovery.cases import discovery, library
 
@@ -239,3 +241,14 @@ def test_a_size_of_either_sign_has_no_limit(size: Size) -> None:
     own = estimate(size, 0.1, 0.5)
     assert own.limit is None
     assert own.value == size.value(0.1)
+
+
+def test_a_shape_with_several_optima_is_told_to_a_quarter_at_best() -> None:
+    """The spread of rubber's yield distances; not its yield distance, a shape with one optimum."""
+    (rubber, *_) = EFFECTS["rubber_hysteresis"].hypotheses()
+    share, travel, spread = sd_of_one_number(rubber, np.array([1.0, -0.5, 1.3]), np.full(3, 0.01))
+    size = rubber.sizes[2]
+    value = size.value(1.3)
+    assert size.key == "spread" and (share, travel) == (0.01, 0.01)
+    assert size.value(1.3 + spread) / value - 1.0 == pytest.approx(0.25, abs=0.04)
+    assert 1.0 - size.value(1.3 - spread) / value == pytest.approx(0.25, abs=0.04)
