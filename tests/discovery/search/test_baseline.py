@@ -115,7 +115,7 @@ def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> N
     )
     change = there - without
     assert np.linalg.norm(new - change) < 1e-6 * np.linalg.norm(change)
-    assert np.linalg.norm(old - change) > 0.1 * np.linalg.norm(change)
+    assert np.linalg.norm(old - change) > 0.005 * np.linalg.norm(change)  # the friction's part
     others = np.delete(np.arange(known.count), first + at)
     np.testing.assert_array_equal(found.model.nuisances.columns[:, others], known.columns[:, others])
     assert found.cost <= cost_of(found.model, z, found.model.residual(z))
