@@ -25,3 +25,10 @@ def test_bushings_that_differ_change_a_set_and_cost_evidence() -> None:
     ended, cost, changed = with_final_laws(rubber_alone(), frozenset(), Answers(3.0))
     assert [h.law for h in ended.model.members] == ["each"] and changed
     assert cost == pytest.approx(1.5)
+
+
+def test_bushings_that_differ_cost_nothing_where_they_say_more() -> None:
+    """Else a set with a further effect was compared with less than the set has without it."""
+    ended, cost, changed = with_final_laws(rubber_alone(), frozenset(), Answers(-3.0))
+    assert [h.law for h in ended.model.members] == ["each"] and changed
+    assert cost == 0.0

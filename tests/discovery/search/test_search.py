@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.search import decision as decision_module
 from doe_kc.discovery.search import laws_first
 from doe_kc.discovery.search import search as search_module
+from doe_kc.discovery.search.decision import Decision
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -71,11 +74,11 @@ def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.Mon
     assert len(taken) == len(given) == 2 and all(a is b for a, b in zip(taken, given, strict=True))
 
 
-@pytest.mark.parametrize("changes", [0, 1, 9])
+@pytest.mark.parametrize("changes", [0, 9])
 def test_effects_are_asked_for_once_more_beside_the_laws_that_a_set_ends_with(
     changes: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Though those laws go on changing; the step is told once."""
+    """And the laws not again where none comes in; the step is told once."""
     asked = []
     decisions: list[int] = []
     next_decision = search_module.next_decision
@@ -88,8 +91,28 @@ def test_effects_are_asked_for_once_more_beside_the_laws_that_a_set_ends_with(
         lambda fit, *a, **k: decisions.append(len(fit.model.members)) or next_decision(fit, *a, **k),
     )
     found = search(model("named"), library("hub_compliance"), DiscoveryWorkers())
-    assert decisions == [0, 1] + [1] * min(changes, 1)
+    assert decisions == [0, 1] + [1] * min(changes, 1) and len(asked) == 1
     assert [len(step.members) for step in found.steps] == [0, 1]
+
+
+def test_the_laws_of_the_end_are_asked_for_again_beside_an_effect_that_came_in_by_them(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[int] = []
+    next_decision = search_module.next_decision
+
+    def hidden(fit: Fit, *given: Any, **named: Any) -> Decision:
+        decision = next_decision(fit, *given, **named)
+        return decision if asked or not fit.model.members else replace(decision, accepted=False)
+
+    monkeypatch.setattr(search_module, "next_decision", hidden)
+    monkeypatch.setattr(
+        search_module,
+        "with_final_laws",
+        lambda fit, *_: asked.append(len(fit.model.members)) or (fit, 0.0, True),
+    )
+    found = search(model("pair"), library("hub_compliance", "steering_friction"), DiscoveryWorkers())
+    assert asked == [1, 2] and len(found.with_effects.model.members) == 2
 
 
 def test_an_effect_that_a_law_makes_needless_does_not_come_in(monkeypatch: pytest.MonkeyPatch) -> None:
