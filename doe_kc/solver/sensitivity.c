@@ -249,8 +249,8 @@ INLINE void compress(int n, const double *a, const int *pair, by_rows *out) {
 
 typedef struct {
     int nx, ny, nz;
-    int count;
-    const int *kept;                    /* (count) outputs that are asked for */
+    int kept_count;
+    const int *kept;                    /* (kept_count) outputs that are asked for */
     const double *scale;
     const int *pair;                    /* (nx) equation and unknown that are eliminated together */
     block *of;                          /* BLOCKS of them, with their numbers at the point */
@@ -283,7 +283,7 @@ INLINE void differentiate_tile(int width, point *e, right_side *p, const double 
     }
     if (dy) {
         explicit_part(width, of + Y_C, of + Y_U, gradient, p, number, first, e->dy);
-        for (int k = 0; k < e->count; k++) {
+        for (int k = 0; k < e->kept_count; k++) {
             double *row = e->dy + e->kept[k] * width;
             tile s = add_row(width, load(width, row), &of[Y_X].ordered, e->kept[k], e->dx);
             if (e->nz) s = add_row(width, s, &of[Y_Z].ordered, e->kept[k], dz);
@@ -300,7 +300,8 @@ INLINE void differentiate_tile(int width, point *e, right_side *p, const double 
     memcpy(dz, e->dz_next, sizeof(double) * e->nz * width);
 }
 
-/* One equilibrium; dy (kept outputs, columns), dx (nx, columns): where they are wanted. 0, or 1 where it is singular. */
+/* One equilibrium; dy (kept_count, columns), dx (nx, columns): where they are wanted. 0, or 1 where it is
+   singular. */
 static int differentiate(point *e, right_side *p, const double *gradient, double *dy, double *dx) {
     const block *r_x = e->of + R_X;
     int n = e->nx;

@@ -204,7 +204,7 @@ class _Differentiator:
         dz0: FloatArray,
         datum: FloatArray,
     ) -> tuple[FloatArray, ...]:
-        """(n, ny, np) of each branch; a loop with friction hands its states from branch to branch."""
+        """(n, columns, np) of each branch; a loop with friction hands its states from branch to branch."""
         out: list[FloatArray] = []
         loop = self._kernel.topology.frictional
         dy0 = dy0[self._kept]
