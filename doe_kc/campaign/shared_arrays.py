@@ -1,7 +1,8 @@
 """Arguments and result of a task, their arrays by way of memory that both processes open, not of the pipe
 between them.
 
-Through the pipe of a process pool 24 MB take 95 ms, one task after the other; so they take 30.
+Through the pipe of a process pool 24 MB take 95 ms, one task after the other; so they take 30. What is
+`SentOnce` has memory of its own, as long as it lives: with the next task only its place there is sent.
 """
 
 from __future__ import annotations
@@ -13,11 +14,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from errno import ENOENT
+from functools import lru_cache
 from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from typing import Any, TypeVar, cast
+from uuid import UUID, uuid4
 
 import numpy as np
+
+from doe_kc.ground.fields_only import SentOnce
 
 T = TypeVar("T")
 SHARED_FROM = 1 << 20
@@ -26,6 +31,10 @@ SMALL_ARRAY = 1 << 12
 """Bytes below which an array goes through the pipe like all else."""
 OPEN_FILES = "/proc/{}/fd"
 """Folder of a process's open files, by its number."""
+KEPT = 4
+"""Objects that were sent once and that a process keeps, those used last."""
+COPY = "_sent_once"
+"""Under which such an object has its copy in memory, beside its fields."""
 PROTOCOL = 5
 """With which arrays may go another way than all else (Python Enhancement Proposal 574)."""
 
@@ -74,12 +83,34 @@ class SharedObject:
         return ForkingPickler.loads(self.rest, buffers=arrays)
 
 
+class SharedCopy:
+    """A copy of an object in memory of its own, which goes with this."""
+
+    def __init__(self, rest: bytes, arrays: Sequence[memoryview]) -> None:
+        self._number = os.memfd_create("copy")
+        self.name = uuid4()
+        """Of no other object that any process had."""
+        self.content = _written(rest, arrays, Memory.of(_path(self._number)))
+
+    def __del__(self) -> None:
+        with suppress(AttributeError, OSError):
+            os.close(self._number)
+
+
+@lru_cache(maxsize=KEPT)
+def _known(_name: UUID, content: SharedObject) -> Any:
+    """An object that was sent once, in the process that it was sent to."""
+    return content.loaded()
+
+
 @dataclass(frozen=True)
 class SharedArguments:
     """Arguments in the memory of the process that sends them, which is its open file `number`."""
 
     number: int
     content: SharedObject
+    copies: tuple[SharedCopy, ...] = ()
+    """Which the content says where they lie."""
 
     def close(self) -> None:
         """Let the memory go, once the task is done and its result there."""
@@ -99,15 +130,18 @@ class SharedResult:
 def shared_arguments(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> SharedArguments | None:
     """The arguments, to be closed; None where they have no large arrays, cannot be sent, or where processes
     share no memory by a path: elsewhere than on Linux with /proc."""
-    own = Path(OPEN_FILES.format(os.getpid()))
-    if sys.platform != "linux" or not own.is_dir() or (parts := _parts((args, dict(kwargs)))) is None:
+    if sys.platform != "linux" or not Path(OPEN_FILES.format(os.getpid())).is_dir():
+        return None
+    copies: list[SharedCopy] = []
+    parts = _parts((args, dict(kwargs)), copies)
+    if parts is None:
         return None
     try:
         number = os.memfd_create("arguments")
     except OSError:
         return None
     with suppress(OSError):
-        return SharedArguments(number, _written(*parts, Memory.of(str(own / str(number)))))
+        return SharedArguments(number, _written(*parts, Memory.of(_path(number))), tuple(copies))
     os.close(number)
     return None
 
@@ -124,8 +158,43 @@ def called_with(fn: Callable[..., T], arguments: SharedObject) -> T:
     return result
 
 
-def _parts(sent: Any) -> tuple[bytes, Sequence[memoryview]] | None:
-    """An object without its large arrays, and those; None without any, or where it cannot be sent."""
+class _Pickler(ForkingPickler):
+    """As multiprocessing has it, but for what is sent once: in its place stands where its copy lies.
+
+    copies: to which those copies are added; None where such objects go like all others. stays: whether a
+    buffer does.
+    """
+
+    def __init__(
+        self, rest: io.BytesIO, stays: Callable[[Any], bool], copies: list[SharedCopy] | None
+    ) -> None:
+        super().__init__(rest, PROTOCOL, True, stays)
+        self._copies = copies
+
+    def reducer_override(self, sent: Any) -> Any:
+        """See `pickle.Pickler.reducer_override`."""
+        if self._copies is None or not isinstance(sent, SentOnce) or (copy := _copy_of(sent)) is None:
+            return NotImplemented
+        self._copies.append(copy)
+        return _known, (copy.name, copy.content)
+
+
+def _copy_of(sent: SentOnce) -> SharedCopy | None:
+    """The object's copy, made with the first task; None where its arrays are small or find no room."""
+    beside = vars(sent)
+    if COPY not in beside:
+        beside[COPY] = None
+        if (parts := _parts(sent)) is not None:
+            with suppress(OSError):
+                beside[COPY] = SharedCopy(*parts)
+    return cast("SharedCopy | None", beside[COPY])
+
+
+def _parts(sent: Any, copies: list[SharedCopy] | None = None) -> tuple[bytes, Sequence[memoryview]] | None:
+    """An object without its large arrays, and those; None without any, or where it cannot be sent.
+
+    copies: see `_Pickler`.
+    """
     arrays: list[memoryview] = []
 
     def stays(buffer: Any) -> bool:
@@ -137,10 +206,16 @@ def _parts(sent: Any) -> tuple[bytes, Sequence[memoryview]] | None:
 
     rest = io.BytesIO()
     try:
-        ForkingPickler(rest, PROTOCOL, True, stays).dump(sent)
+        _Pickler(rest, stays, copies).dump(sent)
     except Exception:  # the pool says why, as for any other task
         return None
-    return (rest.getvalue(), arrays) if sum(array.nbytes for array in arrays) >= SHARED_FROM else None
+    large = copies or sum(array.nbytes for array in arrays) >= SHARED_FROM
+    return (rest.getvalue(), arrays) if large else None
+
+
+def _path(number: int) -> str:
+    """Of an open file of this process, for others."""
+    return str(Path(OPEN_FILES.format(os.getpid())) / str(number))
 
 
 def _written(rest: bytes, arrays: Sequence[memoryview], memory: Memory) -> SharedObject:

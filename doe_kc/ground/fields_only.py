@@ -11,3 +11,8 @@ class FieldsOnly:
 
     def __getstate__(self) -> dict[str, Any]:
         return {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]  # a dataclass
+
+
+class SentOnce(FieldsOnly):
+    """Base of large dataclasses that are never changed and go with many tasks: a process that had one before
+    is not sent it again."""
