@@ -7,6 +7,7 @@ import sys
 from collections.abc import Mapping
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
+from dataclasses import dataclass, replace
 from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from typing import Any
@@ -18,12 +19,14 @@ import doe_kc.campaign.processes as processes_module
 import doe_kc.campaign.shared_arrays as shared_module
 from doe_kc.campaign.processes import Processes
 from doe_kc.campaign.shared_arrays import (
+    KEPT,
     SHARED_FROM,
     SharedArguments,
     SharedResult,
     called_with,
     shared_arguments,
 )
+from doe_kc.ground.fields_only import SentOnce
 from doe_kc.ground.typing import FloatArray
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere arguments go through the pipe")
@@ -58,9 +61,6 @@ def test_small_arguments_and_such_as_cannot_be_sent_are_left_to_the_pool() -> No
 def test_where_there_is_no_memory_to_share_the_pipe_serves(
     lacks: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    def full(_name: str) -> int:
-        raise OSError(28, "no space")
-
     if lacks == "memory":
         monkeypatch.setattr(os, "memfd_create", full)
     else:
@@ -148,10 +148,67 @@ def test_the_memory_goes_where_a_worker_was_lost() -> None:
     assert open_files() <= before
 
 
-def open_files() -> set[str]:
-    """Of this process, those that are shared arguments."""
+@dataclass(frozen=True)
+class Records(SentOnce):
+    values: FloatArray
+    word: str = "a"
+
+
+def place_of(records: Records, _: Any = None) -> tuple[int, int, float, str]:
+    """Of the array in the process that has it, and what it holds."""
+    return os.getpid(), records.values.ctypes.data, float(records.values.sum()), records.word
+
+
+def test_what_is_sent_once_is_kept_by_the_process_that_had_it() -> None:
+    records, executor = Records(LARGE), Processes(1)
+    first = executor.submit(place_of, records).result()
+    sent = shared_arguments((records, LARGE), {})
+    assert sent is not None and sum(sent.content.sizes) == LARGE.nbytes and len(sent.copies) == 1
+    sent.close()
+    assert executor.submit(place_of, records, LARGE).result() == first
+    other = replace(records, values=LARGE + 1.0, word="b")
+    assert executor.submit(place_of, other).result()[2:] == (float((LARGE + 1.0).sum()), "b")
+    assert executor.submit(place_of, records).result() == first
+    for i in range(KEPT):
+        executor.submit(place_of, Records(LARGE + i)).result()
+    assert executor.submit(place_of, records).result()[2:] == first[2:]
+    executor.shutdown()
+
+
+def test_the_copy_of_what_is_sent_once_goes_with_it_and_not_before_its_tasks() -> None:
+    before = open_files("copy")
+    records, executor = Records(LARGE), Processes(1)
+    future = executor.submit(place_of, records)
+    assert len(open_files("copy") - before) == 1
+    total, records = float(LARGE.sum()), Records(LARGE[:1])
+    assert future.result()[2] == total
+    executor.shutdown()
+    del future
+    assert open_files("copy") <= before
+
+
+def test_a_small_object_goes_with_every_task_and_so_does_one_that_finds_no_room(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    small = shared_arguments((Records(LARGE[:1]), LARGE), {})
+    assert small is not None and not small.copies
+    small.close()
+    create = os.memfd_create
+    monkeypatch.setattr(os, "memfd_create", lambda name: full(name) if name == "copy" else create(name))
+    large = shared_arguments((Records(LARGE),), {})
+    assert large is not None and not large.copies and sum(large.content.sizes) == LARGE.nbytes
+    assert called_with(place_of, large.content)[2] == float(LARGE.sum())
+    large.close()
+
+
+def full(_name: str) -> int:
+    raise OSError(28, "no space")
+
+
+def open_files(name: str = "arguments") -> set[str]:
+    """Of this process, those that are shared under a name."""
     links = set()
     for path in Path("/proc/self/fd").iterdir():
         with suppress(OSError):  # of the folder itself
-            links.add(str(path.readlink()))
-    return {link for link in links if "arguments" in link}
+            links.add(f"{path.name} {path.readlink()}")
+    return {link for link in links if name in link}

@@ -21,7 +21,7 @@ from doe_kc.discovery.search.laws import (
     with_free_laws,
     with_friction_laws,
 )
-from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_SHAPE_LOSS, FREE_TRAVELS
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_TRAVELS
 from doe_kc.effects._backbone import nearest_backbone
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.ground.typing import FloatArray
@@ -179,8 +179,8 @@ def test_another_closed_law_is_given_up_only_beyond_doubt() -> None:
 
 @pytest.mark.parametrize("useful", [-150.0, np.inf], ids=["beside an effect", "none beside it"])
 def test_laws_are_given_up_where_they_are_of_no_use(useful: float) -> None:
-    """Beside an effect that explains more, and a free shape, which pays for the width of its prior, above the
-    closed law that it begins from."""
+    """Beside an effect that explains more; a free shape for no other reason: one of two stages, 318 N,
+    promised to end 4500 of cost above the closed law, and ends 3160 below."""
     ceilings: dict[str, float] = {}
 
     class Kept(Answers):
@@ -192,7 +192,7 @@ def test_laws_are_given_up_where_they_are_of_no_use(useful: float) -> None:
     with_best_law(current, current.model.members[0], Kept(50.0), current.cost + useful)
     least = current.cost + min(useful, 2.0 * BEYOND_DOUBT)
     assert {law: ceilings[law] for law in CLOSED} == dict.fromkeys(CLOSED, least)
-    assert ceilings["backbone"] == min(least, current.cost + 2.0 * FREE_SHAPE_LOSS)
+    assert ceilings["backbone"] == current.cost + useful
 
 
 @pytest.mark.parametrize(("cost", "law"), [(-5.0, "iwan"), (5.0, "")])
