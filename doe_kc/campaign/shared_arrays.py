@@ -1,8 +1,8 @@
 """Arguments and result of a task, their arrays by way of memory that both processes open, not of the pipe
 between them.
 
-Through the pipe of a process pool 24 MB take 95 ms, one task after the other; so they take 30. What is
-`SentOnce` has memory of its own, as long as it lives: with the next task only its place there is sent.
+Through the pipe of a process pool 24 MB take 95 ms, one task after the other; so they take 30. A
+`CommonArgument` has memory of its own, as long as it lives: with the next task only its place there is sent.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from uuid import UUID, uuid4
 
 import numpy as np
 
-from doe_kc.ground.fields_only import SentOnce
+from doe_kc.ground.fields_only import CommonArgument
 
 T = TypeVar("T")
 SHARED_FROM = 1 << 20
@@ -31,10 +31,10 @@ SMALL_ARRAY = 1 << 12
 """Bytes below which an array goes through the pipe like all else."""
 OPEN_FILES = "/proc/{}/fd"
 """Folder of a process's open files, by its number."""
-KEPT = 4
-"""Objects that were sent once and that a process keeps, those used last."""
-COPY = "_sent_once"
-"""Under which such an object has its copy in memory, beside its fields."""
+COMMON_KEPT = 4
+"""Common arguments that a process keeps, those used last."""
+COPY = "_copy"
+"""Under which a common argument has its copy in memory, beside its fields."""
 PROTOCOL = 5
 """With which arrays may go another way than all else (Python Enhancement Proposal 574)."""
 
@@ -84,7 +84,7 @@ class SharedObject:
 
 
 class SharedCopy:
-    """A copy of an object in memory of its own, which goes with this."""
+    """A common argument in memory of its own, which goes with this."""
 
     def __init__(self, rest: bytes, arrays: Sequence[memoryview]) -> None:
         self._number = os.memfd_create("copy")
@@ -97,9 +97,9 @@ class SharedCopy:
             os.close(self._number)
 
 
-@lru_cache(maxsize=KEPT)
-def _known(_name: UUID, content: SharedObject) -> Any:
-    """An object that was sent once, in the process that it was sent to."""
+@lru_cache(maxsize=COMMON_KEPT)
+def _common(_name: UUID, content: SharedObject) -> Any:
+    """A common argument in the process that it was sent to."""
     return content.loaded()
 
 
@@ -110,7 +110,7 @@ class SharedArguments:
     number: int
     content: SharedObject
     copies: tuple[SharedCopy, ...] = ()
-    """Which the content says where they lie."""
+    """Of common arguments, in whose places the content says where they lie."""
 
     def close(self) -> None:
         """Let the memory go, once the task is done and its result there."""
@@ -159,10 +159,10 @@ def called_with(fn: Callable[..., T], arguments: SharedObject) -> T:
 
 
 class _Pickler(ForkingPickler):
-    """As multiprocessing has it, but for what is sent once: in its place stands where its copy lies.
+    """As multiprocessing has it, but for common arguments: in their places stands where their copies lie.
 
-    copies: to which those copies are added; None where such objects go like all others. stays: whether a
-    buffer does.
+    copies: to which those are added; None where common arguments go like all others. stays: whether a buffer
+    does.
     """
 
     def __init__(
@@ -173,14 +173,14 @@ class _Pickler(ForkingPickler):
 
     def reducer_override(self, sent: Any) -> Any:
         """See `pickle.Pickler.reducer_override`."""
-        if self._copies is None or not isinstance(sent, SentOnce) or (copy := _copy_of(sent)) is None:
+        if self._copies is None or not isinstance(sent, CommonArgument) or (copy := _copy_of(sent)) is None:
             return NotImplemented
         self._copies.append(copy)
-        return _known, (copy.name, copy.content)
+        return _common, (copy.name, copy.content)
 
 
-def _copy_of(sent: SentOnce) -> SharedCopy | None:
-    """The object's copy, made with the first task; None where its arrays are small or find no room."""
+def _copy_of(sent: CommonArgument) -> SharedCopy | None:
+    """Its copy, made with the first task; None where its arrays are small or find no room."""
     beside = vars(sent)
     if COPY not in beside:
         beside[COPY] = None

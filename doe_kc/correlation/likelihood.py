@@ -20,7 +20,7 @@ from doe_kc.correlation.curve_data import (
     mean_curve_data,
 )
 from doe_kc.curves import CurveSet
-from doe_kc.ground.fields_only import SentOnce
+from doe_kc.ground.fields_only import CommonArgument
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement import Measurement
 from doe_kc.measurement.reduction import static_sd
@@ -47,7 +47,7 @@ class Figure:
 
 
 @dataclass(frozen=True)
-class Likelihood(SentOnce):
+class Likelihood(CommonArgument):
     """All data of a correlation. Residuals are (model - measured) in units of the errors, (M,)."""
 
     curves: tuple[CurveData, ...]

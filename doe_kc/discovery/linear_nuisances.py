@@ -25,7 +25,7 @@ import numpy as np
 from doe_kc.correlation.likelihood import Rewhitening
 from doe_kc.discovery.thresholds import TRACE_SD
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.ground.fields_only import SentOnce
+from doe_kc.ground.fields_only import CommonArgument
 from doe_kc.ground.typing import FloatArray
 
 
@@ -50,7 +50,7 @@ def trace_mean(size: Size) -> float:
 
 
 @dataclass(frozen=True)
-class LinearNuisances(SentOnce):
+class LinearNuisances(CommonArgument):
     """Their columns, of the sides about the axle with the set's effects, of traces about the re-tuned one, in
     the end those of compliances and of sizes of either sign about the axle with the set's effects too, for
     the sizes also those of frictions."""

@@ -13,6 +13,6 @@ class FieldsOnly:
         return {f.name: getattr(self, f.name) for f in fields(self)}  # type: ignore[arg-type]  # a dataclass
 
 
-class SentOnce(FieldsOnly):
-    """Base of large dataclasses that are never changed and go with many tasks: a process that had one before
-    is not sent it again."""
+class CommonArgument(FieldsOnly):
+    """Base of large dataclasses that are never changed and are arguments of many tasks: a process that had
+    one before is not sent it again."""

@@ -19,14 +19,14 @@ import doe_kc.campaign.processes as processes_module
 import doe_kc.campaign.shared_arrays as shared_module
 from doe_kc.campaign.processes import Processes
 from doe_kc.campaign.shared_arrays import (
-    KEPT,
+    COMMON_KEPT,
     SHARED_FROM,
     SharedArguments,
     SharedResult,
     called_with,
     shared_arguments,
 )
-from doe_kc.ground.fields_only import SentOnce
+from doe_kc.ground.fields_only import CommonArgument
 from doe_kc.ground.typing import FloatArray
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere arguments go through the pipe")
@@ -149,7 +149,7 @@ def test_the_memory_goes_where_a_worker_was_lost() -> None:
 
 
 @dataclass(frozen=True)
-class Records(SentOnce):
+class Records(CommonArgument):
     values: FloatArray
     word: str = "a"
 
@@ -159,7 +159,7 @@ def place_of(records: Records, _: Any = None) -> tuple[int, int, float, str]:
     return os.getpid(), records.values.ctypes.data, float(records.values.sum()), records.word
 
 
-def test_what_is_sent_once_is_kept_by_the_process_that_had_it() -> None:
+def test_a_common_argument_is_kept_by_the_process_that_had_it() -> None:
     records, executor = Records(LARGE), Processes(1)
     first = executor.submit(place_of, records).result()
     sent = shared_arguments((records, LARGE), {})
@@ -169,13 +169,13 @@ def test_what_is_sent_once_is_kept_by_the_process_that_had_it() -> None:
     other = replace(records, values=LARGE + 1.0, word="b")
     assert executor.submit(place_of, other).result()[2:] == (float((LARGE + 1.0).sum()), "b")
     assert executor.submit(place_of, records).result() == first
-    for i in range(KEPT):
+    for i in range(COMMON_KEPT):
         executor.submit(place_of, Records(LARGE + i)).result()
     assert executor.submit(place_of, records).result()[2:] == first[2:]
     executor.shutdown()
 
 
-def test_the_copy_of_what_is_sent_once_goes_with_it_and_not_before_its_tasks() -> None:
+def test_the_copy_of_a_common_argument_goes_with_it_and_not_before_its_tasks() -> None:
     before = open_files("copy")
     records, executor = Records(LARGE), Processes(1)
     future = executor.submit(place_of, records)
@@ -187,7 +187,7 @@ def test_the_copy_of_what_is_sent_once_goes_with_it_and_not_before_its_tasks() -
     assert open_files("copy") <= before
 
 
-def test_a_small_object_goes_with_every_task_and_so_does_one_that_finds_no_room(
+def test_a_small_one_goes_with_every_task_and_so_does_one_that_finds_no_room(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     small = shared_arguments((Records(LARGE[:1]), LARGE), {})
