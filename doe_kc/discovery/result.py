@@ -10,8 +10,8 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.screening.disagreement import Map
 from doe_kc.discovery.screening.scan import Scan
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus
 from doe_kc.discovery.verdict.extra_test import ExtraTest

@@ -13,7 +13,7 @@ from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.linear_nuisances import LinearNuisances, Trace, trace_mean
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import screen
-from doe_kc.discovery.search.search import tune, with_traces
+from doe_kc.discovery.search.baseline import tune, with_traces
 from doe_kc.discovery.thresholds import TRACE_SD
 from tests.discovery.cases import library, model
 

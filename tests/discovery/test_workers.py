@@ -16,7 +16,7 @@ from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache
 from doe_kc.discovery.screening.screen import effort
-from doe_kc.discovery.search.search import tune
+from doe_kc.discovery.search.baseline import tune
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS
 from doe_kc.discovery.workers import TASKS_AHEAD, DiscoveryWorkers
 from tests.discovery.cases import library, model
@@ -105,6 +105,21 @@ def test_the_longest_screenings_begin_first(tuned: Fit) -> None:
     begun.clear()
     DiscoveryWorkers(cache=alone).screenings(tuned, hypotheses[-1:])
     assert begun == [first]
+
+
+def test_the_longest_fits_begin_first(tuned: Fit) -> None:
+    """Those of most unknowns; they are given in the order that they were asked for in."""
+    ended: list[int] = []
+
+    class Order(ResultCache):
+        def put(self, key: str, arrays: Arrays) -> None:
+            ended.append(arrays["z"].size)
+
+    larger = FitStart(*start(tuned), tuned)
+    begun = [FitStart(tuned.model, tuned.z, tuned), larger]
+    fits = DiscoveryWorkers(cache=Order(None)).fits(begun, "")
+    assert [fit.model for fit in fits if fit is not None] == [tuned.model, larger.model]
+    assert ended == [larger.z.size, tuned.z.size]
 
 
 def test_fits_are_kept_without_derivatives_on_request_and_no_more_are_begun_than_workers_do(

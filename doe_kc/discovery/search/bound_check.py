@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.search.search import EffectSearch, search
+from doe_kc.discovery.search.effect_search import EffectSearch
+from doe_kc.discovery.search.search import search
 from doe_kc.discovery.thresholds import BOUND_EVIDENCE, BOUND_FACTORS, BOUND_ROUNDING, SHARE_AT_BOUNDS
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis

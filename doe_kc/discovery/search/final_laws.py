@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Set
+from dataclasses import dataclass
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.search.baseline import with_traces_anew
@@ -13,9 +14,20 @@ from doe_kc.discovery.search.other_optima import at_best_optimum
 from doe_kc.discovery.workers import DiscoveryWorkers
 
 
-def with_final_laws(current: Fit, compared: Set[str], workers: DiscoveryWorkers) -> tuple[Fit, float, bool]:
-    """The set by the best closed laws of its frictions, at the best optimum that its fits reach, its bushings
-    unlike; with the ln evidence that this last one costs, and whether any of the three changed it.
+@dataclass(frozen=True)
+class FinalLaws:
+    """What a set ends with."""
+
+    fit: Fit
+    """By the best closed laws of its frictions, at the best optimum that fits reach, its bushings unlike."""
+    loss: float
+    """ln evidence that unlike bushings cost, 0 where they cost none."""
+    changed: bool
+    """Whether any of the three is another than before."""
+
+
+def with_final_laws(current: Fit, compared: Set[str], workers: DiscoveryWorkers) -> FinalLaws:
+    """The set by those laws.
 
     compared: see `with_best_closed_laws`. Beside a steering friction of free shape and a trace in the
     strut by Dahl's law a bushing's progression of 0.13 1/mm^2 was less likely than none; beside
@@ -24,4 +36,4 @@ def with_final_laws(current: Fit, compared: Set[str], workers: DiscoveryWorkers)
     ended = at_optimum(with_traces_anew(current), workers)
     best = at_best_optimum(with_best_closed_laws(ended, workers, compared), workers)
     unlike = with_unlike_bushings(best, workers)
-    return unlike, max(0.0, best.evidence - unlike.evidence), unlike is not ended
+    return FinalLaws(unlike, max(0.0, best.evidence - unlike.evidence), unlike is not ended)

@@ -12,10 +12,11 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.screening.screen import rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_variants import open_laws, other_laws, with_law
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.refits import set_refits
-from doe_kc.discovery.search.search import EffectSearch, search_from
+from doe_kc.discovery.search.search import search_from
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS, BEYOND_DOUBT, HOPELESS_SHARE, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS

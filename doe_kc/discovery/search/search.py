@@ -4,83 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
+from typing import cast
 
-from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
-from doe_kc.discovery.search.baseline import tune, with_sides_anew, with_traces
-from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
-from doe_kc.discovery.search.convergence import both_optima, converged_fit, fit_to_errors
+from doe_kc.discovery.search.baseline import tune, with_traces
+from doe_kc.discovery.search.convergence import both_optima
 from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.final_laws import with_final_laws
 from doe_kc.discovery.search.free_shapes import with_free_shapes
-from doe_kc.discovery.search.law_discrepancy import (
-    effect_signals,
-    fit_discrepancy,
-    marginal,
-    without_own_discrepancy,
-)
 from doe_kc.discovery.search.law_variants import frictions
 from doe_kc.discovery.search.laws import may_open, with_free_laws, with_friction_laws
 from doe_kc.discovery.search.laws_first import effect_or_laws, laws_of
 from doe_kc.discovery.search.nominal_refits import refit_anew
-from doe_kc.discovery.search.pruning import backward_elimination
-from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.set_prior import SetPrior
-from doe_kc.discovery.thresholds import ACCEPTED_ODDS, EFFECTS_MOST, MOST_STEPS
+from doe_kc.discovery.search.settling import settled, with_loops
+from doe_kc.discovery.thresholds import EFFECTS_MOST, MOST_STEPS
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
-
-
-@dataclass(frozen=True)
-class EffectSearch:
-    """The search for the most probable set of effects, and the fits that it ends with."""
-
-    tuned: Fit
-    """The re-tuned axle without any effect, nor traces of them: the baseline of every comparison."""
-    steps: tuple[Step, ...]
-    """In their order; the last one accepts nothing, or reached the largest number of effects or of steps."""
-    first: Decision
-    """The first step, or after an exchange of effects the first one since: where it began without any effect,
-    all that the verdict on a single effect takes; without derivatives where any later set was another."""
-    screened: tuple[Screened, ...]
-    """Every hypothesis as it was screened last, in the errors of `with_law_discrepancy`."""
-    with_law_discrepancy: Fit
-    """With all accepted effects; the errors of the records hold the discrepancy of the effects' laws."""
-    with_effects: Fit
-    """With the same effects, fitted to the records' own errors alone, from there: what is handed over."""
-    discrepancy_shares: Mapping[str, float]
-    """Member's name -> standard deviation of its law's discrepancy, relative to what it makes of a curve."""
-    without_own_discrepancy: Mapping[str, Likelihood]
-    """Name of a member with such a discrepancy -> the last errors of the records without its own."""
-    prior: SetPrior
-    """Probabilities of sets before the records."""
-    shape_loss: float
-    """ln evidence that frictions of free shape cost at the last, the width of their prior; 0 without any, and
-    where one has more than the closed law."""
-    with_other_laws: Fit | None
-    """`with_law_discrepancy` by closed laws of its frictions where those have free shapes, or by free shapes
-    where those fit as well but leave what closed laws explain; None where there is none."""
-
-    larger: tuple[HypothesisFit, ...] = ()
-    """Sets with one effect more, which one of its members may hide, as probable as the last one, or more so
-    by less than an effect needs. To the records' own errors, without derivatives; see
-    `with_series_compliances`."""
-
-    @property
-    def evidence(self) -> float:
-        """ln evidence of the last set by the closed laws of most evidence, to the records' own errors."""
-        return self.with_effects.evidence + self.shape_loss
-
-    @property
-    def log_posterior(self) -> float:
-        """ln of the last set's probability, relative to a constant that all sets and errors share."""
-        last = self.with_law_discrepancy
-        return marginal(last) + self.shape_loss + self.prior.log(last.model.members)
 
 
 def search(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
@@ -88,7 +33,7 @@ def search(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
 
     NotConverged when the nominal axle has no equilibrium.
     """
-    return _continued(_start(model, library, workers), library, workers)
+    return _SetSearch(_start(model, library, workers), library, workers).run()
 
 
 def search_from(
@@ -105,34 +50,49 @@ def search_from(
     have, or not by that law; None where it only has fewer. gain: ln of its posterior odds against the last
     set.
     """
+    state = _state_of(before, start, changed, gain, workers)
+    if state is None:
+        return before
+    following = _SetSearch(state, library, workers)
+    del state  # its derivatives
+    return following.run()
+
+
+def _state_of(
+    before: EffectSearch,
+    start: FitStart,
+    changed: Hypothesis | None,
+    gain: float,
+    workers: DiscoveryWorkers,
+) -> SearchState | None:
+    """See `search_from`."""
     (other,) = workers.fits([start], "exchanging effects")
     if other is None:
-        return before
+        return None
     last, own, prior = before.with_law_discrepancy, before.tuned.model, before.prior
     steps, added = before.steps, (changed,) if changed else ()
     if changed:
         candidates = (HypothesisGain(changed, gain, True),)
         step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), added, True)
         steps = (*steps, step)
-    taken, _ = _with_loops(other, added, own.axle, workers, known=False)
-    following, shares, without_own = _settled(taken, own.likelihood, own, {}, prior, workers)
+    taken, _ = with_loops(other, added, own.axle, workers, known=False)
+    following, shares, without_own = settled(taken, own.likelihood, own, {}, prior, workers)
     errors = last.model.likelihood, following.model.likelihood
     screened = tuple(rewhitened_screenings(before.screened, *errors))
-    state = _SearchState(before.tuned, steps, following, screened, shares, without_own, prior)
-    return _continued(state, library, workers)
+    return SearchState(before.tuned, steps, following, screened, shares, without_own, prior)
 
 
-def _start(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> _SearchState:
+def _start(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> SearchState:
     """Without any effect."""
     tuned = tune(model)
     workers.watch("re-tuning", 1)
     screened = workers.screenings(tuned, library)
     current = with_traces(tuned, screened)
-    return _SearchState(tuned, (), current, tuple(screened), {}, {}, SetPrior.of(library))
+    return SearchState(tuned, (), current, tuple(screened), {}, {}, SetPrior.of(library))
 
 
 @dataclass(frozen=True)
-class _SearchState:
+class SearchState:
     """A search under way."""
 
     tuned: Fit
@@ -147,143 +107,157 @@ class _SearchState:
     prior: SetPrior
 
 
-def _continued(state: _SearchState, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> EffectSearch:
-    """The search from there to its end."""
-    tuned, prior, current = state.tuned, state.prior, state.current
-    model, first = tuned.model, None
-    steps, loops_known, laws_tried = list(state.steps), False, False
-    ended = last_laws = False  # every effect asked for beside the laws of the end; the set has those
-    compared: Set[str] = frozenset()
-    shares, without_own = state.shares, state.without_own
-    screened: Sequence[Screened] = state.screened
-    tried, shape_loss = {laws_of(current)}, 0.0
-    del state  # derivatives go as soon as nothing begins from them: so here, and below
-    while True:
-        laws_open = not laws_tried and may_open(current)
-        first_screened = first.screened if first else ()
+class _SetSearch:
+    """A search from a set to its end: the set that it goes on from, and what has been asked beside it."""
+
+    def __init__(self, state: SearchState, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> None:
+        self._tuned, self._prior = state.tuned, state.prior
+        self._library, self._workers = library, workers
+        self._steps, self._first = list(state.steps), cast(Decision | None, None)
+        self._current, self._screened = state.current, state.screened
+        self._shares, self._without_own = state.shares, state.without_own
+        self._shape_loss, self._laws_had = 0.0, {laws_of(state.current)}
+        self._compared: Set[str] = frozenset()
+        """Frictions whose laws need no other comparison."""
+        self._laws_open = self._laws_asked = False
+        """Whether other laws come before effects that nothing points to; whether they were asked for."""
+        self._loops_known = False
+        self._at_end = self._last_laws = False
+        """Whether every effect is asked for beside the laws of the end; whether the set has those."""
+
+    def run(self) -> EffectSearch:
+        """To its end."""
+        while True:
+            decision = self._decided()
+            following = self._following(decision)
+            decision = decision.without_trials
+            if following is None:
+                return self._ended(decision)
+            if following is not self._current:
+                self._settle(following, decision)
+            del following, decision  # derivatives go as soon as nothing begins from them
+
+    def _decided(self) -> Decision:
+        """The next step, as it is told for now."""
+        self._laws_open = not self._laws_asked and may_open(self._current)
         decision = next_decision(
-            current, library, prior, workers, screened, first_screened, laws_open=laws_open
+            self._current,
+            self._library,
+            self._prior,
+            self._workers,
+            self._screened,
+            self._first.screened if self._first else (),
+            laws_open=self._laws_open,
         )
-        first = first or decision
-        steps.append(decision.step(model.likelihood, prior))
+        self._first = self._first or decision
+        self._steps.append(decision.step(self._tuned.model.likelihood, self._prior))
+        return decision
+
+    def _following(self, decision: Decision) -> Fit | None:
+        """The set that the search goes on from: the current one where the same step is asked for again, None
+        at the end."""
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
-        if full or len(steps) >= MOST_STEPS:
-            steps[-1] = replace(decision, accepted=False).step(model.likelihood, prior)
-            current, cost, _ = with_final_laws(current, compared, workers)
-            shape_loss += cost
-            break
-        before = current.model.likelihood
-        instead = None
-        if decision.accepted:
-            instead, taken = effect_or_laws(current, decision.trials[0], tried, model.likelihood, workers)
-            if taken is not None:
-                decision = replace(decision, trials=(taken, *decision.trials[1:]))
-            elif instead is None:
-                decision = replace(decision, accepted=False)
-                steps[-1] = decision.step(model.likelihood, prior)
-            del taken
+        if full or len(self._steps) >= MOST_STEPS:
+            self._refuse(decision)
+            final = with_final_laws(self._current, self._compared, self._workers)
+            self._current, self._shape_loss = final.fit, self._shape_loss + final.loss
+            return None
+        if decision.accepted and (taken := self._effect_or_laws(decision)) is not None:
+            return taken
+        return refit_anew(self._current, self._workers) or self._other_laws()
+
+    def _refuse(self, decision: Decision) -> None:
+        """Tell that the step accepts nothing."""
+        own = self._tuned.model.likelihood
+        self._steps[-1] = replace(decision, accepted=False).step(own, self._prior)
+
+    def _effect_or_laws(self, decision: Decision) -> Fit | None:
+        """The set with what the step accepts, or by other laws in its stead; None where those make it
+        needless."""
+        own = self._tuned.model
+        further = decision.trials[0]
+        instead, taken = effect_or_laws(self._current, further, self._laws_had, own.likelihood, self._workers)
+        if instead is None and taken is None:
+            self._refuse(decision)
+            return None
+        self._last_laws = False
         if instead is not None:
-            steps.pop()
-            current = instead
-            tried.add(laws_of(current))
-            last_laws = False
-        elif decision.accepted:
-            current, added, decision = decision.trials[0].fit, steps[-1].added, decision.without_trials
-            current, loops_known = _with_loops(current, added, model.axle, workers, known=loops_known)
-            laws_tried, compared = ended, compared if ended else frozenset()
-            last_laws = False
-        elif (anew := refit_anew(current, workers)) is not None:
-            current = anew
-            del anew
-        else:
-            opened = current
-            if laws_open:
-                opened, compared = with_free_laws(current, model.likelihood, workers)
-                if opened is current:
-                    laws_tried = True
-                    steps.pop()  # the same step again, now with every other effect
-                    continue
-            elif not laws_tried:
-                opened, compared = with_friction_laws(current, model.likelihood, shares, workers)
-            laws_tried = True
-            if opened is current:
-                if last_laws:
-                    break
-                opened, cost, changed = with_final_laws(current, compared, workers)
-                shape_loss += cost
-                if ended or not changed:
-                    current = opened
-                    break
-                ended, last_laws, compared = True, True, {h.name for h in frictions(opened)}
-                steps.pop()  # the same step again, beside other laws
-            current = opened
-            del opened
-        count = len(current.model.members)
-        current, shares, without_own = _settled(current, before, model, without_own, prior, workers)
-        if len(current.model.members) != count:  # laws were compared beside an effect that has gone
-            compared, last_laws = frozenset(), False
-        screened = _latest(screened, decision, current)
-        del decision
-        if len(current.model.members) != 1:
-            first = first.without_derivatives
-    if len(current.model.members) != 1:
-        first = first.without_derivatives
-    decision = decision.without_trials
-    before_shapes = current.evidence
-    current, other = with_free_shapes(current, workers)
-    shape_loss += max(0.0, before_shapes - current.evidence)
-    other = None if other is None else other.without_derivatives
-    last = tuple(_latest(screened, decision, current))
-    current, with_effects = both_optima(current, model.likelihood, workers)
-    return EffectSearch(
-        tuned,
-        tuple(steps),
-        first,
-        last,
-        current,
-        with_effects,
-        shares,
-        without_own,
-        prior,
-        shape_loss,
-        other,
-    )
+            self._steps.pop()
+            self._laws_had.add(laws_of(instead))
+            return instead
+        assert taken is not None
+        self._laws_asked = self._at_end
+        self._compared = self._compared if self._at_end else frozenset()
+        added, known = self._steps[-1].added, self._loops_known
+        fit, self._loops_known = with_loops(taken.fit, added, own.axle, self._workers, known=known)
+        return fit
 
+    def _other_laws(self) -> Fit | None:
+        """The set by other laws, where nothing else comes in."""
+        current, own, opened = self._current, self._tuned.model.likelihood, self._current
+        if self._laws_open:
+            opened, self._compared = with_free_laws(current, own, self._workers)
+        elif not self._laws_asked:
+            opened, self._compared = with_friction_laws(current, own, self._shares, self._workers)
+        self._laws_asked = True
+        if opened is not current:
+            return opened
+        if self._laws_open:
+            self._steps.pop()  # the same step again, now with every other effect
+            return current
+        return None if self._last_laws else self._laws_of_the_end()
 
-def _with_loops(
-    taken: Fit, added: Sequence[Hypothesis], own: Axle, workers: DiscoveryWorkers, *, known: bool
-) -> tuple[Fit, bool]:
-    """A set that was taken, with the loops before the record that the records ask for, and whether those are
-    known. own: the axle as given."""
-    if known or not any(EFFECTS[h.effect].frictional for h in added):
-        return taken, known
-    return with_conditioning(taken, own, workers)
+    def _laws_of_the_end(self) -> Fit | None:
+        """The set by those, beside which every effect is asked for once more; None where it has been, or they
+        are no others."""
+        final = with_final_laws(self._current, self._compared, self._workers)
+        self._shape_loss += final.loss
+        if self._at_end or not final.changed:
+            self._current = final.fit
+            return None
+        self._at_end = self._last_laws = True
+        self._compared = {h.name for h in frictions(final.fit)}
+        self._steps.pop()  # the same step again, beside other laws
+        return final.fit
 
+    def _settle(self, following: Fit, decision: Decision) -> None:
+        """Go on from a set, once it is at rest."""
+        count, before = len(following.model.members), self._current.model.likelihood
+        self._current, self._shares, self._without_own = settled(
+            following, before, self._tuned.model, self._without_own, self._prior, self._workers
+        )
+        if len(self._current.model.members) != count:  # laws were compared beside an effect that has gone
+            self._compared, self._last_laws = frozenset(), False
+        self._screened = tuple(_latest(self._screened, decision, self._current))
+        self._let_go()
 
-def _settled(
-    current: Fit,
-    before: Likelihood,
-    own: EffectModel,
-    without_own: Mapping[str, Likelihood],
-    prior: SetPrior,
-    workers: DiscoveryWorkers,
-) -> tuple[Fit, dict[str, float], dict[str, Likelihood]]:
-    """A set without what it makes needless, its laws' discrepancy among the errors, with that discrepancy's
-    shares and what `without_own_discrepancy` says.
+    def _let_go(self) -> None:
+        """Of the derivatives of the first step, with which only the verdict on a single effect begins."""
+        if self._first is not None and len(self._current.model.members) != 1:
+            self._first = self._first.without_derivatives
 
-    before: the errors of the set before it. own: the model without effects, in the records' own errors.
-    without_own: of the set before it.
-    """
-    current = with_sides_anew(current)
-    current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
-    exact = fit_to_errors(own_loops(current, own.axle), own.likelihood, workers)
-    signals = effect_signals(exact)
-    settled, shares = fit_discrepancy(exact, signals)
-    following = without_own_discrepancy(exact, signals, shares)
-    del current, exact  # before the last fit: their derivatives are large
-    if settled.model.likelihood is not before:
-        settled = converged_fit(settled, workers)
-    return settled, shares, following
+    def _ended(self, decision: Decision) -> EffectSearch:
+        """The search with the fits that it ends with. decision: the last one."""
+        self._let_go()
+        before = self._current.evidence
+        current, other = with_free_shapes(self._current, self._workers)
+        self._shape_loss += max(0.0, before - current.evidence)
+        last = tuple(_latest(self._screened, decision, current))
+        current, with_effects = both_optima(current, self._tuned.model.likelihood, self._workers)
+        assert self._first is not None
+        return EffectSearch(
+            self._tuned,
+            tuple(self._steps),
+            self._first,
+            last,
+            current,
+            with_effects,
+            self._shares,
+            self._without_own,
+            self._prior,
+            self._shape_loss,
+            None if other is None else other.without_derivatives,
+        )
 
 
 def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list[Screened]:

@@ -16,9 +16,10 @@ import numpy as np
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_variants import default_law, frictions, other_laws, with_law
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch, search_from
+from doe_kc.discovery.search.search import search_from
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
     BEYOND_DOUBT,

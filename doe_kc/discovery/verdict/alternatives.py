@@ -20,6 +20,7 @@ from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.convergence import fit_to_errors
 from doe_kc.discovery.search.decision import threshold
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     hypothesis_fit,
@@ -27,7 +28,6 @@ from doe_kc.discovery.search.refits import (
     plausible,
     refit_starts,
 )
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import NAME_ALWAYS_LEVEL
 from doe_kc.discovery.verdict.removals import Removal, ceiling_of, own_errors, removals
 from doe_kc.discovery.workers import DiscoveryWorkers

@@ -10,8 +10,8 @@ from scipy.special import logsumexp, ndtr
 from doe_kc.discovery.fit import amplitude_estimates, member_detectability
 from doe_kc.discovery.half_lines import half_line_limit, half_line_moments
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import (
     CONSTANT_TO,
     DECISIVE_EVIDENCE,

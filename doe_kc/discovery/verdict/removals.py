@@ -9,7 +9,7 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, last_member
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.convergence import fits_to_errors
-from doe_kc.discovery.search.search import EffectSearch
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.thresholds import BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis

@@ -17,13 +17,13 @@ from doe_kc.discovery.fit import Fit, rewhitened_fit, size_weights
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
 from doe_kc.discovery.search.baseline import with_friction_traces
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_discrepancy import (
     EffectSignal,
     balanced_correlation,
     effect_signals,
     fit_discrepancy,
 )
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.own_scatter import with_own_scatter
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors

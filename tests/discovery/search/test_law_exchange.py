@@ -10,11 +10,11 @@ import pytest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search import law_exchange
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_exchange import proposed, with_exchanged_laws
 from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.search.proposals import SetProposal
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import discovery, known_to, library

@@ -12,6 +12,7 @@ from doe_kc.discovery.search import decision as decision_module
 from doe_kc.discovery.search import laws_first
 from doe_kc.discovery.search import search as search_module
 from doe_kc.discovery.search.decision import Decision
+from doe_kc.discovery.search.final_laws import FinalLaws
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -65,9 +66,9 @@ def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.Mon
         "laws_instead",
         lambda _, further, *__: given.append(replace(further.fit)) or given[-1],
     )
-    with_loops = search_module._with_loops
+    with_loops = search_module.with_loops
     monkeypatch.setattr(
-        search_module, "_with_loops", lambda fit, *a, **k: taken.append(fit) or with_loops(fit, *a, **k)
+        search_module, "with_loops", lambda fit, *a, **k: taken.append(fit) or with_loops(fit, *a, **k)
     )
     found = search(model("pair"), library("steering_friction", "hub_compliance"), DiscoveryWorkers())
     assert [step.accepted for step in found.steps] == [True, True, False]
@@ -83,7 +84,9 @@ def test_effects_are_asked_for_once_more_beside_the_laws_that_a_set_ends_with(
     decisions: list[int] = []
     next_decision = search_module.next_decision
     monkeypatch.setattr(
-        search_module, "with_final_laws", lambda fit, *_: asked.append(1) or (fit, 0.0, len(asked) <= changes)
+        search_module,
+        "with_final_laws",
+        lambda fit, *_: asked.append(1) or FinalLaws(fit, 0.0, len(asked) <= changes),
     )
     monkeypatch.setattr(
         search_module,
@@ -109,7 +112,7 @@ def test_the_laws_of_the_end_are_asked_for_again_beside_an_effect_that_came_in_b
     monkeypatch.setattr(
         search_module,
         "with_final_laws",
-        lambda fit, *_: asked.append(len(fit.model.members)) or (fit, 0.0, True),
+        lambda fit, *_: asked.append(len(fit.model.members)) or FinalLaws(fit, 0.0, True),
     )
     found = search(model("pair"), library("hub_compliance", "steering_friction"), DiscoveryWorkers())
     assert asked == [1, 2] and len(found.with_effects.model.members) == 2

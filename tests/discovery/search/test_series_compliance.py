@@ -11,8 +11,8 @@ import pytest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, fit
 from doe_kc.discovery.search import series_compliance
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_variants import open_laws, other_laws
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.search.series_compliance import with_series_compliances
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import last_member, member_detectability
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.refits import HypothesisFit, plausible
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.verdict import alternatives as alternatives_module
 from doe_kc.discovery.verdict.alternatives import (
     Alternatives,

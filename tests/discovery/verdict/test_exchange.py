@@ -13,8 +13,8 @@ import pytest
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.verdict import alternatives as alternatives_module
 from doe_kc.discovery.verdict import exchange as exchange_module
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives

@@ -11,8 +11,8 @@ from scipy.stats import norm
 import doe_kc.discovery.verdict.findings as findings_module
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.result import Finding, ParameterEstimate
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.search import EffectSearch
 from doe_kc.discovery.thresholds import LINEAR_TO
 from doe_kc.discovery.verdict.alternatives import Alternatives, alternatives, comparison, effect_change
 from doe_kc.discovery.verdict.findings import (

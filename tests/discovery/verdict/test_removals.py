@@ -11,7 +11,7 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import refit_to_errors
 from doe_kc.discovery.search import convergence
-from doe_kc.discovery.search.search import EffectSearch
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.verdict.alternatives import alternatives
 from doe_kc.discovery.verdict.removals import removals
 from doe_kc.discovery.workers import DiscoveryWorkers

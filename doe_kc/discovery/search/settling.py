@@ -1,0 +1,56 @@
+"""A set that was taken, brought to rest before the search goes on: its loops, needless members, errors."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from doe_kc.axle.model import Axle
+from doe_kc.correlation.likelihood import Likelihood
+from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search.baseline import with_sides_anew
+from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
+from doe_kc.discovery.search.convergence import converged_fit, fit_to_errors
+from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy, without_own_discrepancy
+from doe_kc.discovery.search.pruning import backward_elimination
+from doe_kc.discovery.search.set_prior import SetPrior
+from doe_kc.discovery.thresholds import ACCEPTED_ODDS
+from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis
+
+
+def with_loops(
+    taken: Fit, added: Sequence[Hypothesis], own: Axle, workers: DiscoveryWorkers, *, known: bool
+) -> tuple[Fit, bool]:
+    """A set that was taken, with the loops before the record that the records ask for, and whether those are
+    known. own: the axle as given."""
+    if known or not any(EFFECTS[h.effect].frictional for h in added):
+        return taken, known
+    return with_conditioning(taken, own, workers)
+
+
+def settled(
+    current: Fit,
+    before: Likelihood,
+    own: EffectModel,
+    without_own: Mapping[str, Likelihood],
+    prior: SetPrior,
+    workers: DiscoveryWorkers,
+) -> tuple[Fit, dict[str, float], dict[str, Likelihood]]:
+    """A set without what it makes needless, its laws' discrepancy among the errors, with that discrepancy's
+    shares and what `without_own_discrepancy` says.
+
+    before: the errors of the set before it. own: the model without effects, in the records' own errors.
+    without_own: of the set before it.
+    """
+    current = with_sides_anew(current)
+    current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
+    exact = fit_to_errors(own_loops(current, own.axle), own.likelihood, workers)
+    signals = effect_signals(exact)
+    at_rest, shares = fit_discrepancy(exact, signals)
+    following = without_own_discrepancy(exact, signals, shares)
+    del current, exact  # before the last fit: their derivatives are large
+    if at_rest.model.likelihood is not before:
+        at_rest = converged_fit(at_rest, workers)
+    return at_rest, shares, following
