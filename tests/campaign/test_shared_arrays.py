@@ -176,14 +176,13 @@ def test_a_common_argument_is_kept_by_the_process_that_had_it() -> None:
 
 
 def test_the_copy_of_a_common_argument_goes_with_it_and_not_before_its_tasks() -> None:
-    before = open_files("copy")
-    records, executor = Records(LARGE), Processes(1)
-    future = executor.submit(place_of, records)
-    assert len(open_files("copy") - before) == 1
-    total, records = float(LARGE.sum()), Records(LARGE[:1])
-    assert future.result()[2] == total
-    executor.shutdown()
-    del future
+    before, records = open_files("copy"), Records(LARGE)
+    sent = shared_arguments((records,), {})
+    assert sent is not None and len(open_files("copy") - before) == 1
+    del records
+    assert called_with(place_of, sent.content)[2] == float(LARGE.sum())
+    sent.close()
+    del sent
     assert open_files("copy") <= before
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
-from typing import cast
 
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
@@ -113,7 +112,8 @@ class _SetSearch:
     def __init__(self, state: SearchState, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> None:
         self._tuned, self._prior = state.tuned, state.prior
         self._library, self._workers = library, workers
-        self._steps, self._first = list(state.steps), cast(Decision | None, None)
+        self._steps = list(state.steps)
+        self._first: Decision | None = None
         self._current, self._screened = state.current, state.screened
         self._shares, self._without_own = state.shares, state.without_own
         self._shape_loss, self._laws_had = 0.0, {laws_of(state.current)}
