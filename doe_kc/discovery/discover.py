@@ -16,10 +16,10 @@ from doe_kc.discovery.screening.disagreement import raw_map
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
 from doe_kc.discovery.search.compatibility import compatible
-from doe_kc.discovery.search.decision import temper, threshold
+from doe_kc.discovery.search.decision import threshold
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_variants import frictions
-from doe_kc.discovery.search.refits import HypothesisFit
+from doe_kc.discovery.search.refits import HypothesisFit, temper
 from doe_kc.discovery.thresholds import DISAGREEMENTS_LISTED
 from doe_kc.discovery.verdict.adequacy import Adequacy, adequacy
 from doe_kc.discovery.verdict.alternatives import Alternatives

@@ -23,6 +23,7 @@ from doe_kc.discovery.search.refits import (
     plausible_beside,
     set_refits,
     stiffer_first,
+    temper,
     untried,
 )
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -202,11 +203,6 @@ def _leader_refits(
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
     """Whether a refit is worth a step, all new sizes believed."""
     return trial.gain > ACCEPTED_ODDS and plausible_beside(trial.fit, current.model.members)
-
-
-def temper(fit: Fit) -> float:
-    """T >= 1 by which ln evidence is divided: the mean square of the residual map, when that exceeds 1."""
-    return max(1.0, fit.residual_map.mean_square)
 
 
 def _accepted(trial: HypothesisFit, current: Fit) -> bool:

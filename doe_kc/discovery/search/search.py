@@ -12,7 +12,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.baseline import tune, with_traces
 from doe_kc.discovery.search.convergence import both_optima
-from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, temper
+from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.final_laws import with_final_laws
 from doe_kc.discovery.search.free_shapes import with_free_shapes
@@ -20,6 +20,7 @@ from doe_kc.discovery.search.law_variants import frictions
 from doe_kc.discovery.search.laws import may_open, with_free_laws, with_friction_laws
 from doe_kc.discovery.search.laws_first import effect_or_laws, laws_of
 from doe_kc.discovery.search.nominal_refits import refit_anew
+from doe_kc.discovery.search.refits import temper
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.search.settling import settled, with_loops
 from doe_kc.discovery.thresholds import EFFECTS_MOST, MOST_STEPS

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
-from doe_kc.discovery.search.decision import temper
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_exchange import with_exchanged_laws
+from doe_kc.discovery.search.refits import temper
 from doe_kc.discovery.search.search import search_from
 from doe_kc.discovery.search.series_compliance import with_series_compliances
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS

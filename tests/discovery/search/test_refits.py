@@ -17,7 +17,9 @@ from doe_kc.discovery.search.refits import (
     leaders,
     more_than_trace,
     overlooked,
+    plausible_beside,
     stiffer_first,
+    temper,
     untried,
 )
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -56,6 +58,22 @@ def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
     assert believable([(replace(size, most=4.0), -3.5, 0.2)])
     assert more_than_trace([(size, 0.3, 0.09)]) and not more_than_trace([(size, 0.3, 0.11)])
     assert more_than_trace([])
+
+
+def test_a_size_is_less_sure_where_the_model_leaves_more_than_noise() -> None:
+    """By the root of how much more, so that what is not in the model yet keeps no effect out."""
+    explained = discovery("named").search.with_law_discrepancy
+    (member,) = explained.model.members
+    place = explained.model.place(member)
+    sd = np.sqrt(np.diag(explained.covariance)[place])
+    beyond = explained.z.copy()
+    beyond[place] = np.array([s.most for s in member.sizes]) + 10.0 * sd
+    assert temper(explained) == 1.0
+    for times, believed in ((1.0, False), (30.0, True)):
+        fit = replace(explained, z=beyond, residual=times * explained.residual)
+        assert (np.sqrt(temper(fit)) > 5.0) == believed
+        assert plausible_beside(fit, ()) == believed
+    assert plausible_beside(replace(explained, z=beyond), [member])
 
 
 @pytest.mark.parametrize(("alike", "refitted"), [(0.8, True), (0.4, False)])
