@@ -21,13 +21,24 @@ def fit_to_errors(current: Fit, likelihood: Likelihood, workers: DiscoveryWorker
 
 def fits_to_errors(current: Fit, likelihoods: Sequence[Likelihood], workers: DiscoveryWorkers) -> list[Fit]:
     """`fit_to_errors` of several errors, the same fit where those are the same object."""
+    return at_optima(fits_near(current, likelihoods), workers)
+
+
+def fits_near(current: Fit, likelihoods: Sequence[Likelihood]) -> list[Fit]:
+    """The fit to several other errors by the derivatives that it has, the same fit where those are the same
+    object."""
     unlike = {id(likelihood): likelihood for likelihood in likelihoods}
     near = {key: refit_to_errors(current, likelihood) for key, likelihood in unlike.items()}
-    open_ends = {key: fit for key, fit in near.items() if not fit.converged}
-    starts = [FitStart(fit.model, fit.z, fit) for fit in open_ends.values()]
-    for (key, fit), refit in zip(open_ends.items(), workers.fits(starts, "settling"), strict=True):
-        near[key] = refit or fit
     return [near[id(likelihood)] for likelihood in likelihoods]
+
+
+def at_optima(fits: Sequence[Fit], workers: DiscoveryWorkers) -> list[Fit]:
+    """Fits, those gone on with new derivatives which known ones led to no end; each object once."""
+    open_ends = {id(fit): fit for fit in fits if not fit.converged}
+    starts = [FitStart(fit.model, fit.z, fit) for fit in open_ends.values()]
+    refits = zip(open_ends, workers.fits(starts, "settling"), strict=True)
+    ends = {key: refit for key, refit in refits if refit is not None}
+    return [ends.get(id(fit), fit) for fit in fits]
 
 
 def at_optimum(current: Fit, workers: DiscoveryWorkers) -> Fit:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
-from doe_kc.discovery.search.convergence import fit_to_errors, fits_to_errors
+from doe_kc.discovery.search.convergence import at_optima, fit_to_errors, fits_near
+from doe_kc.discovery.search.member_state import MemberState, TriedRemoval
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, REMOVAL_FACTOR
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -17,38 +18,57 @@ from doe_kc.effects.hypothesis import Hypothesis
 
 
 def backward_elimination(
-    fit: Fit,
-    least: float,
-    workers: DiscoveryWorkers,
-    without_own: Mapping[str, Likelihood],
-    prior: SetPrior,
-) -> Fit:
-    """The fit without the members whose posterior odds against their removal are below `least`, ln.
+    fit: Fit, least: float, workers: DiscoveryWorkers, known: MemberState, prior: SetPrior
+) -> tuple[Fit, dict[str, TriedRemoval]]:
+    """The fit without the members whose posterior odds against their removal are below `least`, ln, and how
+    the removals of all members ended that were tried, now or before.
 
-    without_own: of a member whose law has a discrepancy, errors that do not hold it: with it, what the member
-    makes would pass for an error of the records.
+    known: of the set before, its `without_own` also of this one: with its own discrepancy among the errors,
+    what a member makes would pass for an error of the records.
     """
+    removals = dict(known.removals)
     while fit.model.members:
-        places = list(fit.model.places())
-        needed = {h.name: least - _odds(fit.model.members, h, prior) for h, _ in places}
-        losses = {h.name: _loss(fit, place) for h, place in places}
-        members = [(h, p) for h, p in places if losses[h.name] < REMOVAL_FACTOR * needed[h.name]]
-        errors = [without_own.get(h.name, fit.model.likelihood) for h, _ in members]
-        withs = fits_to_errors(fit, errors, workers)
+        members = fit.model.members
+        needed = {h.name: least - _odds(members, h, prior) for h in members}
+        tried, nears = _doubtful(fit, needed, replace(known, removals=removals))
+        withs = at_optima(nears, workers)
         starts = [
             FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit, w.cost + 2.0 * BEYOND_DOUBT)
-            for w, (h, place) in zip(withs, members, strict=True)
+            for w, (h, place) in zip(withs, tried, strict=True)
         ]
         fewer = workers.fits(starts, "taking effects out")
-        for (h, _), w, f in zip(members, withs, fewer, strict=True):
-            if f is not None:
-                losses[h.name] = w.evidence - f.evidence
-        kept = {h.name: f for (h, _), f in zip(members, fewer, strict=True) if f is not None}
-        least_lost = min(kept, key=lambda name: losses[name] - needed[name], default="")
-        if not least_lost or losses[least_lost] > needed[least_lost]:
+        spare: dict[str, float] = {}
+        for (member, place), near, refit in zip(tried, withs, fewer, strict=True):
+            if refit is not None:
+                lost = near.evidence - refit.evidence
+                removals[member.name] = TriedRemoval(_carried(near, place), lost)
+                spare[member.name] = lost - needed[member.name]
+        least_lost = min(spare, key=lambda name: spare[name], default="")
+        if not least_lost or spare[least_lost] > 0.0:
             break
-        fit = fit_to_errors(kept[least_lost], fit.model.likelihood, workers)
-    return fit
+        (without,) = (f for (h, _), f in zip(tried, fewer, strict=True) if h.name == least_lost)
+        assert without is not None
+        fit = fit_to_errors(without, fit.model.likelihood, workers)
+    return fit, removals
+
+
+def _doubtful(
+    fit: Fit, needed: Mapping[str, float], known: MemberState
+) -> tuple[list[tuple[Hypothesis, slice]], list[Fit]]:
+    """Members that are tried without, with their places, and each one's fit to errors that do not hold its
+    law. The others would come in again: in either errors they carry many times what it takes, or not much
+    less than when their removal was last tried and lost that."""
+
+    def weak(near: Fit, member: Hypothesis, place: slice) -> bool:
+        loss, tried = _carried(near, place), known.removals.get(member.name)
+        if tried is not None and tried.carried > 0.0:
+            loss *= max(1.0, min(tried.lost, BEYOND_DOUBT) / tried.carried)
+        return loss < REMOVAL_FACTOR * needed[member.name]
+
+    members = [(h, place) for h, place in fit.model.places() if weak(fit, h, place)]
+    nears = fits_near(fit, [known.without_own.get(h.name, fit.model.likelihood) for h, _ in members])
+    doubtful = [(one, near) for one, near in zip(members, nears, strict=True) if weak(near, *one)]
+    return [one for one, _ in doubtful], [near for _, near in doubtful]
 
 
 def _odds(members: Sequence[Hypothesis], member: Hypothesis, prior: SetPrior) -> float:
@@ -56,7 +76,7 @@ def _odds(members: Sequence[Hypothesis], member: Hypothesis, prior: SetPrior) ->
     return prior.log_odds([h for h in members if h != member], member)
 
 
-def _loss(fit: Fit, place: slice) -> float:
+def _carried(fit: Fit, place: slice) -> float:
     """ln likelihood that a member's sizes carry, to second order (Wald); 0 for one without sizes."""
     amplitudes = fit.z[place]
     if not amplitudes.size:

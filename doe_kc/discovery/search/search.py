@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Sequence, Set
 from dataclasses import dataclass, replace
 
-from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
@@ -19,6 +18,7 @@ from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_variants import frictions
 from doe_kc.discovery.search.laws import may_open, with_free_laws, with_friction_laws
 from doe_kc.discovery.search.laws_first import effect_or_laws, laws_of
+from doe_kc.discovery.search.member_state import MemberState
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.refits import temper
 from doe_kc.discovery.search.set_prior import SetPrior
@@ -76,10 +76,10 @@ def _state_of(
         step = Step(last.model.members, before.with_effects.rms, candidates, temper(other), added, True)
         steps = (*steps, step)
     taken, _ = with_loops(other, added, own.axle, workers, known=False)
-    following, shares, without_own = settled(taken, own.likelihood, own, {}, prior, workers)
+    following, known = settled(taken, own.likelihood, own, MemberState(), prior, workers)
     errors = last.model.likelihood, following.model.likelihood
     screened = tuple(rewhitened_screenings(before.screened, *errors))
-    return SearchState(before.tuned, steps, following, screened, shares, without_own, prior)
+    return SearchState(before.tuned, steps, following, screened, known, prior)
 
 
 def _start(model: EffectModel, library: Sequence[Hypothesis], workers: DiscoveryWorkers) -> SearchState:
@@ -88,7 +88,7 @@ def _start(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
     workers.watch("re-tuning", 1)
     screened = workers.screenings(tuned, library)
     current = with_traces(tuned, screened)
-    return SearchState(tuned, (), current, tuple(screened), {}, {}, SetPrior.of(library))
+    return SearchState(tuned, (), current, tuple(screened), MemberState(), SetPrior.of(library))
 
 
 @dataclass(frozen=True)
@@ -102,8 +102,8 @@ class SearchState:
     """The set that it goes on from."""
     screened: tuple[Screened, ...]
     """Every hypothesis as it was screened last, in the errors of `current`."""
-    shares: Mapping[str, float]
-    without_own: Mapping[str, Likelihood]
+    known: MemberState
+    """Of its members."""
     prior: SetPrior
 
 
@@ -116,7 +116,7 @@ class _SetSearch:
         self._steps = list(state.steps)
         self._first: Decision | None = None
         self._current, self._screened = state.current, state.screened
-        self._shares, self._without_own = state.shares, state.without_own
+        self._known = state.known
         self._shape_loss, self._laws_had = 0.0, {laws_of(state.current)}
         self._compared: Set[str] = frozenset()
         """Frictions whose laws need no other comparison."""
@@ -199,7 +199,7 @@ class _SetSearch:
         if self._laws_open:
             opened, self._compared = with_free_laws(current, own, self._workers)
         elif not self._laws_asked:
-            opened, self._compared = with_friction_laws(current, own, self._shares, self._workers)
+            opened, self._compared = with_friction_laws(current, own, self._known.shares, self._workers)
         self._laws_asked = True
         if opened is not current:
             return opened
@@ -224,8 +224,8 @@ class _SetSearch:
     def _settle(self, following: Fit, decision: Decision) -> None:
         """Go on from a set, once it is at rest."""
         count, before = len(following.model.members), self._current.model.likelihood
-        self._current, self._shares, self._without_own = settled(
-            following, before, self._tuned.model, self._without_own, self._prior, self._workers
+        self._current, self._known = settled(
+            following, before, self._tuned.model, self._known, self._prior, self._workers
         )
         if len(self._current.model.members) != count:  # laws were compared beside an effect that has gone
             self._compared, self._last_laws = frozenset(), False
@@ -253,8 +253,8 @@ class _SetSearch:
             last,
             current,
             with_effects,
-            self._shares,
-            self._without_own,
+            self._known.shares,
+            self._known.without_own,
             self._prior,
             self._shape_loss,
             None if other is None else other.without_derivatives,

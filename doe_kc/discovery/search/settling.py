@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
@@ -12,6 +12,7 @@ from doe_kc.discovery.search.baseline import with_sides_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
 from doe_kc.discovery.search.convergence import converged_fit, fit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy, without_own_discrepancy
+from doe_kc.discovery.search.member_state import MemberState
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
@@ -34,23 +35,23 @@ def settled(
     current: Fit,
     before: Likelihood,
     own: EffectModel,
-    without_own: Mapping[str, Likelihood],
+    known: MemberState,
     prior: SetPrior,
     workers: DiscoveryWorkers,
-) -> tuple[Fit, dict[str, float], dict[str, Likelihood]]:
-    """A set without what it makes needless, its laws' discrepancy among the errors, with that discrepancy's
-    shares and what `without_own_discrepancy` says.
+) -> tuple[Fit, MemberState]:
+    """A set without what it makes needless, its laws' discrepancy among the errors, and what is known of its
+    members.
 
     before: the errors of the set before it. own: the model without effects, in the records' own errors.
-    without_own: of the set before it.
+    known: of the set before it.
     """
     current = with_sides_anew(current)
-    current = backward_elimination(current, ACCEPTED_ODDS, workers, without_own, prior)
+    current, removals = backward_elimination(current, ACCEPTED_ODDS, workers, known, prior)
     exact = fit_to_errors(own_loops(current, own.axle), own.likelihood, workers)
     signals = effect_signals(exact)
     at_rest, shares = fit_discrepancy(exact, signals)
-    following = without_own_discrepancy(exact, signals, shares)
+    state = MemberState(shares, without_own_discrepancy(exact, signals, shares), removals)
     del current, exact  # before the last fit: their derivatives are large
     if at_rest.model.likelihood is not before:
         at_rest = converged_fit(at_rest, workers)
-    return at_rest, shares, following
+    return at_rest, state

@@ -3,19 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 
 from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns, refit_to_errors
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
+from doe_kc.discovery.search.member_state import MemberState, TriedRemoval
 from doe_kc.discovery.search.pruning import backward_elimination
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS, BEYOND_DOUBT
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from tests.discovery.cases import library, model
+
+
+class Watched(DiscoveryWorkers):
+    """Keeps where fits of removals begin."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.starts: list[list[FitStart]] = []
+
+    def fits(self, given: Sequence[FitStart], what: str, **more: Any) -> list[Fit | None]:
+        if what == "taking effects out" and given:
+            self.starts.append(list(given))
+        return super().fits(given, what, **more)
+
+
+def pruned(
+    found: Fit,
+    least: float,
+    known: MemberState | None = None,
+    prior: SetPrior | None = None,
+    workers: DiscoveryWorkers | None = None,
+) -> Fit:
+    asked = workers or DiscoveryWorkers()
+    return backward_elimination(found, least, asked, known or MemberState(), prior or SetPrior({}))[0]
 
 
 def two_fitted() -> tuple[Fit, Hypothesis]:
@@ -37,9 +64,9 @@ def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     between = float(np.sqrt(own * fooled))
     prior = SetPrior({})
     least = between + prior.log_odds([], hub)
-    assert hub not in backward_elimination(found, least, DiscoveryWorkers(), {}, prior).model.members
+    assert hub not in pruned(found, least, prior=prior).model.members
     own_errors = {hub.name: exact.model.likelihood}
-    judged = backward_elimination(found, least, DiscoveryWorkers(), own_errors, prior)
+    judged = pruned(found, least, MemberState(without_own=own_errors), prior)
     assert hub in judged.model.members
     assert judged.model.likelihood is wide
 
@@ -48,34 +75,44 @@ def test_a_removal_beyond_doubt_is_given_up() -> None:
     """The hub is worth thousands: its removal needs no end."""
     exact, hub = hub_fitted()
     assert _loss(exact, hub) > 2.0 * BEYOND_DOUBT
-    starts: list[FitStart] = []
-
-    class Watched(DiscoveryWorkers):
-        def fits(self, given: Sequence[FitStart], what: str, **more: Any) -> list[Fit | None]:
-            starts.extend(given if what == "taking effects out" else ())
-            return super().fits(given, what, **more)
-
-    least = 1e6  # so that the removal is tried
-    found = backward_elimination(exact, least, Watched(), {}, SetPrior({}))
-    assert [s.ceiling for s in starts] == [exact.cost + 2.0 * BEYOND_DOUBT]
+    workers, least = Watched(), 1e6  # so that the removal is tried
+    found = pruned(exact, least, workers=workers)
+    assert [s.ceiling for (s,) in workers.starts] == [exact.cost + 2.0 * BEYOND_DOUBT]
     assert found.model.members == ()
 
 
 def test_one_member_goes_at_a_time_the_least_needed_first() -> None:
     """What is needless beside another may be needed without it. All are tried at once."""
     both, hub = two_fitted()
-    asked: list[list[tuple[str, ...]]] = []
+    assert pruned(both, ACCEPTED_ODDS).model.members == (hub,)
+    workers = Watched()
+    assert pruned(both, 1e6, workers=workers).model.members == ()
+    tried = [[tuple(h.effect for h in s.model.members) for s in starts] for starts in workers.starts]
+    assert tried == [[("strut_bending",), ("hub_compliance",)], [()]]
 
-    class Watched(DiscoveryWorkers):
-        def fits(self, given: Sequence[FitStart], what: str, **more: Any) -> list[Fit | None]:
-            if what == "taking effects out":
-                asked.append([tuple(h.effect for h in s.model.members) for s in given])
-            return super().fits(given, what, **more)
 
-    assert backward_elimination(both, ACCEPTED_ODDS, Watched(), {}, SetPrior({})).model.members == (hub,)
-    asked.clear()
-    assert backward_elimination(both, 1e6, Watched(), {}, SetPrior({})).model.members == ()
-    assert asked == [[("strut_bending",), ("hub_compliance",)], [()]]
+@pytest.mark.parametrize(("share", "tried"), [(1.0, False), (0.5, False), (0.1, True)])
+def test_what_cost_much_is_not_tried_without_again_while_its_sizes_carry_as_much(
+    share: float, tried: bool
+) -> None:
+    """A progression carried 60 of ln likelihood to second order, and its removal lost thousands each time."""
+    exact, hub = hub_fitted()
+    place, prior, z = exact.model.place(hub), SetPrior({}), exact.z.copy()
+    z[place] *= np.sqrt(20.0 / _carried(exact, place))
+    weak, least = replace(exact, z=z), 6.0 + prior.log_odds([], hub)
+    first, again = Watched(), Watched()
+    pruned(weak, least, prior=prior, workers=first)
+    removals = {hub.name: TriedRemoval(20.0 / share, 5000.0)}
+    pruned(weak, least, MemberState(removals=removals), prior, again)
+    assert first.starts
+    assert bool(again.starts) == tried
+
+
+def test_removals_are_told() -> None:
+    exact, hub = hub_fitted()
+    _, removals = backward_elimination(exact, 1e6, DiscoveryWorkers(), MemberState(), SetPrior({}))
+    assert removals[hub.name].lost > BEYOND_DOUBT
+    assert removals[hub.name].carried > 0.0
 
 
 def hub_fitted() -> tuple[Fit, Hypothesis]:
@@ -83,6 +120,11 @@ def hub_fitted() -> tuple[Fit, Hypothesis]:
     (hub,) = library("hub_compliance")
     extended = model("named").extended(hub)
     return fit(extended, np.append(extended.centre[: extended.dimension], np.ones(2))), hub
+
+
+def _carried(found: Fit, place: slice) -> float:
+    sizes = found.z[place]
+    return 0.5 * float(sizes @ np.linalg.inv(found.covariance[place, place]) @ sizes)
 
 
 def _loss(found: Fit, member: Hypothesis) -> float:
