@@ -85,6 +85,8 @@ class Finding:
     """Its largest amplitude, in typical sizes."""
     believed: bool
     """Whether no size is surely larger than such a part has."""
+    seen: bool
+    """Whether the records tell one of its sizes from none."""
     relevant: bool
     """Whether it is worth naming; a trace otherwise."""
     elsewhere: tuple[str, ...] = ()

@@ -90,6 +90,7 @@ def test_no_trace_of_the_rig_where_the_model_does_not_hold() -> None:
     good, bad = discovery("named").adequacy, discovery("unexplained").adequacy
     assert shown_traces((strut, gain, small), good) == (gain, small)
     assert shown_traces((strut, gain, small), bad) == (small,)
+    assert shown_traces((strut, gain, replace(small, seen=False)), good) == (gain,)
 
 
 def test_limits_mean_nothing_where_the_model_or_a_friction_s_law_does_not_hold() -> None:

@@ -117,6 +117,12 @@ def more_than_trace(sizes: Sized) -> bool:
     return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)
 
 
+def more_than_none(sizes: Sized) -> bool:
+    """Whether a size is surely not none; an effect without a size counts when it is there."""
+    counted = list(sizes)
+    return not counted or any(abs(a) > CONFIDENT * sd for _, a, sd in counted)
+
+
 def joint_refits(
     current: Fit,
     screened: Sequence[Screened],

@@ -11,7 +11,13 @@ from doe_kc.discovery.fit import amplitude_estimates, member_detectability
 from doe_kc.discovery.half_lines import half_line_limit, half_line_moments
 from doe_kc.discovery.result import Finding, ParameterEstimate, Rival
 from doe_kc.discovery.search.effect_search import EffectSearch
-from doe_kc.discovery.search.refits import HypothesisFit, amounts, believable, more_than_trace
+from doe_kc.discovery.search.refits import (
+    HypothesisFit,
+    amounts,
+    believable,
+    more_than_none,
+    more_than_trace,
+)
 from doe_kc.discovery.thresholds import (
     CONSTANT_TO,
     DECISIVE_EVIDENCE,
@@ -93,6 +99,7 @@ def _finding(
         alike=_alike(own, chances),
         largest=max((a for _, a, _ in counted), default=1.0),
         believed=believable(counted),
+        seen=more_than_none(counted),
         relevant=more_than_trace(counted) and not _trace_would_do(own) and _stands_out(own),
         elsewhere=_elsewhere(own),
     )

@@ -15,6 +15,7 @@ from doe_kc.discovery.search.refits import (
     believable,
     best_of_each_set,
     leaders,
+    more_than_none,
     more_than_trace,
     overlooked,
     plausible_beside,
@@ -58,6 +59,12 @@ def test_a_size_is_disbelieved_or_a_trace_only_when_that_is_sure() -> None:
     assert believable([(replace(size, most=4.0), -3.5, 0.2)])
     assert more_than_trace([(size, 0.3, 0.09)]) and not more_than_trace([(size, 0.3, 0.11)])
     assert more_than_trace([])
+
+
+def test_a_size_is_there_when_that_is_sure() -> None:
+    size = Size("gain", 0.05, "-", "factor", signed=True)
+    assert more_than_none([(size, -0.03, 0.014)]) and not more_than_none([(size, -0.03, 0.016)])
+    assert more_than_none([])
 
 
 def test_a_size_is_less_sure_where_the_model_leaves_more_than_noise() -> None:

@@ -17,7 +17,9 @@ from doe_kc.discovery.verdict.held_out import HeldOut, HeldOutScore
 from doe_kc.discovery.verdict.verdict import classes, verdict
 from tests.discovery.cases import library, model
 
-CLEAR = Finding(library("hub_compliance")[0], (), 0.99, 2.0, "", (), 500.0, 40.0, 0.0, (), 1.2, True, True)
+CLEAR = Finding(
+    library("hub_compliance")[0], (), 0.99, 2.0, "", (), 500.0, 40.0, 0.0, (), 1.2, True, True, True
+)
 SIZE = 1300
 
 
