@@ -5,9 +5,6 @@ An effect that comes in while a law is not the car's may be what that law lacks.
 
 from __future__ import annotations
 
-from collections.abc import Set
-from dataclasses import replace
-
 import numpy as np
 
 from doe_kc.correlation.likelihood import Likelihood
@@ -35,26 +32,6 @@ Laws = tuple[tuple[str, str], ...]
 def laws_of(current: Fit) -> Laws:
     """Of a set."""
     return tuple((h.name, h.law) for h in current.model.members)
-
-
-def effect_or_laws(
-    current: Fit, further: HypothesisFit, earlier: Set[Laws], own: Likelihood, workers: DiscoveryWorkers
-) -> tuple[Fit | None, HypothesisFit | None]:
-    """Other laws that come in instead of a further effect, or the effect, beside those that say most with it;
-    neither where the effect is needless beside the laws of compliances.
-
-    earlier: laws of sets that other laws came into. A set whose laws were exchanged does not return to laws
-    that it had: a free shape has several optima, and what is better from one of them may not be from another.
-    own: the records' own errors.
-    """
-    other = laws_instead(current, further, own, workers)
-    if other is not None and laws_of(other) in earlier:
-        other = None
-    if other is not None and {n for n, _ in laws_of(other)} != {n for n, _ in laws_of(further.fit)}:
-        return other, None
-    if needless_beside_laws(current, further, own, workers):
-        return None, None
-    return None, further if other is None else replace(further, fit=other)
 
 
 def laws_instead(

@@ -17,7 +17,7 @@ from doe_kc.discovery.search.final_laws import with_final_laws
 from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_variants import frictions
 from doe_kc.discovery.search.laws import may_open, with_free_laws, with_friction_laws
-from doe_kc.discovery.search.laws_first import effect_or_laws, laws_of
+from doe_kc.discovery.search.laws_first import laws_instead, laws_of, needless_beside_laws
 from doe_kc.discovery.search.member_state import MemberState
 from doe_kc.discovery.search.nominal_refits import refit_anew
 from doe_kc.discovery.search.refits import temper
@@ -173,24 +173,32 @@ class _SetSearch:
         self._steps[-1] = replace(decision, accepted=False).step(own, self._prior)
 
     def _effect_or_laws(self, decision: Decision) -> Fit | None:
-        """The set with what the step accepts, or by other laws in its stead; None where those make it
-        needless."""
-        own = self._tuned.model
-        further = decision.trials[0]
-        instead, taken = effect_or_laws(self._current, further, self._laws_had, own.likelihood, self._workers)
-        if instead is None and taken is None:
+        """The set with what the step accepts, beside the laws that say most with it, or by other laws in its
+        stead; None where the laws of compliances make it needless.
+
+        A set whose laws were exchanged does not return to laws that it had: a free shape has several optima,
+        and what is better from one of them may not be from another.
+        """
+        current, own, further = self._current, self._tuned.model.likelihood, decision.trials[0]
+        other = laws_instead(current, further, own, self._workers)
+        if other is not None and laws_of(other) in self._laws_had:
+            other = None
+        if other is not None and _names(other) != _names(further.fit):
+            self._steps.pop()
+            self._laws_had.add(laws_of(other))
+            self._last_laws = False
+            return other
+        if needless_beside_laws(current, further, own, self._workers):
             self._refuse(decision)
             return None
-        self._last_laws = False
-        if instead is not None:
-            self._steps.pop()
-            self._laws_had.add(laws_of(instead))
-            return instead
-        assert taken is not None
-        self._laws_asked = self._at_end
+        return self._with_effect(further.fit if other is None else other)
+
+    def _with_effect(self, taken: Fit) -> Fit:
+        """The set that a step ends with, driven by the loops that the records ask for."""
+        self._last_laws, self._laws_asked = False, self._at_end
         self._compared = self._compared if self._at_end else frozenset()
         added, known = self._steps[-1].added, self._loops_known
-        fit, self._loops_known = with_loops(taken.fit, added, own.axle, self._workers, known=known)
+        fit, self._loops_known = with_loops(taken, added, self._tuned.model.axle, self._workers, known=known)
         return fit
 
     def _other_laws(self) -> Fit | None:
@@ -259,6 +267,10 @@ class _SetSearch:
             self._shape_loss,
             None if other is None else other.without_derivatives,
         )
+
+
+def _names(fit: Fit) -> set[str]:
+    return {h.name for h in fit.model.members}
 
 
 def _latest(known: Sequence[Screened], decision: Decision, current: Fit) -> list[Screened]:
