@@ -43,7 +43,7 @@ def at_optima(fits: Sequence[Fit], workers: DiscoveryWorkers) -> list[Fit]:
 
 def at_optimum(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit, gone on with new derivatives where known ones led to no end."""
-    return current if current.converged else converged_fit(current, workers)
+    return at_optima([current], workers)[0]
 
 
 def converged_fit(current: Fit, workers: DiscoveryWorkers) -> Fit:

@@ -27,4 +27,4 @@ class MemberState:
     without_own: Mapping[str, Likelihood] = field(default_factory=dict)
     """Of a member with such a discrepancy the errors of the records without its own."""
     removals: Mapping[str, TriedRemoval] = field(default_factory=dict)
-    """Of a member that was tried without."""
+    """Of a member that was tried without, in this set or one before it, by whatever law it had then."""
