@@ -54,7 +54,7 @@ class Solutions:
         wanted = axle.load_cases
         missing = [i for i, case in wanted.items() if known is None or case not in known.cases]
         if known is None or missing:
-            solved = solve(axle, missing, pool=self.pool)
+            solved = solve(axle, missing, lanes=True, pool=self.pool)
             if known is None:
                 known = _Solved(solved.output_names, solved.static, solved.half_track, OrderedDict())
             known.cases.update({wanted[i]: solved.cases[i] for i in missing})

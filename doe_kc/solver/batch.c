@@ -1,5 +1,5 @@
-/* Marches several designs along a load case, one in each lane of the vector registers: the algorithm of driver.c.
-   Every design has its own steps, Newton iterations and factorization; what all of them wait for is computed at once.
+/* Marches several designs, or one along several load cases, one in each lane of the vector registers: the algorithm
+   of driver.c. Every lane has its own steps, Newton iterations and factorization; what all wait for is computed at once.
    No number of one lane depends on its neighbours. `residual`, `jacobian`, `outputs`, `state_update` are generated
    for lanes, `constants` for one design. */
 #include <stdlib.h>
@@ -36,6 +36,8 @@ typedef struct {
     const int *nonzero_row;                 /* (nnz) */
     int columns;
     const int *column;                      /* of the outputs that are asked for */
+    int meet;
+    int capacity;                           /* equilibria a lane that `between` has room for */
 } problem;
 
 /* One design on its way. Pointers to rows of numbers of its own. */
@@ -48,7 +50,9 @@ typedef struct {
     double *hx, *x, *guessed, *back, *u_now, *u_next, *u_on;
     const lane *solved;                     /* where Newton's method left its result */
     const double *s, *u;
-    double *x_out, *z_out;
+    double *x_out, *z_out, *between;
+    int passed;                             /* equilibria, those inside steps included */
+    long long counts[4];                    /* residuals, Jacobians, factorizations, Newton steps */
 } design;
 
 typedef struct {
@@ -99,7 +103,7 @@ static void factor(block *b, lane_mask wanted) {
     }
     for (int k = 0; k < all; k++) b->factors[k] = lane_select(wanted, f[k], b->factors[k]);
     for (int l = 0; l < LANES; l++)
-        if (b->want[l] & FACTOR) b->lanes[l].singular = !(largest[l] <= LARGEST_FACTOR);
+        if (wanted[l]) b->lanes[l].singular = !(largest[l] <= LARGEST_FACTOR);
 }
 
 static void solve(block *b, lane_mask wanted) {
@@ -197,7 +201,7 @@ static int newton(block *b, design *t, int l) {
             }
             t->accepted = ACCEPT;
             if (next > p->refresh * t->now) {
-                if (next <= DULL * t->now && t->slow++ < SLOW) t->stale = 1;
+                if (p->meet && next <= DULL * t->now && t->slow++ < SLOW) t->stale = 1;
                 else t->have_lu = 0;
                 if (!t->fresh && !(next <= 0.5 * t->now)) {
                     t->accepted = 0;
@@ -282,6 +286,20 @@ static void accept_point(const problem *p, design *t) {
     if (t->smooth && t->wish < 1.0) t->wish = 2.0 * t->wish < 1.0 ? 2.0 * t->wish : 1.0;
 }
 
+/* The equilibrium that was found, with the friction states before it: step, share of it, u, x, z. */
+static void keep(const block *b, design *t, int l) {
+    const problem *p = b->p;
+    if (t->passed < p->capacity) {
+        double *row = t->between + (size_t)t->passed * (2 + p->nu + p->n + p->nz);
+        row[0] = t->step;
+        row[1] = t->to;
+        memcpy(row + 2, t->u_next, sizeof(double) * p->nu);
+        memcpy(row + 2 + p->nu, t->x, sizeof(double) * p->n);
+        get(row + 2 + p->nu + p->n, b->z, l, p->nz);
+    }
+    t->passed++;
+}
+
 static void begin_part(const problem *p, design *t) {
     const double *target = t->u + (size_t)t->step * p->nu;
     t->part = t->wish < 1.0 - t->done ? t->wish : 1.0 - t->done;
@@ -330,7 +348,7 @@ static int go_on(block *b, design *t, int l) {
     switch (t->at) {
     case 0:
         for (t->step = 0; t->step < t->steps; t->step++) {
-            if (t->step && t->step % TOGETHER == 0) {
+            if (p->meet && t->step && t->step % TOGETHER == 0) {
                 AWAIT(t->at, MEET);
                 if (t->stale) t->have_lu = t->stale = 0;
             }
@@ -393,6 +411,7 @@ static int go_on(block *b, design *t, int l) {
                     continue;
                 }
                 if (p->nz) {
+                    keep(b, t, l);
                     offer(b, l, t->x, t->u_next);
                     AWAIT(t->at, UPDATE);
                     get(t->z_out + (size_t)t->step * p->nz, b->z, l, p->nz);
@@ -409,15 +428,27 @@ failure:
     return 0;
 }
 
+static void count(long long *counts, int want) {
+    counts[0] += (want & EVALUATE) != 0;
+    counts[1] += (want & FACTOR) != 0;
+    counts[2] += (want & FACTOR) != 0;
+    counts[3] += (want & SOLVE) != 0;
+}
+
 static void run(block *b) {
     lane_mask of[PARTS];
     for (int l = 0; l < LANES; l++) b->want[l] = b->lanes[l].steps ? go_on(b, b->lanes + l, l) : 0;
     for (;;) {
-        int any = 0, meet = 0;
-        for (int l = 0; l < LANES; l++) any |= b->want[l] & ~MEET, meet |= b->want[l] & MEET;
+        int any = 0, meet = 0, others = 0, waiting = 0, now[LANES];
+        for (int l = 0; l < LANES; l++) others += b->want[l] && !(b->want[l] & (FACTOR | MEET)), waiting += (b->want[l] & FACTOR) != 0;
+        for (int l = 0; l < LANES; l++) {
+            now[l] = others && waiting < LANES / 2 && b->want[l] & FACTOR ? 0 : b->want[l];
+            any |= now[l] & ~MEET, meet |= now[l] & MEET;
+        }
         if (!any && !meet) return;
         for (int part = 0; part < PARTS; part++)
-            for (int l = 0; l < LANES; l++) of[part][l] = -(integer)(b->want[l] >> part & 1);
+            for (int l = 0; l < LANES; l++) of[part][l] = -(integer)(now[l] >> part & 1);
+        for (int l = 0; l < LANES; l++) count(b->lanes[l].counts, now[l]);
         if (any & ACCEPT)
             for (int i = 0; i < b->p->n; i++) {
                 b->x[i] = lane_select(of[0], b->x_trial[i], b->x[i]);
@@ -433,7 +464,7 @@ static void run(block *b) {
         if (any & EVALUATE) evaluate(b);
         if (any & UPDATE) update(b, of[5]);
         for (int l = 0; l < LANES; l++)
-            if (b->want[l] && (!any || b->want[l] != MEET)) b->want[l] = go_on(b, b->lanes + l, l);
+            if (now[l] && (!any || now[l] != MEET)) b->want[l] = go_on(b, b->lanes + l, l);
     }
 }
 
@@ -485,7 +516,8 @@ static void begin(const problem *p, design *t, int known, const double *s_known,
     for (int i = 0; i < t->points; i++) t->hs[i] = s_known[known - t->points + i];
     memcpy(t->hx, x_known + (size_t)(known - t->points) * p->n, sizeof(double) * t->points * p->n);
     memcpy(t->u_now, u_start, sizeof(double) * p->nu);
-    t->at = t->have_lu = t->stale = t->singular = 0;
+    t->at = t->have_lu = t->stale = t->singular = t->passed = 0;
+    memset(t->counts, 0, sizeof(t->counts));
     t->wish = 1.0;
 }
 
@@ -516,26 +548,31 @@ static void write_outputs(block *b, int steps, double *const *y) {
 }
 
 /* Designs of c (designs, nc) from their known points s_known (designs, known), x_known (designs, known, n) over s
-   (designs, steps) under u (designs, steps, nu), those alone for which failed[design] is 0. x, y, z: (designs,
-   steps, .) of the steps passed; z_end: (designs, nz), in: before the march, out: after it. failed: 1 + index of
-   the step that has no equilibrium in this way, or 0. Returns 0, or -1 without memory. */
+   (designs, steps) under u (designs, steps, nu), those alone for which failed[design] is 0, each over its own number
+   of steps, steps_of (designs). x, y: (designs, steps, .) of the steps passed; z_end: (designs, nz), in: before the
+   march, out: after it. failed: 1 + index of the step that has no equilibrium in this way, or 0. counts: (4) calls of
+   residual, jacobian, solve and outputs, each for all lanes.
+   Where they are not NULL: z_out (designs, steps, nz); own_counts (designs, 4), see `design`; between, with friction,
+   `passed` (designs) rows of step, share, u, x, z of every equilibrium, at most `capacity` a design.
+   Returns 0, or -1 without memory. */
 int march_batch(int n, int active, int nu, int nz, int ny, int nc, int nnz, const int *tail_control, const double *scale,
                 double tol, double refresh, int max_iterations, int max_halvings, int guess, int coordinates, int slips,
                 const int *slip,
                 const int *row_of, const int *column_of, const int *l_start, const int *l_row, const int *u_start,
                 const int *u_column, const int *place, const int *target, const int *nonzero_row,
                 int columns, const int *column, int designs, const double *c, int known, const double *s_known,
-                const double *x_known, const double *u_start_point, double *z_end, int steps, const double *s,
-                const double *u, double *x_out, double *y_out, int *failed, long long *counts) {
+                const double *x_known, const double *u_start_point, double *z_end, int steps, const int *steps_of,
+                const double *s, const double *u, double *x_out, double *y_out, int *failed, long long *counts,
+                double *z_out, long long *own_counts, int capacity, double *between, int *passed) {
     problem p = {n, active, nu, nz, ny, nc, nnz, tail_control, scale, tol, refresh, max_iterations, max_halvings,
                  guess, coordinates, slips, slip, row_of, column_of, l_start, l_row, u_start, u_column, place, target,
-                 nonzero_row, columns, column};
+                 nonzero_row, columns, column, !z_out, between ? capacity : 0};
     block b;
     size_t filled = (size_t)l_start[active] + u_start[active] + active;
     size_t vectors = 7 * (size_t)n + nnz + 2 * filled + nu + 2 * (size_t)nz + ny + nc;
-    size_t own = ((HISTORY + 4) * (size_t)n + 3 * (size_t)nu) * LANES, states = (size_t)LANES * steps * nz;
+    size_t own = ((HISTORY + 4) * (size_t)n + 3 * (size_t)nu) * LANES, path = (size_t)steps * nz;
     lane *memory = aligned_alloc(sizeof(lane), sizeof(lane) * vectors);
-    double *rows = malloc(sizeof(double) * (own + states + 1)), *y[LANES];
+    double *rows = malloc(sizeof(double) * (own + (z_out ? 0 : LANES * path) + 1)), *y[LANES];
     if (!memory || !rows) { free(memory); free(rows); return -1; }
     memset(memory, 0, sizeof(lane) * vectors);
     memset(&b, 0, sizeof(b));
@@ -549,13 +586,14 @@ int march_batch(int n, int active, int nu, int nz, int ny, int nc, int nnz, cons
             design *t = b.lanes + l;
             put((lane *)b.c, l, c + (size_t)i * nc, nc);
             put(b.z, l, z_end + (size_t)i * nz, nz);
-            t->steps = i == first + l && !failed[i] ? steps : 0;
+            t->steps = i == first + l && !failed[i] ? steps_of[i] : 0;
             t->step = 0;
             any |= t->steps;
             t->s = s + (size_t)i * steps;
             t->u = u + (size_t)i * steps * nu;
             t->x_out = x_out + (size_t)i * steps * n;
-            t->z_out = rows + own + (size_t)l * steps * nz;
+            t->z_out = z_out ? z_out + i * path : rows + own + l * path;
+            if (between) t->between = between + (size_t)i * capacity * (2 + nu + n + nz);
             y[l] = y_out + (size_t)i * steps * columns;
             begin(&p, t, known, s_known + (size_t)i * known, x_known + (size_t)i * known * n, u_start_point + (size_t)i * nu);
         }
@@ -566,6 +604,8 @@ int march_batch(int n, int active, int nu, int nz, int ny, int nc, int nnz, cons
             if (!t->steps) continue;
             failed[first + l] = t->failed;
             get(z_end + (size_t)(first + l) * nz, b.z, l, nz);
+            if (own_counts) memcpy(own_counts + 4 * (first + l), t->counts, sizeof(t->counts));
+            if (passed) passed[first + l] = t->passed;
         }
         write_outputs(&b, steps, y);
     }

@@ -1,4 +1,4 @@
-"""Compiled marches of designs side by side: batch.c with a topology's C for lanes, or with its programs."""
+"""Compiled marches side by side: batch.c with a topology's C for lanes, or with its programs."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ import numpy as np
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.c_source import Dialect, c_sources
+from doe_kc.solver.compiled import SUBSTEPS
 from doe_kc.solver.elimination import EliminationOrder
+from doe_kc.solver.equilibria import Substeps, substeps
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
 from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions, kernel_programs
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
@@ -37,7 +39,7 @@ NO_CONSTANTS = "#define NO_CONSTANTS\n"
 _INT, _DOUBLE, _ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 _BATCH_ARGUMENTS = (
     *(_INT,) * 7, *(_ADDRESS,) * 2, _DOUBLE, _DOUBLE, *(_INT,) * 5, *(_ADDRESS,) * 10,
-    _INT, _ADDRESS, _INT, _ADDRESS, _INT, *(_ADDRESS,) * 4, _INT, *(_ADDRESS,) * 6,
+    _INT, _ADDRESS, _INT, _ADDRESS, _INT, *(_ADDRESS,) * 4, _INT, *(_ADDRESS,) * 9, _INT, *(_ADDRESS,) * 2,
 )  # fmt: skip
 """Of `march_batch` in batch.c, in its order."""
 
@@ -59,6 +61,7 @@ class BatchProblem:
     """Equilibria that are asked for of d designs: at path coordinates s (d, n) under controls u (d, n, nu).
 
     c: (d, nc) constants. columns: of the outputs that are asked for. failed: (d,) designs to leave out.
+    steps: (d,) of the n that each design has, None for all. path: whether `BatchMarch.path` is asked for.
     """
 
     c: FloatArray
@@ -68,6 +71,18 @@ class BatchProblem:
     columns: np.ndarray
     failed: np.ndarray
     settings: NewtonSettings
+    steps: np.ndarray | None = None
+    path: bool = False
+
+
+@dataclass(frozen=True)
+class BatchPath:
+    """z: (d, n, nz) friction states after each step; counts: (d, 4) as in `equilibria.March`; between: of each
+    design, of an axle with friction."""
+
+    z: FloatArray
+    counts: np.ndarray
+    between: tuple[Substeps, ...] | None
 
 
 @dataclass(frozen=True)
@@ -75,7 +90,7 @@ class BatchMarch:
     """x: (d, n, nx); y: (d, n, outputs asked for); z: (d, nz) after the last step.
 
     failed: (d,) whether a design has no such march; its rows hold nothing. counts: calls of residual,
-    Jacobian, solution and outputs, each for all lanes.
+    Jacobian, solution and outputs, each for all lanes. path: None unless asked for.
     """
 
     x: FloatArray
@@ -83,6 +98,7 @@ class BatchMarch:
     z: FloatArray
     failed: np.ndarray
     counts: np.ndarray
+    path: BatchPath | None = None
 
 
 class BatchMarcher(Protocol):
@@ -128,11 +144,13 @@ class AdaptiveBatch:
     """
 
     def __init__(self, topology: Topology, instructions: InstructionSet) -> None:
-        self._instructions = instructions
+        self.topology, self._instructions = topology, instructions
         programs = kernel_programs(topology)
         self._library = _program_library(instructions)
         self._programs = ProgramSet([programs[name] for name in MARCHED], instructions.lanes)
         self._constants = ProgramFunction(programs["constants"])
+        self.jacobian = ProgramFunction(programs["jacobian"])
+        """(nnz,) of (x, c, u, z), of one design."""
         self._lengths = np.array([programs["residual"].length, programs["jacobian"].length])
         self._on_demand = LibraryOnDemand(
             topology,
@@ -168,15 +186,34 @@ def _march_by(
     function: Callable[..., int], kernel: Kernel, order: EliminationOrder, problem: BatchProblem
 ) -> BatchMarch:
     """function: `march_batch` of batch.c."""
+    capacity = SUBSTEPS * problem.s.shape[1] if problem.path and kernel.nz else 0
+    march, passed = _march_with(function, kernel, order, problem, capacity)
+    if problem.path and passed.max() > capacity:
+        march, _ = _march_with(function, kernel, order, problem, int(passed.max()))
+    return march
+
+
+def _march_with(
+    function: Callable[..., int],
+    kernel: Kernel,
+    order: EliminationOrder,
+    problem: BatchProblem,
+    capacity: int,
+) -> tuple[BatchMarch, np.ndarray]:
+    """The march, with `capacity` of each design's substeps, and how many each had, (d,)."""
     start, settings = problem.start, problem.settings
     (d, n), (nx, nu, nz) = problem.s.shape, (kernel.nx, kernel.nu, kernel.nz)
     column = np.ascontiguousarray(problem.columns, dtype=np.int32)
     x, y, z = np.zeros((d, n, nx)), np.zeros((d, n, len(column))), np.array(start.z, order="C")
     verdict, counts = problem.failed.astype(np.int32), np.zeros(4, dtype=np.int64)
+    steps = np.full(d, n, dtype=np.int32) if problem.steps is None else problem.steps.astype(np.int32)
     given = (problem.c, start.s, start.x, start.u, problem.s, problem.u)
     numbers = [np.ascontiguousarray(a, dtype=float) for a in given]
     c_in, s_known, x_known, u_start, s_in, u_in = (a.ctypes.data for a in numbers)
     rows, _, _, tail, scale, slips = kernel.addresses
+    own, passed = np.zeros((d, 4), dtype=np.int64), np.zeros(d, dtype=np.int32)
+    states = np.zeros((d, n, nz)) if problem.path else None
+    between = np.empty((d, capacity, 2 + nu + nx + nz))
     code = function(
         *(nx, len(order.row_of), nu, nz, kernel.ny, numbers[0].shape[1], len(kernel.rows), tail, scale),
         *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
@@ -184,11 +221,17 @@ def _march_by(
         *(array.ctypes.data for array in order.arrays),
         *(rows, len(column), column.ctypes.data),
         *(d, c_in, start.s.shape[1], s_known, x_known, u_start, z.ctypes.data),
-        *(n, s_in, u_in, x.ctypes.data, y.ctypes.data, verdict.ctypes.data, counts.ctypes.data),
+        *(n, steps.ctypes.data, s_in, u_in, x.ctypes.data, y.ctypes.data),
+        *(verdict.ctypes.data, counts.ctypes.data, None if states is None else states.ctypes.data),
+        *(own.ctypes.data, capacity, between.ctypes.data, passed.ctypes.data),
     )
     if code:
         raise MemoryError("the solver could not allocate its working memory")
-    return BatchMarch(x, y, z, verdict > 0, counts)
+    path = None
+    if states is not None:
+        kept = tuple(substeps(kernel, row[:k]) for row, k in zip(between, passed, strict=True))
+        path = BatchPath(states, own, kept if nz else None)
+    return BatchMarch(x, y, z, verdict > 0, counts, path), passed
 
 
 def _dialect(instructions: InstructionSet) -> Dialect:

@@ -18,7 +18,7 @@ from doe_kc.curves import RESPONSE_UNITS, SIDES
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import Datum, LoadCase
 from doe_kc.solver.batch_library import BatchMarch, BatchMarcher, BatchProblem, BatchStart
-from doe_kc.solver.builder import LOAD_CASE
+from doe_kc.solver.builder import HOLD_WHEEL, LOAD_CASE
 from doe_kc.solver.compiled import adaptive_kernel
 from doe_kc.solver.elimination import EliminationOrder, elimination_order
 from doe_kc.solver.kernel import kernel, kernel_programs
@@ -30,7 +30,6 @@ from doe_kc.solver.suite import SEEDS, branch_inputs, ordered_cases
 
 RESPONSE_COLUMNS = tuple(f"{response}@{side}" for response in RESPONSE_UNITS for side in SIDES)
 """Outputs that curves are made of, in the order of the columns of every y here."""
-HOLD_WHEEL = "hold_wheel_centre"
 
 
 @dataclass(frozen=True)

@@ -25,6 +25,8 @@ LENGTH_SCALE = 1e-3
 """mm of constraint violation that weigh as much as 1 N: 1000 N/mm."""
 LOAD_CASE = "load_case"
 """Control that is 1 in a load case and 0 at rest, where friction has no force and no memory."""
+HOLD_WHEEL = "hold_wheel_centre"
+"""Control that is 1 where the travel of the wheel centres is prescribed, whatever the pads must do."""
 
 
 @dataclass(frozen=True)

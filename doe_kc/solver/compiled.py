@@ -34,7 +34,7 @@ SUBSTEPS = 4
 INT, DOUBLE, ADDRESS = ctypes.c_int, ctypes.c_double, ctypes.c_void_p
 MARCH_ARGUMENTS = (
     *(INT,) * 6, *(ADDRESS,) * 6, DOUBLE, DOUBLE, *(INT,) * 5, ADDRESS,
-    INT, *(ADDRESS,) * 4, INT, *(ADDRESS,) * 9, INT, ADDRESS, ADDRESS,
+    INT, *(ADDRESS,) * 4, INT, *(ADDRESS,) * 7, INT, ADDRESS, ADDRESS,
 )  # fmt: skip
 """Of `march` in driver.c, in its order."""
 
@@ -114,34 +114,32 @@ def _march_with(
     """The path, with `capacity` of its substeps, and how many there were."""
     start, settings, n = problem.start, problem.settings, len(problem.s)
     length = 2 + kernel.nu + kernel.nz + kernel.nx
-    (x, z, y, level, end), out = _zeros((n, kernel.nx), (n, kernel.nz), (n, kernel.ny), (n,), (length,))
-    rows, whole = np.zeros((capacity, length)), np.zeros(n + 1, dtype=np.int32)
+    (x, z, y, end), out = _zeros((n, kernel.nx), (n, kernel.nz), (n, kernel.ny), (length,))
+    rows, passed = np.zeros((capacity, length)), np.zeros(1, dtype=np.int32)
     counts = np.zeros(4, dtype=np.int64)
     known, (s_known, x_known, u_start, z_start, s_in, u_in, c_in) = _joined(
         start.s, start.x, start.u, start.z, problem.s, problem.u, problem.c
     )
     rows_in, cols_in, order, tail, scale, slips = kernel.addresses
-    iterations_out = whole.ctypes.data
     code = function(
         *(kernel.nx, problem.active, kernel.nu, kernel.nz, kernel.ny, len(kernel.rows)),
         *(rows_in, cols_in, order, tail, scale, c_in),
         *(settings.tol, settings.refresh, settings.max_iterations, settings.max_halvings),
         *(start.guess, kernel.coordinates, len(kernel.slips), slips),
         *(len(start.s), s_known, x_known, u_start, z_start, n, s_in, u_in),
-        *(*out[:3], iterations_out, *out[3:], counts.ctypes.data),
-        *(capacity, rows.ctypes.data, iterations_out + n * whole.itemsize),
+        *(*out, counts.ctypes.data, capacity, rows.ctypes.data, passed.ctypes.data),
     )
     del known  # not before the library has read it
-    iterations, passed = whole[:n], int(whole[n])
     if code < 0:
         raise MemoryError("the solver could not allocate its working memory")
-    between = substeps(kernel, rows[:passed]) if passed else None
+    count = int(passed[0])
+    between = substeps(kernel, rows[:count]) if count else None
     if not code:
-        return March(x, z, y, iterations, level, None, counts, None, between), passed
+        return March(x, z, y, None, counts, between), count
     (s_end, snap), rest = end[:2], end[2:]
     u_end, z_end, x_end = np.split(rest, [kernel.nu, kernel.nu + kernel.nz])
     halt = Halt(float(s_end), x_end, u_end, z_end, float(snap))
-    return March(x, z, y, iterations, level, code - 1, counts, halt, between), passed
+    return March(x, z, y, code - 1, counts, between, halt), count
 
 
 def _zeros(*shapes: tuple[int, ...]) -> tuple[list[FloatArray], list[int]]:

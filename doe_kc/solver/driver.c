@@ -146,14 +146,14 @@ static int stalled(const problem *p, double now, double next) {
     return next > 0.5 * now && now <= STALL_LEVEL && largest <= STALL_STEP;
 }
 
-/* 0 = converged; x holds the result, p->r its residual, *level its norm. */
-static int newton(problem *p, double *x, const double *u, const double *z, int *iterations, double *level) {
+/* 0 = converged; x holds the result, p->r its residual. */
+static int newton(problem *p, double *x, const double *u, const double *z) {
     int n = p->n, m = p->active, fresh = 0, halvings;
     double now, next, damp, best;
     evaluate(p, x, u, z, p->r);
     now = best = norm(p, p->r);
-    for (*iterations = 0; *iterations < p->max_iterations; (*iterations)++) {
-        if (now <= p->tol) { *level = now; return 0; }
+    for (int iterations = 0; iterations < p->max_iterations; iterations++) {
+        if (now <= p->tol) return 0;
         if (!isfinite(now) || now > 1e6 * best + 1e9) break;
         if (!p->have_lu) {
             if (factor(p, x, u, z)) break;
@@ -168,7 +168,7 @@ static int newton(problem *p, double *x, const double *u, const double *z, int *
             next = norm(p, p->trial_r);
             if (next <= 10.0 * now || halvings == 6 || (!fresh && p->have_lu)) break;
         }
-        if (fresh && stalled(p, now, next)) { *level = now; return 0; }
+        if (fresh && stalled(p, now, next)) return 0;
         if (next > p->refresh * now) {
             p->have_lu = 0;
             if (!fresh && !(next <= 0.5 * now)) continue;   /* a stale factorization misled: try a new one */
@@ -179,7 +179,6 @@ static int newton(problem *p, double *x, const double *u, const double *z, int *
         now = next;
         if (now < best) best = now;
     }
-    *level = now;
     return !(now <= p->tol);
 }
 
@@ -220,11 +219,10 @@ static void step_from(problem *p, double *x, const double *u, const double *z) {
 /* Whether the way back from x ends where the step began: it does not from beyond a fold. */
 static int returns(problem *p, const double *x, double far, const double *last, const double *u,
                    const double *z, double *back, int coordinates) {
-    int used, bad;
-    double level;
+    int bad;
     memcpy(back, x, sizeof(double) * p->n);
     with_tail(p, back, u);
-    bad = newton(p, back, u, z, &used, &level);
+    bad = newton(p, back, u, z);
     return !bad && distance(back, last, p->scale, coordinates) <= RETURN * far;
 }
 
@@ -263,8 +261,8 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
           const int *order, const int *tail_control, const double *scale, const double *c, double tol, double refresh,
           int max_iterations, int max_halvings, int guess, int coordinates, int slips, const int *slip,
           int known, const double *s_known, const double *x_known, const double *u_start, const double *z_start,
-          int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out,
-          int *iterations_out, double *level_out, double *end, long long *counts,
+          int steps, const double *s, const double *u, double *x_out, double *z_out, double *y_out, double *end,
+          long long *counts,
           int capacity, double *between, int *passed) {
     problem p = {n, active, nu, nz, ny, row, col, nnz, order, tail_control, scale, c, tol, refresh,
                  max_iterations, max_halvings};
@@ -305,12 +303,11 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
     memcpy(z, z_start, sizeof(double) * nz);
     for (int step = 0; step < steps && !failed; step++) {
         const double *target = u + (size_t)step * nu;
-        double s_from = hs[points - 1], done = 0.0, level = 0.0;
-        int total = 0;
+        double s_from = hs[points - 1], done = 0.0;
         while (done < 1.0) {
             double part = wish < 1.0 - done ? wish : 1.0 - done;
             double to = done + part >= 1.0 - 1e-12 ? 1.0 : done + part, at = s_from + to * (s[step] - s_from);
-            int used, smooth = 1;
+            int smooth = 1;
             for (int i = 0; i < nu; i++)
                 u_next[i] = to == 1.0 ? target[i] : u_now[i] + (to - done) / (1.0 - done) * (target[i] - u_now[i]);
             const double *last = hx + (points - 1) * n;
@@ -323,16 +320,14 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
                 step_from(&p, x, u_next, z);
             }
             memcpy(guessed, x, sizeof(double) * n);
-            int bad = newton(&p, x, u_next, z, &used, &level);
+            int bad = newton(&p, x, u_next, z);
             snap = 0.0;
             if (bad) {      /* the predictor may be at fault: start from the last equilibrium */
                 memcpy(x, last, sizeof(double) * n);
                 with_tail(&p, x, u_next);
                 p.have_lu = 0;
-                total += used;
-                bad = newton(&p, x, u_next, z, &used, &level);
+                bad = newton(&p, x, u_next, z);
             }
-            total += used;
             if (!bad && !guess) {
                 double gap = distance(x, guessed, scale, coordinates), moved = distance(x, last, scale, coordinates);
                 int near = gap <= NEGLIGIBLE_DISTANCE;
@@ -387,8 +382,6 @@ int march(int n, int active, int nu, int nz, int ny, int nnz, const int *row, co
             done = to;
             if (smooth && wish < 1.0) wish = 2.0 * wish < 1.0 ? 2.0 * wish : 1.0;
         }
-        iterations_out[step] = total;
-        level_out[step] = level;
         if (!failed) {
             memcpy(x_out + (size_t)step * n, x, sizeof(double) * n);
             const double *arg[4] = {x, c, u_next, z};

@@ -8,11 +8,13 @@ Reference: I. S. Duff, A. M. Erisman, J. K. Reid, Direct Methods for Sparse Matr
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.kernel import Kernel
+from doe_kc.solver.kernel import Kernel, kernel
 
 PIVOT_THRESHOLD = 0.1
 """Least pivot over the largest entry of its column: other designs may differ by as much without harm."""
@@ -57,6 +59,53 @@ def elimination_order(kernel: Kernel, nonzeros: FloatArray, active: int) -> Elim
     pattern = np.zeros((active, active), dtype=bool)
     pattern[rows, columns] = True
     row_of, column_of = _pivots(matrix, pattern)
+    return _of_pivots(kernel, keep, pattern, row_of, column_of)
+
+
+def paired_order(kernel: Kernel, nonzeros: FloatArray, active: int) -> EliminationOrder:
+    """The same in a tenth of the time: pairs by `minimum_degree_order`, each put off until its pivot is not
+    small. LinAlgError as `elimination_order`, which takes over where pairs lead to no end."""
+    keep = (kernel.rows < active) & (kernel.cols < active)
+    rows, columns = kernel.rows[keep], kernel.cols[keep]
+    place = np.argsort(kernel.layout.order[:active])
+    matrix = np.zeros((active, active))
+    matrix[place[rows], place[columns]] = nonzeros[keep] / kernel.scale[rows]
+    left = list(range(active))
+    for k in range(active):
+        for i in range(k, active):
+            pair = left[i]
+            pivot, column = matrix[pair, pair], matrix[left[k:], pair]
+            if abs(pivot) > PIVOT_THRESHOLD * np.abs(column).max():
+                break
+        else:
+            return elimination_order(kernel, nonzeros, active)
+        left.insert(k, left.pop(i))
+        below = left[k + 1 :]
+        matrix[below] -= np.outer(matrix[below, pair] / pivot, matrix[pair])
+    pairs = kernel.layout.order[left]
+    return _of_pairs(kernel.topology, active, pairs.tobytes())
+
+
+@lru_cache(maxsize=2 * TOPOLOGY_CACHE)
+def _of_pairs(topology: Topology, active: int, pairs: bytes) -> EliminationOrder:
+    """pairs: (active,) equations and unknowns of the same number."""
+    k, order = kernel(topology), np.frombuffer(pairs, dtype=np.int32)
+    keep = (k.rows < active) & (k.cols < active)
+    pattern = np.zeros((active, active), dtype=bool)
+    pattern[k.rows[keep], k.cols[keep]] = True
+    for place, pair in enumerate(order):
+        pattern[pair, pair] = True
+        left = order[place + 1 :]
+        pattern[np.ix_(left, left)] |= np.outer(pattern[left, pair], pattern[pair, left])
+    return _of_pivots(k, keep, pattern, order, order)
+
+
+def _of_pivots(
+    kernel: Kernel, keep: np.ndarray, pattern: np.ndarray, row_of: np.ndarray, column_of: np.ndarray
+) -> EliminationOrder:
+    """keep: (nnz,) the Jacobian's numbers that are eliminated; pattern: (m, m) filled by the elimination."""
+    rows, columns = kernel.rows[keep], kernel.cols[keep]
+    active = len(pattern)
     filled = pattern[np.ix_(row_of, column_of)]
     l_start, l_row = _starts(np.tril(filled, -1).T)
     u_start, u_column = _starts(np.triu(filled, 1))

@@ -52,19 +52,17 @@ class March:
     """Equilibria along a branch. x: (n, nx); z: (n, nz) states after each step; y: (n, ny) outputs.
 
     failed: index of the step that did not converge, or None; rows after it are not filled.
-    counts: residuals, Jacobians, factorizations, Newton steps. halt: of a march that failed.
-    between: of an axle with friction.
+    counts: (4,) residuals, Jacobians, factorizations, Newton steps. between: of an axle with friction. halt: of
+    a march that failed.
     """
 
     x: FloatArray
     z: FloatArray
     y: FloatArray
-    iterations: np.ndarray
-    level: FloatArray
     failed: int | None
     counts: np.ndarray
-    halt: Halt | None = None
     between: Substeps | None = None
+    halt: Halt | None = None
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -23,6 +23,10 @@ class InstructionSet:
     lanes: int
     flags: tuple[str, ...]
     library: bool
+
+    def of_lanes(self, count: int) -> InstructionSet:
+        """The same for as many lanes, 4 or 8; those of the instruction set are the most."""
+        return replace(self, lanes=min(count, self.lanes))
 
     @property
     def name(self) -> str:

@@ -54,10 +54,14 @@ def march(
     """
     chosen = settings or NewtonSettings()
     active = kernel.nx if full else kernel.nx - kernel.layout.tail
-    problem = MarchProblem(c, start, s, u, active, chosen)
+    return march_of(kernel, compiled, MarchProblem(c, start, s, u, active, chosen))
+
+
+def march_of(kernel: Kernel, compiled: MarchLibrary | None, problem: MarchProblem) -> March:
+    """Of a problem: in Python where `compiled` is None."""
     if compiled is not None:
         return compiled.march(kernel, problem)
-    return _Marcher(kernel, problem).run(s, u)
+    return _Marcher(kernel, problem).run(problem.s, problem.u)
 
 
 class _Marcher:
@@ -78,22 +82,20 @@ class _Marcher:
     def run(self, s: FloatArray, u: FloatArray) -> March:
         k, n = self._kernel, len(s)
         x, z, y = np.zeros((n, k.nx)), np.zeros((n, k.nz)), np.zeros((n, k.ny))
-        iterations, level = np.zeros(n, dtype=np.int32), np.zeros(n)
         failed = halt = None
         for step in range(n):
-            reached, iterations[step], level[step] = self._one_step(step, s[step], u[step])
-            if not reached:
+            if not self._one_step(step, s[step], u[step]):
                 failed = step
                 halt = Halt(self._hs[-1], self._hx[-1].copy(), self._u, self._z, self._snap)
                 break
             x[step], z[step] = self._hx[-1], self._z
             y[step] = self._out(x[step], self._c, u[step], self._z)
         between = substeps(k, np.array(self._rows)) if self._rows else None
-        return March(x, z, y, iterations, level, failed, self._newton.counts, halt, between)
+        return March(x, z, y, failed, self._newton.counts, between, halt)
 
-    def _one_step(self, step: int, s_to: float, u_to: FloatArray) -> tuple[bool, int, float]:
-        """(reached, Newton iterations, norm of the residual) of the step to s_to."""
-        s_from, done, total, level = self._hs[-1], 0.0, 0, 0.0
+    def _one_step(self, step: int, s_to: float, u_to: FloatArray) -> bool:
+        """Whether the step to s_to has been reached."""
+        s_from, done = self._hs[-1], 0.0
         while done < 1.0:
             part = min(self._part, 1.0 - done)
             to = 1.0 if done + part >= 1.0 - 1e-12 else done + part
@@ -102,20 +104,17 @@ class _Marcher:
             predicted = self._predicted(at, u)
             self._snap, self._smooth = 0.0, True
             reached = self._newton.equilibrium(predicted, u, self._z)
-            total += reached.iterations
             if not reached.converged:  # the predictor may be at fault: start from the last equilibrium
                 self._newton.forget()
                 last = self._newton.with_tail(self._hx[-1].copy(), u)
                 reached = self._newton.equilibrium(last, u, self._z)
-                total += reached.iterations
-            level = reached.level
             sound = reached.converged and self._continues(predicted, reached, at)
             if sound and len(self._slips) and part > self._finest:
                 sound = not self._slips_back(predicted, reached.x, at, u)
             if not sound:
                 self._newton.forget()
                 if part <= self._finest:
-                    return False, total, level
+                    return False
                 self._part = 0.5 * part
                 continue
             if self._kernel.nz:
@@ -124,7 +123,7 @@ class _Marcher:
             done = to
             if self._smooth and self._part < 1.0:
                 self._part = min(2.0 * self._part, 1.0)
-        return True, total, level
+        return True
 
     def _predicted(self, at: float, u: FloatArray) -> FloatArray:
         if len(self._hs) > 1 or self._guess:

@@ -33,13 +33,10 @@ RIGID_SETTINGS = NewtonSettings(tol=1e-3)
 
 @dataclass(frozen=True)
 class Iterate:
-    """Where Newton's method ended: x (nx,), residual (nx,), its norm `level` in N, iterations used."""
+    """Where Newton's method ended. x: (nx,)."""
 
     converged: bool
     x: FloatArray
-    residual: FloatArray
-    level: float
-    iterations: int
 
 
 @dataclass
@@ -102,7 +99,7 @@ class Newton:
             iterations += 1
             step, trial, trial_r, following = self._trial(x, r, now, u, z, fresh=fresh)
             if fresh and self._stalled(step, now, following):
-                return Iterate(True, x, r, now, iterations)
+                return Iterate(True, x)
             if following > self.settings.refresh * now:
                 self._lu = None
                 if not fresh and not following <= 0.5 * now:
@@ -110,7 +107,7 @@ class Newton:
             fresh = False
             x, r, now = trial, trial_r, following
             best = min(best, now)
-        return Iterate(now <= tol, x, r, now, iterations)
+        return Iterate(now <= tol, x)
 
     def _residual(self, x: FloatArray, u: FloatArray, z: FloatArray) -> FloatArray:
         self.counts[0] += 1

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -16,13 +17,14 @@ from doe_kc.axle.topology import Topology
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.typing import FloatArray
 from doe_kc.load_cases import CASE_ORDER, LoadCase
-from doe_kc.solver.builder import LOAD_CASE
+from doe_kc.solver.builder import HOLD_WHEEL, LOAD_CASE
 from doe_kc.solver.compiled import MarchLibrary, adaptive_kernel, compiled_kernel
 from doe_kc.solver.diagnosis import sweep_failure
-from doe_kc.solver.equilibria import March, Start
+from doe_kc.solver.equilibria import March, MarchProblem, Start
 from doe_kc.solver.kernel import Kernel, kernel
+from doe_kc.solver.lane_march import LaneMarch, lane_march
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError
-from doe_kc.solver.march import march
+from doe_kc.solver.march import march_of
 from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import (
     BranchSolution,
@@ -46,13 +48,14 @@ def solve(
     compiled: bool | None = None,
     settings: NewtonSettings | None = None,
     throw: bool = True,
+    lanes: bool = False,
     pool: Executor | None = None,
 ) -> Solution:
     """All equilibria of the axle's load cases (all, or those named in `cases`).
 
     compiled: None takes compiled code when a C compiler is there, False Python. throw=False returns a failure
-    as `Solution.failure`; throw=True raises NotConverged. pool: threads in which compiled code solves load
-    cases side by side, to the same digits; default one after the other.
+    as `Solution.failure`; throw=True raises NotConverged. lanes: whether compiled code solves load cases side
+    by side, the same to rounding; default one after the other. pool: threads for those lanes.
     """
     chosen = _chosen(axle, cases)
     k = kernel(axle.topology)
@@ -62,17 +65,32 @@ def solve(
     static = static_state(k, library, c, axle, options)
     if isinstance(static, Failure):
         return _ended(axle, k, None, {}, static, throw)
-
-    def solve_case(case: LoadCase) -> CaseSolution | _UnfinishedBranch:
-        return _solve_case(k, library, c, static, case, options)
-
-    side_by_side = map if pool is None or library is None else pool.map
+    procedures = {i: _branch_by_branch(k, c, static, case, options) for i, case in chosen.items()}
+    ends = _side_by_side(procedures, _marches(k, library, static, lanes=lanes, pool=pool))
     solved: dict[str, CaseSolution] = {}
-    for ident, result in zip(chosen, side_by_side(solve_case, chosen.values()), strict=True):
-        if isinstance(result, _UnfinishedBranch):
-            return _ended(axle, k, static, solved, result.failure(k, c), throw)
-        solved[ident] = result
+    for ident in chosen:
+        end = ends[ident]
+        if isinstance(end, _UnfinishedBranch):
+            return _ended(axle, k, static, solved, end.failure(k), throw)
+        solved[ident] = end
     return _ended(axle, k, static, solved, None, throw)
+
+
+def _marches(
+    k: Kernel, library: MarchLibrary | None, static: StaticState, *, lanes: bool, pool: Executor | None
+) -> _Marches:
+    """lanes: side by side where that can be done, what has no march that way alone."""
+    beside: LaneMarch | None = None
+    if lanes and library is not None:
+        with suppress(CompileError):
+            beside = lane_march(k.topology, static, pool)
+
+    def marches(problems: Sequence[MarchProblem]) -> Iterator[March]:
+        found = beside.marches(problems) if beside is not None else [None] * len(problems)
+        for problem, path in zip(problems, found, strict=True):
+            yield path or march_of(k, library, problem)
+
+    return marches
 
 
 def _chosen(axle: Axle, cases: Sequence[str] | None) -> dict[str, LoadCase]:
@@ -146,42 +164,40 @@ def branch_inputs(case: LoadCase, *, loop: bool) -> dict[str, FloatArray]:
 
 @dataclass(frozen=True)
 class _UnfinishedBranch:
-    """A march that ended before its end; its failure is looked for in one thread."""
+    """A march that ended before its end; its failure is looked for when it is asked for."""
 
     case: LoadCase
-    branch: str
-    start: Start
+    name: str
+    problem: MarchProblem
     path: March
-    input: FloatArray
-    u: FloatArray
-    full: bool
 
-    def failure(self, k: Kernel, c: FloatArray) -> Failure:
+    def failure(self, k: Kernel) -> Failure:
         """See `sweep_failure`."""
-        names = (self.case.id, self.branch, self.case.unit)
-        return sweep_failure(k, c, self.start, self.path, self.input, self.u, names, full=self.full)
+        names, own = (self.case.id, self.name, self.case.unit), self.problem
+        full = own.active == k.nx
+        return sweep_failure(k, own.c, own.start, self.path, own.s, own.u, names, full=full)
 
 
-def _solve_case(
-    k: Kernel,
-    library: MarchLibrary | None,
-    c: FloatArray,
-    static: StaticState,
-    case: LoadCase,
-    settings: NewtonSettings,
-) -> CaseSolution | _UnfinishedBranch:
+_End = CaseSolution | _UnfinishedBranch
+_Procedure = Generator[MarchProblem, March, _End]
+_Marches = Callable[[Sequence[MarchProblem]], Iterable[March]]
+
+
+def _branch_by_branch(
+    k: Kernel, c: FloatArray, static: StaticState, case: LoadCase, settings: NewtonSettings
+) -> _Procedure:
+    """Asks for the march of every branch of a load case, one after the other, and is sent each."""
     loop = k.topology.frictional
     done: list[BranchSolution] = []
-    full = False
     for name, inputs in branch_inputs(case, loop=loop).items():
         values = {"preload": static.datum.preload, LOAD_CASE: 1.0, **case.driven(inputs, static.datum)}
-        full = "hold_wheel_centre" in values
         u = control_matrix(k, values, len(inputs))
-        start, origin = _start(static, done, u, inputs, loop=loop)
-        path = march(k, library, c, start, inputs[1:], u[1:], full=full, settings=settings)
+        start, (x0, y0, z0) = _start(static, done, u, inputs, loop=loop)
+        active = k.nx if HOLD_WHEEL in values else k.nx - k.layout.tail
+        problem = MarchProblem(c, start, inputs[1:], u[1:], active, settings)
+        path = yield problem
         if path.failed is not None:
-            return _UnfinishedBranch(case, name, start, path, inputs[1:], u[1:], full)
-        x0, y0, z0 = origin
+            return _UnfinishedBranch(case, name, problem, path)
         done.append(
             BranchSolution(
                 name,
@@ -194,6 +210,24 @@ def _solve_case(
             )
         )
     return CaseSolution(case, tuple(done))
+
+
+def _side_by_side(procedures: Mapping[str, _Procedure], marches: _Marches) -> dict[str, _End]:
+    """How each load case ends, of those up to the first that has no solution: the first branch of all, then
+    the second, and so on."""
+    ends: dict[str, _End] = {}
+    asked = {ident: next(procedure) for ident, procedure in procedures.items()}
+    while asked:
+        following: dict[str, MarchProblem] = {}
+        for ident, path in zip(asked, marches(list(asked.values())), strict=False):
+            try:
+                following[ident] = procedures[ident].send(path)
+            except StopIteration as stop:
+                ends[ident] = stop.value
+                if isinstance(stop.value, _UnfinishedBranch):
+                    break  # those behind it are not asked for
+        asked = following
+    return ends
 
 
 def _start(

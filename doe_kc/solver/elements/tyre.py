@@ -11,7 +11,7 @@ from __future__ import annotations
 import casadi as ca
 
 from doe_kc.curves import SIDES
-from doe_kc.solver.builder import LENGTH_SCALE, Builder
+from doe_kc.solver.builder import HOLD_WHEEL, LENGTH_SCALE, Builder
 from doe_kc.solver.elements._base import mirror
 from doe_kc.solver.elements._cuts import stretch
 
@@ -77,7 +77,7 @@ def _loads(b: Builder, side: str, normal_force: ca.SX) -> None:
 
 def _pad_equation(b: Builder, side: str, pad: ca.SX, static_load: ca.SX, rate: ca.SX) -> ca.SX:
     """Prescribed pad height, or wheel-centre height, or static tyre load, all in mm."""
-    by_centre, by_load = b.control("hold_wheel_centre"), b.control("hold_load")
+    by_centre, by_load = b.control(HOLD_WHEEL), b.control("hold_load")
     return (
         (1 - by_centre - by_load) * (pad - b.control(f"pad_{side}"))
         + by_centre * (b.points[f"wheel centre.{side}"][2] - b.control(f"wc_z_{side}"))
