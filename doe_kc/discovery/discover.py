@@ -52,7 +52,7 @@ def discover(
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
     pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper(search.with_law_discrepancy))
     pending = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if compared else None
-    members = findings(search, compared)
+    members = findings(search, compared, workers)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
     predictions = pending() if pending is not None and relevant else ()
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)

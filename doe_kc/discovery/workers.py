@@ -152,6 +152,15 @@ class DiscoveryWorkers:
             self.watch(what, 1)
         return [out[i] for i in range(len(starts))]
 
+    def residuals(self, points: Sequence[tuple[EffectModel, FloatArray]]) -> list[FloatArray | None]:
+        """(M,) residual of each model at its point, None where it has no equilibrium."""
+        self._begun += len(points)
+        out: list[FloatArray | None] = [None] * len(points)
+        for at, residual in self._run(_residual, points):
+            out[at] = residual
+            self.watch("solving", 1)
+        return out
+
     def held_out(
         self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit
     ) -> Callable[[], tuple[HeldOut, ...]]:
@@ -219,6 +228,13 @@ def _held_out_many(
     tuned: Fit, with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
 ) -> list[HeldOut]:
     return [held_out(tuned, with_effects, with_discrepancy, case) for case in cases]
+
+
+def _residual(model: EffectModel, z: FloatArray) -> FloatArray | None:
+    try:
+        return model.residual(z)
+    except NotConverged:
+        return None
 
 
 def _scan(tuned: Fit, temper: float) -> Scan | None:

@@ -14,12 +14,13 @@ import numpy as np
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.c_source import Dialect, c_sources
+from doe_kc.solver.c_source import c_sources
 from doe_kc.solver.compiled import SUBSTEPS
+from doe_kc.solver.dialect import Dialect
 from doe_kc.solver.elimination import EliminationOrder
 from doe_kc.solver.equilibria import Substeps, substeps
 from doe_kc.solver.instructions import InstructionSet, own_instruction_set
-from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions, kernel_programs
+from doe_kc.solver.kernel import MARCHED, Kernel, interpreted_functions, kernel_operations, kernel_programs
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, library_of
 from doe_kc.solver.library_on_demand import LibraryOnDemand
 from doe_kc.solver.newton import NewtonSettings
@@ -77,8 +78,8 @@ class BatchProblem:
 
 @dataclass(frozen=True)
 class BatchPath:
-    """z: (d, n, nz) friction states after each step; counts: (d, 4) as in `equilibria.March`; between: of each
-    design, of an axle with friction."""
+    """z: (d, n, nz) friction states after each step; counts: (d, 4) as in `equilibria.March`; between: of
+    every design, of an axle with friction."""
 
     z: FloatArray
     counts: np.ndarray
@@ -243,10 +244,11 @@ def _driver(dialect: Dialect) -> str:
 
 
 def _batch_sources(topology: Topology, instructions: InstructionSet) -> dict[str, str]:
-    functions, dialect = interpreted_functions(topology), _dialect(instructions)
+    functions, operations = interpreted_functions(topology), kernel_operations(topology)
+    dialect = _dialect(instructions)
     out = {"batch": _driver(dialect)}
     for name in MARCHED:
-        out |= c_sources(functions[name], dialect)
+        out |= c_sources(functions[name], dialect, operations[name])
     count = functions["constants"].nnz_out(0)
     out |= c_sources(functions["constants"])
     out["constants"] += f"int constants_count(void) {{ return {count}; }}\n"

@@ -15,6 +15,7 @@ from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.kernel import Kernel, evaluator, interpreted_functions, kernel, kernel_programs
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError
+from doe_kc.solver.program import Program, program_of
 from doe_kc.solver.program_library import ProgramFunction, programs_for
 
 Points = Sequence[tuple[FloatArray, ...]]
@@ -32,12 +33,12 @@ def blocks(topology: Topology) -> Mapping[str, ca.Function | ProgramFunction]:
         return interpreted_blocks(topology)
     names = [n for n in block_names(kernel(topology).nz > 0) if n.endswith(("_x", "_u", "_z"))]
 
-    def functions() -> dict[str, ca.Function]:
-        return {name: interpreted_blocks(topology)[name] for name in names if name != "R_x"}
+    def make() -> dict[str, Program]:
+        return {name: program_of(interpreted_blocks(topology)[name]) for name in names if name != "R_x"}
 
     try:
-        programs = programs_for(topology, "blocks", functions)
-        programs["R_x"] = kernel_programs(topology)["jacobian"]
+        jacobian = kernel_programs(topology)["jacobian"]
+        programs = {**programs_for(topology, "blocks", make), "R_x": jacobian}
         return {name: ProgramFunction(programs[name]) for name in names}
     except CompileError:
         return interpreted_blocks(topology)

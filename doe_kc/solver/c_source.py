@@ -6,96 +6,19 @@ times as long at -O1 as for the same statements in pieces of 300; at -O0 they ru
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
 
-from doe_kc.solver.library import CompileError
+from doe_kc.solver.dialect import SCALAR, Dialect
+from doe_kc.solver.operations import Operations, operations_of
 
 PIECE = 300
 """Statements a piece: from 200 to 500 neither compiling nor running changes by more than a tenth."""
 PIECES_A_FILE = 40
 """Files are compiled side by side."""
 PIECE_ATTRIBUTES = '__attribute__((noinline, visibility("hidden")))'
-EXPRESSIONS = {
-    ca.OP_ASSIGN: "{0}",
-    ca.OP_ADD: "{0} + {1}",
-    ca.OP_SUB: "{0} - {1}",
-    ca.OP_MUL: "{0} * {1}",
-    ca.OP_DIV: "{0} / {1}",
-    ca.OP_NEG: "-{0}",
-    ca.OP_SQ: "{0} * {0}",
-    ca.OP_TWICE: "{0} + {0}",
-    ca.OP_INV: "1.0 / {0}",
-    ca.OP_LT: "{0} < {1}",
-    ca.OP_LE: "{0} <= {1}",
-    ca.OP_EQ: "{0} == {1}",
-    ca.OP_NE: "{0} != {1}",
-    ca.OP_AND: "{0} && {1}",
-    ca.OP_OR: "{0} || {1}",
-    ca.OP_NOT: "!{0}",
-    ca.OP_IF_ELSE_ZERO: "{0} ? {1} : 0.0",
-    ca.OP_SQRT: "sqrt({0})",
-    ca.OP_EXP: "exp({0})",
-    ca.OP_LOG: "log({0})",
-    ca.OP_SIN: "sin({0})",
-    ca.OP_COS: "cos({0})",
-    ca.OP_TAN: "tan({0})",
-    ca.OP_ASIN: "asin({0})",
-    ca.OP_ACOS: "acos({0})",
-    ca.OP_ATAN: "atan({0})",
-    ca.OP_SINH: "sinh({0})",
-    ca.OP_COSH: "cosh({0})",
-    ca.OP_TANH: "tanh({0})",
-    ca.OP_ASINH: "asinh({0})",
-    ca.OP_ACOSH: "acosh({0})",
-    ca.OP_ATANH: "atanh({0})",
-    ca.OP_LOG1P: "log1p({0})",
-    ca.OP_EXPM1: "expm1({0})",
-    ca.OP_HYPOT: "hypot({0}, {1})",
-    ca.OP_REMAINDER: "remainder({0}, {1})",
-    ca.OP_FABS: "fabs({0})",
-    ca.OP_SIGN: "{0} < 0.0 ? -1.0 : {0} > 0.0 ? 1.0 : {0}",
-    ca.OP_FLOOR: "floor({0})",
-    ca.OP_CEIL: "ceil({0})",
-    ca.OP_ERF: "erf({0})",
-    ca.OP_POW: "pow({0}, {1})",
-    ca.OP_CONSTPOW: "pow({0}, {1})",
-    ca.OP_ATAN2: "atan2({0}, {1})",
-    ca.OP_FMIN: "fmin({0}, {1})",
-    ca.OP_FMAX: "fmax({0}, {1})",
-    ca.OP_COPYSIGN: "copysign({0}, {1})",
-    ca.OP_FMOD: "fmod({0}, {1})",
-}
-"""C of each operation of CasADi's, by its operands."""
-CALL = re.compile(r"\b(?=[a-z0-9]+\()")
-LANE_EXPRESSIONS = {
-    **{code: CALL.sub("lane_", text) for code, text in EXPRESSIONS.items()},
-    **{code: f"lane_truth({EXPRESSIONS[code]})" for code in (ca.OP_LT, ca.OP_LE, ca.OP_EQ, ca.OP_NE)},
-    ca.OP_AND: "lane_truth(({0} != 0.0) & ({1} != 0.0))",
-    ca.OP_OR: "lane_truth(({0} != 0.0) | ({1} != 0.0))",
-    ca.OP_NOT: "lane_truth({0} == 0.0)",
-    ca.OP_IF_ELSE_ZERO: "lane_where({0} != 0.0, {1})",
-    ca.OP_SIGN: "lane_sign({0})",
-}
-"""The same for several designs side by side, by the functions of lanes.h."""
-
-
-@dataclass(frozen=True)
-class Dialect:
-    """How values are written. number: their C type; literal: of a constant, from the C of a double;
-    expressions: by operation; before: text at the head of every file."""
-
-    number: str
-    literal: str
-    expressions: Mapping[int, str]
-    before: str
-
-
-SCALAR = Dialect("double", "{0}", EXPRESSIONS, "#include <math.h>")
 
 
 @dataclass(frozen=True)
@@ -107,13 +30,16 @@ class _Statement:
     target: str = ""
 
 
-def c_sources(function: ca.Function, dialect: Dialect = SCALAR) -> dict[str, str]:
+def c_sources(
+    function: ca.Function, dialect: Dialect = SCALAR, operations: Operations | None = None
+) -> dict[str, str]:
     """C sources by file name of a function of dense or sparse arguments, nonzeros column by column.
 
-    Scalar ones are of the interface that `casadi.external` loads. CompileError for an operation that
-    `EXPRESSIONS` lacks.
+    Scalar ones are of the interface that `casadi.external` loads. operations: by which its results are
+    computed, None for its own. CompileError as `operations_of`.
     """
-    texts, room = _piece_texts(_pieces(_statements(function, dialect)), dialect)
+    whole = operations_of(function) if operations is None else operations
+    texts, room = _piece_texts(_pieces(_statements(whole, dialect)), dialect)
     number, name = dialect.number, function.name()
     inputs, outputs = range(function.n_in()), range(function.n_out())
     parameters = [
@@ -141,26 +67,20 @@ def c_sources(function: ca.Function, dialect: Dialect = SCALAR) -> dict[str, str
     return {part: "\n".join(lines) + "\n" for part, lines in files.items()}
 
 
-def _statements(function: ca.Function, dialect: Dialect) -> dict[int, _Statement]:
-    """By number, in order; inputs and constants stand in the operands."""
-    values: dict[int, str | int] = {}  # what CasADi's memory holds at each place
-    out: dict[int, _Statement] = {}
-    for k in range(function.n_instructions()):
-        code = function.instruction_id(k)
-        places = function.instruction_output(k)
-        if code == ca.OP_CONST:
-            values[places[0]] = dialect.literal.format(_literal(function.instruction_constant(k)))
-            continue
-        operands = function.instruction_input(k)
-        if code == ca.OP_INPUT:
-            values[places[0]] = f"x{operands[0]}[{operands[1]}]"
-        elif code == ca.OP_OUTPUT:
-            out[k] = _Statement("{0}", (values[operands[0]],), f"y{places[0]}[{places[1]}]")
-        elif code in dialect.expressions:
-            out[k] = _Statement(dialect.expressions[code], tuple(values[i] for i in operands))
-            values[places[0]] = k
-        else:
-            raise CompileError(f"operation {code} of {function.name()} has no C expression in EXPRESSIONS")
+def _statements(whole: Operations, dialect: Dialect) -> dict[int, _Statement]:
+    """By number, in order, results behind; arguments and constants stand in the operands."""
+    arguments = [f"x{i}[{k}]" for i, size in enumerate(whole.sizes) for k in range(size)]
+    known = arguments + [dialect.literal.format(_literal(value)) for value in whole.constants.tolist()]
+
+    def operand(number: int) -> str | int:
+        return number if number >= 0 else known[-1 - number]
+
+    out = {
+        k: _Statement(dialect.expressions[code], (operand(a), operand(b)))
+        for k, (code, a, b) in enumerate(whole.rows.tolist())
+    }
+    for k, (result, place, value) in enumerate(whole.results.tolist(), start=len(out)):
+        out[k] = _Statement("{0}", (operand(value),), f"y{result}[{place}]")
     return out
 
 

@@ -23,6 +23,7 @@ from doe_kc.solver.kernel import (
     MARCHED,
     Kernel,
     interpreted_functions,
+    kernel_operations,
     kernel_programs,
 )
 from doe_kc.solver.library import handwritten, library_of
@@ -163,10 +164,10 @@ def compiled_kernel(topology: Topology) -> CompiledKernel:
     """Build or load the library of a topology; CompileError when that cannot be done."""
 
     def sources() -> dict[str, str]:
-        functions = interpreted_functions(topology)
+        functions, operations = interpreted_functions(topology), kernel_operations(topology)
         out = {"driver": handwritten(*MARCH_SOURCES)}
         for name in (*MARCHED, "constants"):
-            out |= c_sources(functions[name])
+            out |= c_sources(functions[name], operations=operations[name])
         return out
 
     path = library_of(topology, KERNEL_LIBRARY, sources, COMPILER_FLAGS)

@@ -9,15 +9,19 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Mapping
 from functools import lru_cache
 
 import casadi as ca
 
 from doe_kc.axle.topology import TOPOLOGY_CACHE, Topology
-from doe_kc.solver.blocks import block_names, interpreted_blocks
-from doe_kc.solver.kernel import kernel
+from doe_kc.solver.assembly import assemble
+from doe_kc.solver.blocks import block_names
+from doe_kc.solver.differentiation import derivatives
+from doe_kc.solver.kernel import interpreted_functions
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError
-from doe_kc.solver.program import Program
+from doe_kc.solver.operations import operations_of
+from doe_kc.solver.program import Program, program_from
 from doe_kc.solver.program_library import (
     ProgramFunction,
     ProgramSet,
@@ -51,19 +55,24 @@ class DerivativeLibrary:
         return int(self._library.sensitivity(*arguments))
 
 
-def _derivative_functions(topology: Topology) -> dict[str, ca.Function]:
-    """All blocks of one point with what they have in common, and the derivative of the constants."""
-    blocks = interpreted_blocks(topology)
-    symbols = blocks["R_x"].sx_in()
-    names = [n for n in block_names(kernel(topology).nz > 0) if n != "constants"]
-    joint = ca.Function("derivatives", symbols, [blocks[n](*symbols) for n in names])
-    return {"derivatives": joint, "constants_block": blocks["constants"]}
+def _made(topology: Topology) -> dict[str, Program]:
+    eq = assemble(topology)
+    dense = [ca.densify(part) for part in (eq.residual, eq.outputs, eq.next_state)]
+    whole = operations_of(ca.Function("whole", [eq.x, eq.c, eq.u, eq.z], dense))
+    blocks = [name for name in block_names(int(eq.z.numel()) > 0) if name != "constants"]
+    places = [("RYZ".index(name[0]), "xcuz".index(name[2])) for name in blocks]
+    constants = operations_of(interpreted_functions(topology)["constants"])
+    return {
+        "derivatives": program_from(derivatives(whole, places)),
+        "constants_block": program_from(derivatives(constants, [(0, 0)])),
+    }
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)
-def derivative_programs(topology: Topology) -> dict[str, Program]:
-    """Of `sensitivity`, and of the derivative of the constants."""
-    return programs_for(topology, "derivatives", lambda: _derivative_functions(topology))
+def derivative_programs(topology: Topology) -> Mapping[str, Program]:
+    """Of `sensitivity`, all blocks of one point with what they have in common, and of the derivative of the
+    constants; CompileError as `operations.operations_of`."""
+    return programs_for(topology, "derivatives", lambda: _made(topology))
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)

@@ -52,8 +52,8 @@ class March:
     """Equilibria along a branch. x: (n, nx); z: (n, nz) states after each step; y: (n, ny) outputs.
 
     failed: index of the step that did not converge, or None; rows after it are not filled.
-    counts: (4,) residuals, Jacobians, factorizations, Newton steps. between: of an axle with friction. halt: of
-    a march that failed.
+    counts: (4,) residuals, Jacobians, factorizations, Newton steps. between: of an axle with friction.
+    halt: of a march that failed.
     """
 
     x: FloatArray

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -14,9 +15,11 @@ from doe_kc.axle.topology import EQUATIONS_CACHE, TOPOLOGY_CACHE, Topology
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.assembly import assemble
 from doe_kc.solver.builder import FORCE_SCALE
+from doe_kc.solver.differentiation import derivatives
 from doe_kc.solver.layout import EquationLayout, layout_of, layout_text, read_layout
 from doe_kc.solver.library import COMPILE_VARIABLE, CompileError, store_text, stored_library, stored_text
-from doe_kc.solver.program import Program
+from doe_kc.solver.operations import Operations, operations_of
+from doe_kc.solver.program import Program, program_from
 from doe_kc.solver.program_library import ProgramFunction, programs_for
 
 COMPILER_FLAGS = {"driver": "-O3"}
@@ -141,10 +144,27 @@ def interpreted_functions(topology: Topology) -> dict[str, ca.Function]:
     }
 
 
+def kernel_operations(topology: Topology) -> dict[str, Operations]:
+    """Of the functions of `MARCHED`, and of `constants`; CompileError as `operations.operations_of`.
+
+    The Jacobian as `derivatives` has it, three quarters as long as CasADi's; digits differ by rounding.
+    """
+    functions = interpreted_functions(topology)
+    out = {name: operations_of(f) for name, f in functions.items() if name != "jacobian"}
+    jacobian = derivatives(out["residual"], [(0, 0)])
+    if jacobian.patterns[0] != functions["jacobian"].sparsity_out(0):
+        jacobian = operations_of(functions["jacobian"])
+    return {**out, "jacobian": jacobian}
+
+
 @lru_cache(maxsize=TOPOLOGY_CACHE)
-def kernel_programs(topology: Topology) -> dict[str, Program]:
-    """The same as programs."""
-    return programs_for(topology, KERNEL_LIBRARY, lambda: interpreted_functions(topology))
+def kernel_programs(topology: Topology) -> Mapping[str, Program]:
+    """The same as programs; CompileError as `kernel_operations`."""
+    return programs_for(
+        topology,
+        KERNEL_LIBRARY,
+        lambda: {name: program_from(whole) for name, whole in kernel_operations(topology).items()},
+    )
 
 
 @lru_cache(maxsize=TOPOLOGY_CACHE)

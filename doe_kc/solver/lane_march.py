@@ -77,10 +77,10 @@ class LaneMarch:
         if order is None:
             return [None] * count
         starts, steps = [p.start for p in problems], np.array([len(p.s) for p in problems])
-        start = BatchStart(*(np.array([getattr(s, name) for s in starts]) for name in ("s", "x", "u", "z")))
+        s, x, u, z = (np.array([getattr(at, name) for at in starts]) for name in ("s", "x", "u", "z"))
         problem = BatchProblem(
             np.broadcast_to(first.c, (count, len(first.c))),
-            start,
+            BatchStart(s, x, u, z),
             _in_rows([p.s for p in problems]),
             _in_rows([p.u for p in problems]),
             np.arange(self._kernel.ny),

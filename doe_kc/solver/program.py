@@ -17,11 +17,10 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.ground.typing import FloatArray, IntArray
-from doe_kc.solver.c_source import EXPRESSIONS, SCALAR, Dialect
-from doe_kc.solver.library import CompileError
+from doe_kc.solver.dialect import SCALAR, Dialect
+from doe_kc.solver.operations import Operations, operations_of
 
 INTERPRETER = Path(__file__).with_name("program.c")
-COMMUTATIVE = frozenset({ca.OP_ADD, ca.OP_MUL})
 
 
 @dataclass(frozen=True)
@@ -55,11 +54,16 @@ class Program:
 
 
 def program_of(function: ca.Function) -> Program:
-    """The program of a function; CompileError for an operation that `c_source.EXPRESSIONS` lacks."""
-    sizes = [function.nnz_in(i) for i in range(function.n_in())]
-    operations, constants, results = _operations(function, sizes)
+    """The program of a function; CompileError as `operations_of`."""
+    return program_from(operations_of(function))
+
+
+def program_from(whole: Operations) -> Program:
+    """The program of a list of operations."""
+    operations = np.column_stack([whole.rows, _levels(whole)])
     order, starts = _runs(operations)
-    place, places = _places(operations, results[:, 2], order, starts, sum(sizes) + len(constants))
+    fixed = sum(whole.sizes) + len(whole.constants)
+    place, places = _places(operations, whole.results[:, 2], order, starts, fixed)
 
     def at(values: IntArray) -> IntArray:
         out = -1 - values
@@ -67,53 +71,27 @@ def program_of(function: ca.Function) -> Program:
         out[own] = place[values[own]]
         return out
 
-    patterns = [function.sparsity_out(i).compress() for i in range(function.n_out())]
+    patterns = [pattern.compress() for pattern in whole.patterns]
     in_order = operations[order]
     return Program(
-        sizes=np.array(sizes, dtype=np.int32),
-        constants=np.array(constants, dtype=float),
+        sizes=np.array(whole.sizes, dtype=np.int32),
+        constants=whole.constants,
         runs=np.column_stack([in_order[starts[:-1], 0], np.diff(starts)]).astype(np.int32),
         operands=np.column_stack([place[order], at(in_order[:, 1]), at(in_order[:, 2])]).astype(np.int32),
-        results=np.column_stack([results[:, :2], at(results[:, 2])]).astype(np.int32),
+        results=np.column_stack([whole.results[:, :2], at(whole.results[:, 2])]).astype(np.int32),
         patterns=np.array([number for pattern in patterns for number in pattern], dtype=np.int64),
         pattern_starts=np.cumsum([0, *(len(pattern) for pattern in patterns[:-1])]).astype(np.int32),
         places=np.array([places], dtype=np.int32),
     )
 
 
-def _operations(function: ca.Function, sizes: list[int]) -> tuple[IntArray, list[float], IntArray]:
-    """(n, 4) operations, none of them twice: CasADi's number, two operands, from 0 on that operation's value,
-    below it an argument or constant, and how many operations must come before it, one after the other; then
-    constants, and results (m, 3): result, nonzero, operand."""
-    starts = np.cumsum([0, *sizes]).tolist()
-    held: dict[int, int] = {}  # what CasADi's memory holds at each place
-    number: dict[tuple[int, int, int], int] = {}
-    levels: list[int] = []
-    constants: list[float] = []
-    results: list[tuple[int, int, int]] = []
-    for k in range(function.n_instructions()):
-        code, to = function.instruction_id(k), function.instruction_output(k)
-        if code == ca.OP_CONST:
-            held[to[0]] = -1 - starts[-1] - len(constants)
-            constants.append(function.instruction_constant(k))
-            continue
-        operands = function.instruction_input(k)
-        if code == ca.OP_INPUT:
-            held[to[0]] = -1 - starts[operands[0]] - operands[1]
-        elif code == ca.OP_OUTPUT:
-            results.append((to[0], to[1], held[operands[0]]))
-        elif code in EXPRESSIONS:
-            a, b = held[operands[0]], held[operands[-1]]
-            operation = (code, b, a) if b < a and code in COMMUTATIVE else (code, a, b)
-            at = number.setdefault(operation, len(levels))
-            if at == len(levels):
-                levels.append(1 + max(levels[a] if a >= 0 else -1, levels[b] if b >= 0 else -1))
-            held[to[0]] = at
-        else:
-            raise CompileError(f"operation {code} of {function.name()} has no C expression in EXPRESSIONS")
-    operations = np.array(list(number), dtype=np.int64).reshape(-1, 3)
-    rows = np.array(results, dtype=np.int64).reshape(-1, 3)
-    return np.column_stack([operations, np.array(levels, dtype=np.int64)]), constants, rows
+def _levels(whole: Operations) -> IntArray:
+    """(n,) how many operations must come before each one, one after the other."""
+    count = len(whole.rows)
+    levels = [-1] * (count + sum(whole.sizes) + len(whole.constants))  # arguments and constants from behind
+    for k, (_, a, b) in enumerate(whole.rows.tolist()):
+        levels[k] = 1 + max(levels[a], levels[b])
+    return np.array(levels[:count], dtype=np.int64)
 
 
 def _runs(operations: IntArray) -> tuple[IntArray, IntArray]:

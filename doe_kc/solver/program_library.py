@@ -15,10 +15,10 @@ import numpy as np
 
 from doe_kc.axle.topology import Topology
 from doe_kc.ground.typing import FloatArray
-from doe_kc.solver.c_source import LANE_EXPRESSIONS, Dialect
+from doe_kc.solver.dialect import LANE_EXPRESSIONS, Dialect
 from doe_kc.solver.instructions import own_instruction_set
 from doe_kc.solver.library import build, handwritten, store_bytes, stored_bytes
-from doe_kc.solver.program import Program, interpreter_source, program_of, programs_bytes, read_programs
+from doe_kc.solver.program import Program, interpreter_source, programs_bytes, read_programs
 
 MARCH_SOURCES = (Path(__file__).with_name("march.h"), Path(__file__).with_name("driver.c"))
 """Of the compiled march; the header has the constants of march.py and newton.py."""
@@ -89,17 +89,14 @@ def load_program_library(sources: dict[str, str], flags: Mapping[str, str]) -> c
 
 
 def programs_for(
-    topology: Topology, kind: str, functions: Callable[[], Mapping[str, ca.Function]]
-) -> dict[str, Program]:
-    """Programs of one kind of a topology's functions, from the user's cache or made and kept there.
-
-    CompileError as `program.program_of`.
-    """
+    topology: Topology, kind: str, make: Callable[[], Mapping[str, Program]]
+) -> Mapping[str, Program]:
+    """Programs of one kind of a topology's functions, from the user's cache or made and kept there."""
     content = stored_bytes(topology, kind)
     if content is not None:
         with suppress(ValueError):
             return read_programs(content)
-    programs = {name: program_of(function) for name, function in functions().items()}
+    programs = make()
     store_bytes(topology, kind, programs_bytes(programs))
     return programs
 

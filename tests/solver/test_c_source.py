@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from doe_kc.solver import c_source as module
-from doe_kc.solver.c_source import EXPRESSIONS, c_sources
+from doe_kc.solver.c_source import c_sources
+from doe_kc.solver.dialect import EXPRESSIONS
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, build, find_compiler
 
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")

@@ -13,9 +13,9 @@ import pytest
 from doe_kc.axle import Axle
 from doe_kc.effects import apply_effect
 from doe_kc.solver import compiled, library_on_demand
-from doe_kc.solver.c_source import EXPRESSIONS
 from doe_kc.solver.compiled import AdaptiveKernel, adaptive_kernel
 from doe_kc.solver.derivative_library import derivative_library
+from doe_kc.solver.dialect import EXPRESSIONS
 from doe_kc.solver.kernel import Buffered, interpreted_functions, kernel, kernel_programs
 from doe_kc.solver.library import CACHE_VARIABLE, CompileError, find_compiler
 from doe_kc.solver.program import Program, program_of, programs_bytes, read_programs

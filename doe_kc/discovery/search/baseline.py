@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from doe_kc.discovery.nuisances import side_differences
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.thresholds import TRACE_SD, TRACE_SEEN
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
@@ -84,7 +86,7 @@ def with_traces(tuned: Fit, screened: Sequence[Screened]) -> Fit:
     return chord_fit(state, model)
 
 
-def with_traces_anew(current: Fit) -> Fit:
+def with_traces_anew(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit, traces of absent compliances and of sizes of either sign linear about the axle with its
     effects.
 
@@ -100,17 +102,19 @@ def with_traces_anew(current: Fit) -> Fit:
     signed = [(i, t) for i, t in able if t.size.signed]
     with suppress(NotConverged):
         columns[:, [i for i, _ in signed]] = _derivatives_by(current, [t for _, t in signed])
-    for i, trace in able:
-        if trace.size.growth != "compliance" or any(s.needed for s in trace.hypothesis.sizes):
-            continue
-        try:
-            columns[:, i] = _change_by(current, trace)
-        except NotConverged:
-            continue
+    yielding = [
+        (i, t)
+        for i, t in able
+        if t.size.growth == "compliance" and not any(s.needed for s in t.hypothesis.sizes)
+    ]
+    changes = _changes_by(current, [t for _, t in yielding], workers)
+    for (i, _), change in zip(yielding, changes, strict=True):
+        if change is not None:
+            columns[:, i] = change
     return _with_nuisances(current, replace(known, columns=columns))
 
 
-def with_friction_traces(current: Fit) -> Fit:
+def with_friction_traces(current: Fit, workers: DiscoveryWorkers) -> Fit:
     """The fit, traces of absent frictions about the axle with its effects, by each law of as few numbers as
     the default one, alike in size.
 
@@ -122,20 +126,23 @@ def with_friction_traces(current: Fit) -> Fit:
     if known is None or not model.members:
         return current
     columns, first = known.columns.copy(), known.count - len(known.traces)
-    traces: list[Trace] = []
-    further: list[FloatArray] = []
+    by_law: dict[int, list[Trace]] = {}
     for i, trace in enumerate(known.traces, start=first):
         effect = EFFECTS[trace.hypothesis.effect]
-        if not effect.frictional or not compatible(model, trace.hypothesis):
-            continue
-        laws = [v for v in effect.variants(trace.hypothesis) if len(v.sizes) == len(trace.hypothesis.sizes)]
-        by_law = [replace(trace, hypothesis=law) for law in laws]
-        try:
-            changes = [_change_by(current, one) / np.sqrt(len(laws)) for one in by_law]
-        except NotConverged:
+        if effect.frictional and compatible(model, trace.hypothesis):
+            laws = effect.variants(trace.hypothesis)
+            numbers = len(trace.hypothesis.sizes)
+            by_law[i] = [replace(trace, hypothesis=law) for law in laws if len(law.sizes) == numbers]
+    every = iter(_changes_by(current, [t for alike in by_law.values() for t in alike], workers))
+    traces: list[Trace] = []
+    further: list[FloatArray] = []
+    for i, alike in by_law.items():
+        count = len(alike)
+        changes = [change / np.sqrt(count) for change in islice(every, count) if change is not None]
+        if len(changes) < count:
             continue
         columns[:, i] = changes[0]
-        traces += by_law[1:]
+        traces += alike[1:]
         further += changes[1:]
     anew = replace(known, columns=columns)
     return _with_nuisances(current, anew.with_traces(traces, np.array(further).T) if traces else anew)
@@ -155,12 +162,16 @@ def _derivatives_by(current: Fit, traces: Sequence[Trace]) -> FloatArray:
     return TRACE_SD * amplitude_columns(model, absent, model.residual(absent), places)
 
 
-def _change_by(current: Fit, trace: Trace) -> FloatArray:
-    """(M,) change of the residual by a trace of its standard deviation, about the fit."""
-    model, known = current.model.extended(trace.hypothesis), current.model.nuisances
-    amplitudes = TRACE_SD * np.eye(len(trace.hypothesis.sizes))[trace.place]
-    with_trace = model.residual(np.concatenate([current.z, amplitudes]))
+def _changes_by(current: Fit, traces: Sequence[Trace], workers: DiscoveryWorkers) -> list[FloatArray | None]:
+    """(M,) change of the residual by each trace of its standard deviation, about the fit; None where the axle
+    has no equilibrium with it."""
+    models = [current.model.extended(trace.hypothesis) for trace in traces]
+    alone = [TRACE_SD * np.eye(len(trace.hypothesis.sizes))[trace.place] for trace in traces]
+    points = [(m, np.concatenate([current.z, a])) for m, a in zip(models, alone, strict=True)]
+    known, linear = current.model.nuisances, current.z[current.model.linear]
     assert known is not None
-    linear = current.z[current.model.linear]
-    own = known.moved((current.model.weights - model.weights) * linear)  # it has no trace as a member
-    return np.asarray(with_trace + own - current.residual)
+    out: list[FloatArray | None] = []
+    for model, with_trace in zip(models, workers.residuals(points), strict=True):
+        own = known.moved((current.model.weights - model.weights) * linear)  # it has no trace as a member
+        out.append(None if with_trace is None else with_trace + own - current.residual)
+    return out

@@ -33,7 +33,7 @@ def with_final_laws(current: Fit, compared: Set[str], workers: DiscoveryWorkers)
     strut by Dahl's law a bushing's progression of 0.13 1/mm^2 was less likely than none; beside
     Prandtl-Iwan's law for both it has odds of 1600.
     """
-    ended = at_optimum(with_traces_anew(current), workers)
+    ended = at_optimum(with_traces_anew(current, workers), workers)
     best = at_best_optimum(with_best_closed_laws(ended, workers, compared), workers)
     unlike = with_unlike_bushings(best, workers)
     return FinalLaws(unlike, max(0.0, best.evidence - unlike.evidence), unlike is not ended)

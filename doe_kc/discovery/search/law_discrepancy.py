@@ -20,6 +20,7 @@ from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import DISCREPANCY_LENGTH, DISCREPANCY_SHARES
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.in_turn import in_turn
@@ -111,17 +112,19 @@ def with_discrepancy(
     return replace(likelihood, curves=tuple(curves))
 
 
-def effect_signals(exact: Fit) -> list[EffectSignal]:
-    """What each member of a fit to the records' own errors makes of their curves."""
-    model = exact.model
-    return [_signal(model, member, place, exact.residual, exact.z) for member, place in model.places()]
+def effect_signals(exact: Fit, workers: DiscoveryWorkers) -> list[EffectSignal]:
+    """What each member of a fit to the records' own errors makes of their curves.
+
+    NotConverged where the axle has no equilibrium without one of them.
+    """
+    model, places = exact.model, list(exact.model.places())
+    points = [(model.without(member), np.delete(exact.z, np.r_[place])) for member, place in places]
+    without = zip(points, workers.residuals(points), strict=True)
+    left = [fewer.residual(z) if residual is None else residual for (fewer, z), residual in without]
+    return [_signal(model, h, exact.residual - r) for (h, _), r in zip(places, left, strict=True)]
 
 
-def _signal(
-    model: EffectModel, member: Hypothesis, place: slice, residual: FloatArray, z: FloatArray
-) -> EffectSignal:
-    without = model.without(member)
-    whitened = residual - without.residual(np.delete(z, np.r_[place]))
+def _signal(model: EffectModel, member: Hypothesis, whitened: FloatArray) -> EffectSignal:
     changes = tuple(curve.root @ whitened[at] for curve, at in model.likelihood.slices())
     largest: dict[tuple[str, Branches], float] = {}
     for curve, change in zip(model.likelihood.curves, changes, strict=True):

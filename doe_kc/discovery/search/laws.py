@@ -78,7 +78,7 @@ def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> 
     members = [h for h in frictions(exact) if open_laws(h)]
     opened, compared = _until_explained(exact, members, lambda fit, h: with_best_law(fit, h, workers))
     bent = _bent(opened, workers)
-    if bent is not opened and _explained(bent):
+    if bent is not opened and _explained(bent, workers):
         return bent, compared
     return current if opened is exact else opened, compared
 
@@ -126,9 +126,9 @@ def _bent(current: Fit, workers: DiscoveryWorkers) -> Fit:
     return current
 
 
-def _explained(exact: Fit) -> bool:
+def _explained(exact: Fit, workers: DiscoveryWorkers) -> bool:
     """Whether noise and the discrepancy of its laws explain what a fit to the records' own errors leaves."""
-    settled, _ = fit_discrepancy(exact, effect_signals(exact))
+    settled, _ = fit_discrepancy(exact, effect_signals(exact, workers))
     return settled.residual_map.chance >= NOISE_CHANCE
 
 

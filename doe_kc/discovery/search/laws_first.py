@@ -106,7 +106,7 @@ def needless_beside_laws(
     bent, both = workers.fits(starts, "freeing laws")
     if bent is None or both is None or bent.evidence <= rival.evidence + further.prior:
         return False
-    settled, _ = fit_discrepancy(bent, effect_signals(bent))
+    settled, _ = fit_discrepancy(bent, effect_signals(bent, workers))
     beside = fit_to_errors(both, settled.model.likelihood, workers)
     return beside.evidence + further.prior - settled.evidence <= ACCEPTED_ODDS
 

@@ -48,7 +48,7 @@ def settled(
     current = with_sides_anew(current)
     current, removals = backward_elimination(current, ACCEPTED_ODDS, workers, known, prior)
     exact = fit_to_errors(own_loops(current, own.axle), own.likelihood, workers)
-    signals = effect_signals(exact)
+    signals = effect_signals(exact, workers)
     at_rest, shares = fit_discrepancy(exact, signals)
     state = MemberState(shares, without_own_discrepancy(exact, signals, shares), removals)
     del current, exact  # before the last fit: their derivatives are large

@@ -35,6 +35,7 @@ from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.discovery.verdict.exclusion import wrong_name_chance
 from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_between_sets, spread_in_larger_sets
 from doe_kc.discovery.verdict.size_fit import SizeFit, size_fit
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects._friction import LIMIT
 from doe_kc.effects.hypothesis import ABSENT, Hypothesis, Size
@@ -44,9 +45,11 @@ NO_EFFECT = ""
 """In place of an effect's id: none at all."""
 
 
-def findings(search: EffectSearch, compared: Sequence[Alternatives]) -> tuple[Finding, ...]:
+def findings(
+    search: EffectSearch, compared: Sequence[Alternatives], workers: DiscoveryWorkers
+) -> tuple[Finding, ...]:
     """Every member of the last set, each judged beside all the others. compared: in the set's order."""
-    sized = size_fit(search)
+    sized = size_fit(search, workers)
     return tuple(_finding(search, one, compared, sized) for one in compared)
 
 

@@ -27,6 +27,7 @@ from doe_kc.discovery.search.law_discrepancy import (
 from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.own_scatter import with_own_scatter
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
@@ -53,15 +54,15 @@ class SizeFit:
         return np.asarray(np.linalg.norm(shifts, axis=1))
 
 
-def size_fit(search: EffectSearch) -> SizeFit:
+def size_fit(search: EffectSearch, workers: DiscoveryWorkers) -> SizeFit:
     """The fit that sizes of the last set are told of.
 
     What an effect's law leaves is smaller than wide errors hide and larger than narrow ones, so that the
     shares of the discrepancies are raised anew. Derivatives of the last fit lead to it but where sizes and
     factors of theirs trade places, as with rubber: a share of 0.12 was told as 0.08.
     """
-    exact, last = search.with_effects, with_friction_traces(search.with_law_discrepancy)
-    signals, scales = effect_signals(exact), systematic_scales(last)
+    exact, last = search.with_effects, with_friction_traces(search.with_law_discrepancy, workers)
+    signals, scales = effect_signals(exact, workers), systematic_scales(last)
     start = rewhitened_fit(last, with_systematic_errors(exact.model.likelihood, scales))
     del last  # its derivatives: those of candidates are beside them otherwise
     settled, shares = fit_discrepancy(start, signals)
