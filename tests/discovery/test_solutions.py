@@ -13,8 +13,9 @@ import pytest
 from doe_kc.axle.model import Axle
 from doe_kc.discovery import solutions
 from doe_kc.discovery.solutions import AXLE_CACHE, Solutions
+from doe_kc.solver.lane_march import LANES
 from doe_kc.solver.result import Solution
-from doe_kc.solver.suite import solve
+from doe_kc.solver.suite import branch_inputs, solve
 from tests.discovery.cases import LOAD_CASES, nominal
 
 
@@ -23,9 +24,9 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Ids of the load cases that were solved."""
     done: list[str] = []
 
-    def counted(axle: Axle, cases: Sequence[str], pool: Executor | None = None) -> Solution:
+    def counted(axle: Axle, cases: Sequence[str], *, lanes: bool, pool: Executor | None) -> Solution:
         done.extend(cases)
-        return solve(axle, cases, pool=pool)
+        return solve(axle, cases, lanes=lanes, pool=pool)
 
     monkeypatch.setattr(solutions, "solve", counted)
     return done
@@ -52,7 +53,7 @@ def test_a_solution_is_the_solver_s_and_is_not_computed_again(solved: list[str])
     first, again = kept(nominal()), kept(nominal())
     assert sorted(solved) == sorted(LOAD_CASES)
     assert same(first, again)
-    assert same(first, solve(nominal(), list(nominal().load_cases)))
+    assert same(first, solve(nominal(), list(nominal().load_cases), lanes=True))
 
 
 def test_load_cases_side_by_side_are_the_same_to_the_last_digit() -> None:
@@ -60,14 +61,15 @@ def test_load_cases_side_by_side_are_the_same_to_the_last_digit() -> None:
 
 
 def test_several_threads_share_the_load_cases(monkeypatch: pytest.MonkeyPatch) -> None:
-    kept, shared = Solutions(threads=2), list[str]()
+    kept, shared = Solutions(threads=2), list[int]()
     assert Solutions().pool is None and kept.pool is not None
     whole = kept.pool.map
     monkeypatch.setattr(
-        kept.pool, "map", lambda f, cases: shared.extend(c.id for c in cases) or whole(f, cases)
+        kept.pool, "map", lambda f, groups: shared.extend(map(len, groups)) or whole(f, groups)
     )
     kept(nominal())
-    assert sorted(shared) == sorted(LOAD_CASES)
+    branches = sum(len(branch_inputs(c, loop=False)) for c in nominal().load_cases.values())
+    assert sum(shared) == branches and max(shared) <= LANES
     assert pickle.loads(pickle.dumps(kept)).pool is not None
 
 
@@ -78,15 +80,15 @@ def test_another_input_of_one_load_case_solves_that_alone(solved: list[str]) -> 
     other = stretched(nominal(), "steer", 1.1)
     found = kept(other)
     assert solved == ["steer"]
-    assert same(found, solve(other, list(other.load_cases)))
-    assert same(kept(nominal()), solve(nominal(), list(nominal().load_cases)))
+    assert same(found, solve(other, list(other.load_cases), lanes=True))
+    assert same(kept(nominal()), solve(nominal(), list(nominal().load_cases), lanes=True))
 
 
 def test_another_value_solves_everything(solved: list[str]) -> None:
     kept = Solutions()
     kept(nominal())
     other = nominal().changed({"tyre.static_load": nominal().values["tyre.static_load"] + 50.0})
-    assert same(kept(other), solve(other, list(other.load_cases)))
+    assert same(kept(other), solve(other, list(other.load_cases), lanes=True))
     assert sorted(solved) == sorted([*LOAD_CASES, *LOAD_CASES])
 
 

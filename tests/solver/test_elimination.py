@@ -7,7 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from doe_kc.solver.elimination import EliminationOrder, elimination_order
+from doe_kc.effects import apply_effect
+from doe_kc.ground.typing import FloatArray
+from doe_kc.solver import elimination
+from doe_kc.solver.elimination import EliminationOrder, elimination_order, paired_order
+from doe_kc.solver.kernel import Kernel, interpreted_functions, kernel
+from doe_kc.solver.suite import solve
+from tests.reference import nominal
 
 SIZE, EXTRA = 14, 2
 
@@ -75,3 +81,55 @@ def test_a_singular_matrix_has_no_order() -> None:
     numbers[kernel.cols == 2] = 0.0
     with pytest.raises(np.linalg.LinAlgError, match="no order of elimination"):
         elimination_order(kernel, numbers, SIZE)  # type: ignore[arg-type]
+
+
+def at_rest(effect: str) -> tuple[Kernel, FloatArray]:
+    """An axle's kernel, and the numbers of its Jacobian at rest."""
+    axle = apply_effect(nominal(), effect, {}, source="test")
+    k, static = kernel(axle.topology), solve(axle, []).static
+    assert static is not None
+    c = k.constant_values(dict(axle.values))
+    jacobian = interpreted_functions(axle.topology)["jacobian"](static.x, c, static.u, static.z)
+    return k, np.array(jacobian.nonzeros())
+
+
+@pytest.mark.parametrize("effect", ["hub_compliance", "strut_bending", "rubber_hysteresis"])
+@pytest.mark.parametrize("full", [False, True])
+def test_pairs_solve_an_axle(effect: str, full: bool) -> None:
+    k, numbers = at_rest(effect)
+    active = k.nx if full else k.nx - k.layout.tail
+    order = paired_order(k, numbers, active)
+    matrix = np.zeros((k.nx, k.nx))
+    matrix[k.rows, k.cols] = numbers
+    right = np.random.default_rng(1).normal(size=k.nx)
+    expected = np.linalg.solve(matrix[:active, :active], right[:active])
+    np.testing.assert_allclose(
+        solution(k, order, numbers, right),  # type: ignore[arg-type]  # what it asks of a kernel
+        expected,
+        rtol=1e-7,
+        atol=1e-9 * np.abs(expected).max(),
+    )
+
+
+def test_a_pair_whose_pivot_is_small_is_put_off() -> None:
+    k, numbers = at_rest("strut_bending")
+    active = k.nx - k.layout.tail
+    order = paired_order(k, numbers, active)
+    np.testing.assert_array_equal(order.row_of, order.column_of)
+    assert sorted(order.row_of) == list(range(active))
+    assert not np.array_equal(order.row_of, k.layout.order[:active])
+
+
+def test_where_pairs_lead_to_no_end_rows_are_exchanged(monkeypatch: pytest.MonkeyPatch) -> None:
+    k, numbers = at_rest("hub_compliance")
+    active = k.nx - k.layout.tail
+    expected = elimination_order(k, numbers, active)
+    asked: list[int] = []
+
+    def counted(*arguments: object) -> EliminationOrder:
+        asked.append(1)
+        return expected
+
+    monkeypatch.setattr(elimination, "PIVOT_THRESHOLD", 2.0)
+    monkeypatch.setattr(elimination, "elimination_order", counted)
+    assert paired_order(k, numbers, active) is expected and asked

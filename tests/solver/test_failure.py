@@ -68,7 +68,7 @@ def test_what_was_solved_before_the_failure_is_kept() -> None:
 def test_a_failure_beside_other_load_cases_is_the_one_that_comes_first() -> None:
     cases = ["vertical", "steer", "drive"]
     with ThreadPoolExecutor(3) as pool:
-        beside = solve(far_steer(), cases, throw=False, pool=pool)
+        beside = solve(far_steer(), cases, throw=False, lanes=True, pool=pool)
     alone = solve(far_steer(), cases, throw=False)
     assert beside.failure is not None
     assert str(beside.failure) == str(alone.failure)

@@ -112,17 +112,17 @@ def test_damaged_programs_are_made_anew(monkeypatch: pytest.MonkeyPatch, tmp_pat
     x = ca.SX.sym("x")
     asked = []
 
-    def functions() -> dict[str, ca.Function]:
+    def made() -> dict[str, Program]:
         asked.append(1)
-        return {"f": of_expressions(ca.sin(x) + 1, symbols=(x,))}
+        return {"f": program_of(of_expressions(ca.sin(x) + 1, symbols=(x,)))}
 
     for _ in range(2):
-        programs_for(TOPOLOGY, "test", functions)
+        programs_for(TOPOLOGY, "test", made)
     assert len(asked) == 1
     (stored,) = tmp_path.glob("*.npz")
     whole = stored.read_bytes()
     stored.write_bytes(whole[: int(keep if keep >= 1 else keep * len(whole))])
-    assert programs_for(TOPOLOGY, "test", functions)["f"].length == 2
+    assert programs_for(TOPOLOGY, "test", made)["f"].length == 2
     assert len(asked) == 2
     assert read_programs(stored.read_bytes())["f"].length == 2
 

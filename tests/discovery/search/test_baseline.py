@@ -104,7 +104,7 @@ def test_traces_of_compliances_are_linear_about_the_axle_with_its_effects() -> N
     before = with_effect(traced, friction, [1.0, 0.0])
     known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
-    found = with_traces_anew(before)
+    found = with_traces_anew(before, DiscoveryWorkers())
     assert found.model.nuisances is not None and found.model.nuisances.traces == known.traces
     first, at = known.count - len(known.traces), known.traces.index(Trace(mount, 0))
     old, new = known.columns[:, first + at], found.model.nuisances.columns[:, first + at]
@@ -130,7 +130,7 @@ def test_traces_of_either_sign_are_derivatives_about_the_axle_with_its_effects()
     before = with_effect(traced, hub, [1.0, 1.0])
     known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
-    found = with_traces_anew(before).model.nuisances
+    found = with_traces_anew(before, DiscoveryWorkers()).model.nuisances
     assert found is not None
     column = found.columns[:, found.count - len(found.traces) + found.traces.index(Trace(height, 0))]
     member = beside.extended(height)
@@ -141,7 +141,7 @@ def test_traces_of_either_sign_are_derivatives_about_the_axle_with_its_effects()
 
 def test_without_effects_or_traces_there_is_nothing_to_take_anew() -> None:
     tuned = tune(model("pair"))
-    assert with_traces_anew(tuned) is tuned
+    assert with_traces_anew(tuned, DiscoveryWorkers()) is tuned
 
 
 def test_traces_of_frictions_are_by_both_laws_about_the_axle_with_its_effects() -> None:
@@ -154,7 +154,7 @@ def test_traces_of_frictions_are_by_both_laws_about_the_axle_with_its_effects() 
     before = with_effect(replace(traced, z=untraced), steering, [1.0, 0.0])
     known, beside, z = traced.model.nuisances, before.model, before.z
     assert known is not None
-    found = with_friction_traces(before)
+    found = with_friction_traces(before, DiscoveryWorkers())
     anew = found.model.nuisances
     assert anew is not None
     by_law = [Trace(strut, 0), Trace(replace(strut, law="iwan"), 0)]
@@ -171,4 +171,4 @@ def test_traces_of_frictions_are_by_both_laws_about_the_axle_with_its_effects() 
     assert np.linalg.norm(columns[1] - columns[0]) > 0.1 * np.linalg.norm(columns[0])
     others = np.delete(np.arange(known.count), first + anew.traces.index(by_law[0]))
     np.testing.assert_array_equal(anew.columns[:, others], known.columns[:, others])
-    assert with_friction_traces(tuned) is tuned
+    assert with_friction_traces(tuned, DiscoveryWorkers()) is tuned

@@ -18,6 +18,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     marginal,
     with_discrepancy,
 )
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import apply_effect
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
@@ -38,7 +39,7 @@ def test_only_what_the_effect_changes_is_widened() -> None:
     (friction,) = library("steering_friction")
     z = np.append(model("friction").centre, [0.8, 0.0])
     found = at("friction", friction, z)
-    wide = with_discrepancy(found.model.likelihood, effect_signals(found), [SHARE])
+    wide = with_discrepancy(found.model.likelihood, effect_signals(found, DiscoveryWorkers()), [SHARE])
     before = {(c.load_case, c.response, c.side, c.branches): c for c in found.model.likelihood.curves}
     for curve in wide.curves:
         was = before[curve.load_case, curve.response, curve.side, curve.branches]
@@ -56,7 +57,7 @@ def test_a_compliance_is_no_friction_on_an_axle_that_has_one_already() -> None:
     axle = apply_effect(found.model.axle, friction.effect, {"force_N": 100.0}, source="axle")
     beside = replace(found, model=replace(found.model, axle=axle))
     assert axle.topology.frictional
-    assert [s.friction for s in effect_signals(beside)] == [False]
+    assert [s.friction for s in effect_signals(beside, DiscoveryWorkers())] == [False]
 
 
 def test_a_change_of_scale_is_no_shape() -> None:
@@ -64,7 +65,7 @@ def test_a_change_of_scale_is_no_shape() -> None:
     z = np.append(model("named").centre, [1.0, 1.0])
     found = at("named", hub, z)
     made = found.residual - model("named").residual(z[:-2])
-    wide = with_discrepancy(found.model.likelihood, effect_signals(found), [SHARE])
+    wide = with_discrepancy(found.model.likelihood, effect_signals(found, DiscoveryWorkers()), [SHARE])
     for (curve, place), now in zip(found.model.likelihood.slices(), wide.curves, strict=True):
         if (curve.load_case, curve.response, curve.branches) == ("lateral", "camber", "mean"):
             change = curve.root @ made[place]
@@ -89,7 +90,7 @@ def fitted(car: str, ident: str, likelihood: Likelihood | None = None) -> Fit:
 @pytest.mark.parametrize(("car", "ident"), [("named", "hub_compliance"), ("friction", "steering_friction")])
 def test_a_law_that_fits_stays_closed(car: str, ident: str) -> None:
     exact = fitted(car, ident)
-    found, shares = fit_discrepancy(exact, effect_signals(exact))
+    found, shares = fit_discrepancy(exact, effect_signals(exact, DiscoveryWorkers()))
     assert shares == {ident: 0.0}
     assert found is exact
 
@@ -106,7 +107,7 @@ def test_a_law_of_another_shape_is_opened() -> None:
         curves.append(replace(curve, value=curve.value - 0.2 * relative * change))
     bent = replace(straight.model.likelihood, curves=tuple(curves))
     exact = fitted("named", "hub_compliance", bent)
-    found, shares = fit_discrepancy(exact, effect_signals(exact))
+    found, shares = fit_discrepancy(exact, effect_signals(exact, DiscoveryWorkers()))
     assert shares["hub_compliance"] >= 0.02
     assert marginal(found) > marginal(exact)
     assert np.diag(found.covariance)[-2] > np.diag(exact.covariance)[-2]
@@ -123,7 +124,9 @@ def test_other_errors_change_the_units_of_everything() -> None:
     residual = sided.residual(z)
     jacobian = sided.jacobian(np.zeros((residual.size, z.size - 2)))
     found = Fit(sided, z, residual, jacobian, cost_of(sided, z, residual), 1, True)
-    moved = rewhitened_fit(found, with_discrepancy(sided.likelihood, effect_signals(found), [SHARE]))
+    moved = rewhitened_fit(
+        found, with_discrepancy(sided.likelihood, effect_signals(found, DiscoveryWorkers()), [SHARE])
+    )
     np.testing.assert_allclose(moved.model.residual(z), moved.residual, rtol=0, atol=1e-8)
     assert np.abs(moved.residual - residual).max() > 0.1
     back = rewhitened_fit(moved, sided.likelihood)

@@ -55,7 +55,7 @@ def two_fitted() -> tuple[Fit, Hypothesis]:
 def test_an_effect_does_not_pass_for_the_law_that_was_granted_to_it() -> None:
     """Errors of half of what the hub does to every curve explain it away; errors without them do not."""
     exact, hub = hub_fitted()
-    wide = with_discrepancy(exact.model.likelihood, effect_signals(exact), [0.5])
+    wide = with_discrepancy(exact.model.likelihood, effect_signals(exact, DiscoveryWorkers()), [0.5])
     begun = rewhitened_fit(exact, wide)
     found = fit(begun.model, exact.z, known=known_columns(begun, begun.model))
     fooled = _loss(found, hub)
@@ -136,7 +136,7 @@ def _loss(found: Fit, member: Hypothesis) -> float:
 def test_errors_without_one_law_hold_those_of_the_others() -> None:
     exact, _ = two_fitted()
     names = [h.name for h in exact.model.members]
-    made = effect_signals(exact)
+    made = effect_signals(exact, DiscoveryWorkers())
     assert without_own_discrepancy(exact, made, dict.fromkeys(names, 0.0)) == {}
     found = without_own_discrepancy(exact, made, dict.fromkeys(names, 0.1))
     for name, shares in zip(names, ([0.0, 0.1], [0.1, 0.0]), strict=True):

@@ -73,8 +73,8 @@ def test_the_order_of_two_effects_does_not_matter(
         with_effects=last_member(found.with_effects, first),
     )
     assert swapped.with_law_discrepancy.model.members == (second, first)
-    there = findings(found, compared)
-    back = findings(swapped, alternatives(swapped, 1.0, DiscoveryWorkers()))
+    there = findings(found, compared, DiscoveryWorkers())
+    back = findings(swapped, alternatives(swapped, 1.0, DiscoveryWorkers()), DiscoveryWorkers())
     for one, other in zip(there, reversed(back), strict=True):
         assert one.hypothesis == other.hypothesis
         assert one.log10_odds == pytest.approx(other.log10_odds, rel=1e-3, abs=0.05)

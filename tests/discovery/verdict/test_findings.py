@@ -72,7 +72,9 @@ def place(*trials: HypothesisFit, temper: float = 1.0, without: Fit | None = Non
 
 def judged(*rivals: HypothesisFit, gain: float = 100.0, without: Fit | None = None) -> Finding:
     """The hub among rivals."""
-    (finding,) = findings(search(), [place(trial("hub_compliance", HUB, gain), *rivals, without=without)])
+    (finding,) = findings(
+        search(), [place(trial("hub_compliance", HUB, gain), *rivals, without=without)], DiscoveryWorkers()
+    )
     return finding
 
 
@@ -141,7 +143,10 @@ def test_beside_a_much_larger_effect_a_weak_one_is_named_by_its_own_loss() -> No
             without = explained(found.tuned)
             compared.append(comparison(without, own, effect_change(found.tuned, own), (refit,), 1.0))
         shares = {large.name: 0.1, small.name: 0.0}
-        return [f.relevant for f in findings(replace(found, discrepancy_shares=shares), compared)]
+        return [
+            f.relevant
+            for f in findings(replace(found, discrepancy_shares=shares), compared, DiscoveryWorkers())
+        ]
 
     assert relevant(19.0) == [True, True]
     assert relevant(17.0) == [True, False]
@@ -171,7 +176,7 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
     found = discovery("pair").search
     large = next(h for h in found.with_law_discrepancy.model.members if h.effect == "hub_compliance")
     place = [h.name for h, _ in found.with_law_discrepancy.model.places()].index(large.name)
-    sized = size_fit(found)
+    sized = size_fit(found, DiscoveryWorkers())
     amplitudes, sd = amplitude_estimates(sized.fit, large)
     own_errors = replace(found.with_effects, z=1.1 * found.with_effects.z)  # as where the law is another
     searched = replace(found, with_effects=own_errors)
@@ -183,7 +188,7 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
     for share in (0.0, 0.05, 0.1):
         shifts = share * np.outer(sized.fit.z, [0.6, 0.8])
         monkeypatch.setattr(findings_module, "size_fit", lambda _, s=shifts: replace(sized, law_shifts=s))
-        camber, _ = findings(searched, compared)[place].estimates
+        camber, _ = findings(searched, compared, DiscoveryWorkers())[place].estimates
         assert camber.value == pytest.approx(large.sizes[0].value(float(amplitudes[0])), rel=1e-3)
         assert camber.sd / camber.value == pytest.approx(
             np.sqrt((sd[0] / amplitudes[0]) ** 2 + share**2 + LINEAR_TO**2), rel=0.02
@@ -196,7 +201,9 @@ def test_a_friction_s_force_is_one_number_to_a_thousandth_at_best(monkeypatch: p
 
     def told(share: float) -> list[ParameterEstimate]:
         monkeypatch.setattr(findings_module, "CONSTANT_TO", share)
-        every = findings(answer.search, alternatives(answer.search, 1.0, DiscoveryWorkers()))
+        every = findings(
+            answer.search, alternatives(answer.search, 1.0, DiscoveryWorkers()), DiscoveryWorkers()
+        )
         return list(next(f for f in every if f.hypothesis.effect == "steering_friction").estimates)
 
     assert findings_module.CONSTANT_TO == 0.001

@@ -16,6 +16,7 @@ from doe_kc.discovery.search.law_variants import default_law, with_law
 from doe_kc.discovery.thresholds import LAW_OPEN
 from doe_kc.discovery.verdict.size_fit import MODES, law_shifts, size_fit
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales
+from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects._friction import SHARES
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
@@ -26,7 +27,7 @@ SHARE = 0.05
 def test_it_has_the_errors_and_the_scatter_of_the_records() -> None:
     search = discovery("pair").search
     last = search.with_law_discrepancy
-    found = size_fit(search).fit
+    found = size_fit(search, DiscoveryWorkers()).fit
     assert found.converged
     assert found.model.members == last.model.members
     assert found.model.own_scatter is not None
@@ -42,7 +43,7 @@ def test_it_has_the_errors_and_the_scatter_of_the_records() -> None:
 def test_sizes_stay_within_what_was_assumed() -> None:
     """Narrower errors of the same records: no size moves by more than it was open by, each gets sharper."""
     search = discovery("pair").search
-    last, found = search.with_law_discrepancy, size_fit(search).fit
+    last, found = search.with_law_discrepancy, size_fit(search, DiscoveryWorkers()).fit
     before, after = (np.sqrt(np.diag(f.covariance))[f.model.dimension :] for f in (last, found))
     assert np.all(np.abs(found.amplitudes - last.amplitudes) < 2.0 * before)
     assert np.all(after < 1.05 * before)
@@ -51,7 +52,7 @@ def test_sizes_stay_within_what_was_assumed() -> None:
 def test_a_fit_that_known_derivatives_do_not_end_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     """It ends as low, with the same sizes; shares of neighbouring sliders trade places."""
     search = discovery("pair").search
-    ended = size_fit(search).fit
+    ended = size_fit(search, DiscoveryWorkers()).fit
 
     def stopped(fit: Fit) -> Fit:
         away = ended.z.copy()
@@ -59,7 +60,7 @@ def test_a_fit_that_known_derivatives_do_not_end_goes_on(monkeypatch: pytest.Mon
         return replace(ended, z=away, converged=False)
 
     monkeypatch.setattr(size_fit_module, "with_own_scatter", stopped)
-    sized = size_fit(search).fit
+    sized = size_fit(search, DiscoveryWorkers()).fit
     assert sized.converged
     sd = np.sqrt(np.diag(ended.covariance))[ended.model.dimension :]
     assert sized.cost < ended.cost + 0.1
@@ -70,7 +71,10 @@ def test_a_fit_that_known_derivatives_do_not_end_goes_on(monkeypatch: pytest.Mon
 def test_a_compliance_is_not_linear_even_where_its_law_fits() -> None:
     """A friction whose law fits shifts nothing."""
     search = discovery("pair").search
-    sized, signals = size_fit(search).fit, effect_signals(search.with_effects)
+    sized, signals = (
+        size_fit(search, DiscoveryWorkers()).fit,
+        effect_signals(search.with_effects, DiscoveryWorkers()),
+    )
     names = [h.name for h in sized.model.members]
     assert names == ["hub_compliance", "steering_friction"]
     fits = law_shifts(sized, signals, {"hub_compliance": 0.0, "steering_friction": 0.0})
@@ -89,7 +93,7 @@ def test_shifts_are_those_of_records_that_follow_another_law() -> None:
     free = discovery("pair").search.with_law_discrepancy
     friction = next(h for h in free.model.members if h.law)
     last = optimum(*with_law(free.model, free.z, friction, default_law(friction)))
-    model, signals = last.model, effect_signals(last)
+    model, signals = last.model, effect_signals(last, DiscoveryWorkers())
     hub = next(i for i, h in enumerate(model.members) if h.effect == "hub_compliance")
     shares = {h.name: SHARE * (i == hub) for i, h in enumerate(model.members)}
     shifts = law_shifts(last, signals, shares)
@@ -121,7 +125,7 @@ def test_the_gap_of_a_free_play_has_no_law() -> None:
         z = np.append(last.z[: model.dimension], [1.0, contact])
         own = np.hstack([last.jacobian.own[:, : -last.amplitudes.size], np.zeros((last.residual.size, 2))])
         at = replace(last, model=model, z=z, residual=model.residual(z), jacobian=model.jacobian(own))
-        return law_shifts(at, effect_signals(at), {play.name: 0.0})
+        return law_shifts(at, effect_signals(at, DiscoveryWorkers()), {play.name: 0.0})
 
     assert not np.any(shifts(0.0))
     assert np.any(shifts(1.0))
