@@ -36,7 +36,7 @@ typedef struct {
     const int *nonzero_row;                 /* (nnz) */
     int columns;
     const int *column;                      /* of the outputs that are asked for */
-    int meet;
+    int meet;                               /* whether a stale factorization waits for those of other lanes */
     int capacity;                           /* equilibria a lane that `between` has room for */
 } problem;
 

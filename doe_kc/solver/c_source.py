@@ -38,8 +38,8 @@ def c_sources(
     Scalar ones are of the interface that `casadi.external` loads. operations: by which its results are
     computed, None for its own. CompileError as `operations_of`.
     """
-    whole = operations_of(function) if operations is None else operations
-    texts, room = _piece_texts(_pieces(_statements(whole, dialect)), dialect)
+    own = operations_of(function) if operations is None else operations
+    texts, room = _piece_texts(_pieces(_statements(own, dialect)), dialect)
     number, name = dialect.number, function.name()
     inputs, outputs = range(function.n_in()), range(function.n_out())
     parameters = [
@@ -67,19 +67,19 @@ def c_sources(
     return {part: "\n".join(lines) + "\n" for part, lines in files.items()}
 
 
-def _statements(whole: Operations, dialect: Dialect) -> dict[int, _Statement]:
+def _statements(operations: Operations, dialect: Dialect) -> dict[int, _Statement]:
     """By number, in order, results behind; arguments and constants stand in the operands."""
-    arguments = [f"x{i}[{k}]" for i, size in enumerate(whole.sizes) for k in range(size)]
-    known = arguments + [dialect.literal.format(_literal(value)) for value in whole.constants.tolist()]
+    arguments = [f"x{i}[{k}]" for i, size in enumerate(operations.sizes) for k in range(size)]
+    known = arguments + [dialect.literal.format(_literal(value)) for value in operations.constants.tolist()]
 
     def operand(number: int) -> str | int:
         return number if number >= 0 else known[-1 - number]
 
     out = {
         k: _Statement(dialect.expressions[code], (operand(a), operand(b)))
-        for k, (code, a, b) in enumerate(whole.rows.tolist())
+        for k, (code, a, b) in enumerate(operations.rows.tolist())
     }
-    for k, (result, place, value) in enumerate(whole.results.tolist(), start=len(out)):
+    for k, (result, place, value) in enumerate(operations.results.tolist(), start=len(out)):
         out[k] = _Statement("{0}", (operand(value),), f"y{result}[{place}]")
     return out
 

@@ -24,23 +24,23 @@ Edges = list[dict[int, int]]
 """By vertex, its predecessors and the operand of the partial derivative to each."""
 
 
-def derivatives(whole: Operations, blocks: Sequence[tuple[int, int]]) -> Operations:
+def derivatives(operations: Operations, blocks: Sequence[tuple[int, int]]) -> Operations:
     """Of dense results to arguments: blocks of result and argument by number, column by column.
 
     What depends on an argument only by way of comparisons, signs and the like has no derivative to it.
     """
-    ends = np.cumsum(whole.sizes).tolist()
+    ends = np.cumsum(operations.sizes).tolist()
     wanted = {argument for _, argument in blocks}
-    moving = {-1 - i for a in wanted for i in range(ends[a] - whole.sizes[a], ends[a])}
-    recorder = _Derivation(whole)
-    rows = [tuple(row) for row in whole.results.tolist()]
-    edges = _partials(whole, recorder, moving, [operand for _, _, operand in rows])
-    _eliminate(edges, len(whole.rows), recorder)
-    by_row = {(result, row): edges[len(whole.rows) + k] for k, (result, row, _) in enumerate(rows)}
+    moving = {-1 - i for a in wanted for i in range(ends[a] - operations.sizes[a], ends[a])}
+    recorder = _Derivation(operations)
+    rows = [tuple(row) for row in operations.results.tolist()]
+    edges = _partials(operations, recorder, moving, [operand for _, _, operand in rows])
+    _eliminate(edges, len(operations.rows), recorder)
+    by_row = {(result, row): edges[len(operations.rows) + k] for k, (result, row, _) in enumerate(rows)}
     results: list[tuple[int, int, int]] = []
     patterns: list[ca.Sparsity] = []
     for block, (result, argument) in enumerate(blocks):
-        height, width = whole.patterns[result].shape[0], whole.sizes[argument]
+        height, width = operations.patterns[result].shape[0], operations.sizes[argument]
         first = ends[argument] - width
         entries = sorted(
             (-1 - at - first, row, value)
@@ -51,16 +51,16 @@ def derivatives(whole: Operations, blocks: Sequence[tuple[int, int]]) -> Operati
         starts = np.cumsum(np.bincount([column for column, _, _ in entries], minlength=width)).tolist()
         patterns.append(ca.Sparsity(height, width, [0, *starts], [row for _, row, _ in entries]))
         results += [(block, k, value) for k, (_, _, value) in enumerate(entries)]
-    return _without_unused(recorder.finished(whole.sizes, results, patterns))
+    return _without_unused(recorder.finished(operations.sizes, results, patterns))
 
 
 class _Derivation(Recorder):
     """Products and sums of partial derivatives behind the operations that they are of."""
 
-    def __init__(self, whole: Operations) -> None:
-        super().__init__(sum(whole.sizes))
-        self.constants = whole.constants.tolist()
-        self.operations = {(code, a, b): k for k, (code, a, b) in enumerate(whole.rows.tolist())}
+    def __init__(self, operations: Operations) -> None:
+        super().__init__(sum(operations.sizes))
+        self.constants = operations.constants.tolist()
+        self.operations = {(code, a, b): k for k, (code, a, b) in enumerate(operations.rows.tolist())}
         self._lowest = self._first
         self._by_value: dict[float, int] = {}
         self.one = self.constant(1.0)
@@ -95,12 +95,14 @@ class _Derivation(Recorder):
         return self.operation(ca.OP_ADD, a, b)
 
 
-def _partials(whole: Operations, recorder: _Derivation, moving: set[int], results: Sequence[int]) -> Edges:
+def _partials(
+    operations: Operations, recorder: _Derivation, moving: set[int], results: Sequence[int]
+) -> Edges:
     """Edges of every operation that is needed and moves, then those of the results, each of one operand.
 
     moving: operands of the arguments.
     """
-    rows = whole.rows.tolist()
+    rows = operations.rows.tolist()
     needed = [False] * len(rows)
     for operand in results:
         if operand >= 0:

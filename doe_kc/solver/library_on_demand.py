@@ -10,9 +10,8 @@ from doe_kc.axle.topology import Topology
 from doe_kc.solver.library import CompileError, store_text, stored_library, stored_text
 
 OPERATIONS_BEFORE_COMPILING = 16_000_000_000
-"""Of programs: by then they have taken twice as much more than compiled code as compiling takes, 4 to 9 s. A
-discovery asks 10 000 000 000 of each of its largest sets, which the next car has not got: compiled at half of
-this, three of them cost it 25 s for nothing."""
+"""Of programs: by then compiled code would have saved about twice the time that compiling takes, 3 to 9 s.
+One discovery carries out no more than half as many for any of its sets, and the next car has other sets."""
 STORED_STEP = OPERATIONS_BEFORE_COMPILING // 40
 """Operations between two entries in the cache: 0.1 to 0.2 s of work."""
 

@@ -58,12 +58,12 @@ def program_of(function: ca.Function) -> Program:
     return program_from(operations_of(function))
 
 
-def program_from(whole: Operations) -> Program:
+def program_from(operations: Operations) -> Program:
     """The program of a list of operations."""
-    operations = np.column_stack([whole.rows, _levels(whole)])
-    order, starts = _runs(operations)
-    fixed = sum(whole.sizes) + len(whole.constants)
-    place, places = _places(operations, whole.results[:, 2], order, starts, fixed)
+    rows = np.column_stack([operations.rows, _levels(operations)])
+    order, starts = _runs(rows)
+    fixed = sum(operations.sizes) + len(operations.constants)
+    place, places = _places(rows, operations.results[:, 2], order, starts, fixed)
 
     def at(values: IntArray) -> IntArray:
         out = -1 - values
@@ -71,25 +71,27 @@ def program_from(whole: Operations) -> Program:
         out[own] = place[values[own]]
         return out
 
-    patterns = [pattern.compress() for pattern in whole.patterns]
-    in_order = operations[order]
+    patterns = [pattern.compress() for pattern in operations.patterns]
+    in_order = rows[order]
     return Program(
-        sizes=np.array(whole.sizes, dtype=np.int32),
-        constants=whole.constants,
+        sizes=np.array(operations.sizes, dtype=np.int32),
+        constants=operations.constants,
         runs=np.column_stack([in_order[starts[:-1], 0], np.diff(starts)]).astype(np.int32),
         operands=np.column_stack([place[order], at(in_order[:, 1]), at(in_order[:, 2])]).astype(np.int32),
-        results=np.column_stack([whole.results[:, :2], at(whole.results[:, 2])]).astype(np.int32),
+        results=np.column_stack([operations.results[:, :2], at(operations.results[:, 2])]).astype(np.int32),
         patterns=np.array([number for pattern in patterns for number in pattern], dtype=np.int64),
         pattern_starts=np.cumsum([0, *(len(pattern) for pattern in patterns[:-1])]).astype(np.int32),
         places=np.array([places], dtype=np.int32),
     )
 
 
-def _levels(whole: Operations) -> IntArray:
+def _levels(operations: Operations) -> IntArray:
     """(n,) how many operations must come before each one, one after the other."""
-    count = len(whole.rows)
-    levels = [-1] * (count + sum(whole.sizes) + len(whole.constants))  # arguments and constants from behind
-    for k, (_, a, b) in enumerate(whole.rows.tolist()):
+    count = len(operations.rows)
+    levels = [-1] * (
+        count + sum(operations.sizes) + len(operations.constants)
+    )  # arguments and constants from behind
+    for k, (_, a, b) in enumerate(operations.rows.tolist()):
         levels[k] = 1 + max(levels[a], levels[b])
     return np.array(levels[:count], dtype=np.int64)
 

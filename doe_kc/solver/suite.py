@@ -86,8 +86,8 @@ def _marches(
             beside = lane_march(k.topology, static, pool)
 
     def marches(problems: Sequence[MarchProblem]) -> Iterator[March]:
-        found = beside.marches(problems) if beside is not None else [None] * len(problems)
-        for problem, path in zip(problems, found, strict=True):
+        paths = beside.marches(problems) if beside is not None else [None] * len(problems)
+        for problem, path in zip(problems, paths, strict=True):
             yield path or march_of(k, library, problem)
 
     return marches

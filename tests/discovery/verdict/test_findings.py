@@ -187,7 +187,7 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
         compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
     for share in (0.0, 0.05, 0.1):
         shifts = share * np.outer(sized.fit.z, [0.6, 0.8])
-        monkeypatch.setattr(findings_module, "size_fit", lambda _, s=shifts: replace(sized, law_shifts=s))
+        monkeypatch.setattr(findings_module, "size_fit", lambda *_, s=shifts: replace(sized, law_shifts=s))
         camber, _ = findings(searched, compared, DiscoveryWorkers())[place].estimates
         assert camber.value == pytest.approx(large.sizes[0].value(float(amplitudes[0])), rel=1e-3)
         assert camber.sd / camber.value == pytest.approx(
