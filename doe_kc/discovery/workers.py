@@ -1,4 +1,4 @@
-"""Where the work of a discovery is done: in worker processes, each result kept in the cache."""
+"""Where the work of a discovery is done: in worker processes, fits and screenings kept in the cache."""
 
 from __future__ import annotations
 

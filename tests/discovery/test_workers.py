@@ -19,6 +19,7 @@ from doe_kc.discovery.screening.screen import effort
 from doe_kc.discovery.search.baseline import tune
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS
 from doe_kc.discovery.workers import TASKS_AHEAD, DiscoveryWorkers
+from doe_kc.solver.result import Failure, NotConverged
 from tests.discovery.cases import library, model
 
 
@@ -40,6 +41,28 @@ def test_a_fit_of_a_worker_is_of_the_very_model_and_errors_of_its_start(tuned: F
     assert there is not None and here is not None
     assert there.model is extended and there.model.likelihood is tuned.model.likelihood
     assert np.array_equal(there.z, here.z) and np.array_equal(there.jacobian.own, here.jacobian.own)
+
+
+def test_residuals_are_those_of_each_model_at_its_point(tuned: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
+    extended, z = start(tuned)
+    points = [(tuned.model, tuned.z), (extended, z), (extended, z + 0.1)]
+    steps: list[tuple[str, int, int]] = []
+    with processes(2) as executor:
+        workers = DiscoveryWorkers(executor, watch=lambda *step: steps.append(step), workers=2)
+        there = workers.residuals(points)
+    for residual, (model_, at) in zip(there, points, strict=True):
+        assert residual is not None
+        np.testing.assert_array_equal(residual, model_.residual(at))
+    assert [left for _, _, left in steps] == [2, 1, 0]
+
+    def locked(_model: EffectModel, at: np.ndarray) -> np.ndarray:
+        if at.size == z.size:
+            raise NotConverged(Failure("steer", "load", 1, 1.0, "deg", 0.0, "", "it locks"))
+        return at
+
+    monkeypatch.setattr(EffectModel, "residual", locked)
+    alone = DiscoveryWorkers().residuals(points)
+    assert alone[0] is tuned.z and alone[1:] == [None, None]
 
 
 def test_a_stored_fit_is_the_computed_one(tuned: Fit, tmp_path: Path) -> None:

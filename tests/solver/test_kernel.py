@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 
+from doe_kc.axle_file import read_axle
+from doe_kc.examples import EXAMPLE_TYPES, example_folder
 from doe_kc.solver import kernel as kernels
 from doe_kc.solver.assembly import assemble
-from doe_kc.solver.kernel import interpreted_functions, kernel
+from doe_kc.solver.differentiation import derivatives
+from doe_kc.solver.kernel import interpreted_functions, kernel, kernel_operations
 from doe_kc.solver.layout import layout_text, read_layout
 from doe_kc.solver.library import CACHE_VARIABLE, find_compiler
+from doe_kc.solver.operations import Operations, operations_of
 from doe_kc.solver.suite import library_for
 from tests.reference import nominal
 
@@ -77,3 +83,27 @@ def test_compiled_constants_are_the_interpreted_ones(monkeypatch: pytest.MonkeyP
     interpreted = np.asarray(interpreted_functions(TOPOLOGY)["constants"](p)).ravel()
     assert own.constants.class_name() == "External"
     np.testing.assert_allclose(own.constant_values(values), interpreted, rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", EXAMPLE_TYPES)
+def test_the_jacobian_has_the_places_of_the_layout_on_every_type(name: str) -> None:
+    topology = read_axle(example_folder(name) / "axle.toml").topology
+    own, layout = kernel_operations(topology), kernel(topology).layout
+    (pattern,) = own["jacobian"].patterns
+    np.testing.assert_array_equal(np.array(pattern.get_triplet()), [layout.rows, layout.cols])
+    casadis = operations_of(interpreted_functions(topology)["jacobian"])
+    assert len(own["jacobian"].rows) < len(casadis.rows)
+
+
+def test_a_jacobian_of_other_places_is_casadis(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A derivative that is nought everywhere may be known as such in one way only."""
+    expected = operations_of(interpreted_functions(TOPOLOGY)["jacobian"])
+
+    def fewer(operations: Operations, blocks: Sequence[tuple[int, int]]) -> Operations:
+        whole = derivatives(operations, blocks)
+        return replace(whole, patterns=(ca.Sparsity(*whole.patterns[0].shape),))
+
+    monkeypatch.setattr(kernels, "derivatives", fewer)
+    own = kernel_operations(TOPOLOGY)["jacobian"]
+    np.testing.assert_array_equal(own.rows, expected.rows)
+    assert own.patterns == expected.patterns

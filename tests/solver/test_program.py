@@ -66,13 +66,6 @@ def test_results_may_be_arguments_constants_or_nothing() -> None:
     assert ProgramFunction(program_of(of_expressions(ca.SX(0, 1), symbols=(x,))))(np.ones(2)).size == 0
 
 
-def test_an_operation_without_c_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    x = ca.SX.sym("x")
-    monkeypatch.delitem(EXPRESSIONS, ca.OP_SIN)
-    with pytest.raises(CompileError, match=rf"operation {ca.OP_SIN} of f has no C expression"):
-        program_of(of_expressions(ca.sin(x), symbols=(x,)))
-
-
 def test_no_value_is_computed_twice_and_places_are_shared() -> None:
     function = interpreted_functions(TOPOLOGY)["jacobian"]
     own = program_of(function)
