@@ -103,15 +103,7 @@ def _partials(
     moving: operands of the arguments.
     """
     rows = operations.rows.tolist()
-    needed = [False] * len(rows)
-    for operand in results:
-        if operand >= 0:
-            needed[operand] = True
-    for k in range(len(rows) - 1, -1, -1):
-        if needed[k]:
-            for operand in rows[k][1:]:
-                if operand >= 0:
-                    needed[operand] = True
+    needed = _needed(rows, results)
     edges: Edges = [{} for _ in range(len(rows) + len(results))]
     for k, (code, a, b) in enumerate(rows):
         if not needed[k] or not (a in moving or b in moving):
@@ -194,11 +186,10 @@ def _eliminate(edges: Edges, count: int, recorder: _Derivation) -> None:
                 heapq.heappush(queue, (products(near), -near))
 
 
-def _without_unused(all_of: Operations) -> Operations:
-    """Without operations that no result needs."""
-    rows = all_of.rows.tolist()
+def _needed(rows: Sequence[Sequence[int]], results: Sequence[int]) -> list[bool]:
+    """Of each operation, whether one of the operands `results` hangs on it."""
     needed = [False] * len(rows)
-    for operand in all_of.results[:, 2].tolist():
+    for operand in results:
         if operand >= 0:
             needed[operand] = True
     for k in range(len(rows) - 1, -1, -1):
@@ -206,7 +197,12 @@ def _without_unused(all_of: Operations) -> Operations:
             for operand in rows[k][1:]:
                 if operand >= 0:
                     needed[operand] = True
-    kept = np.array(needed, dtype=bool)
+    return needed
+
+
+def _without_unused(all_of: Operations) -> Operations:
+    """Without operations that no result needs."""
+    kept = np.array(_needed(all_of.rows.tolist(), all_of.results[:, 2].tolist()), dtype=bool)
     number = np.append(np.cumsum(kept) - 1, 0)
 
     def renumbered(operands: np.ndarray) -> np.ndarray:
