@@ -428,6 +428,7 @@ failure:
     return 0;
 }
 
+/* What one lane does, as driver.c counts it. */
 static void count(long long *counts, int want) {
     counts[0] += (want & EVALUATE) != 0;
     counts[1] += (want & FACTOR) != 0;
@@ -440,7 +441,10 @@ static void run(block *b) {
     for (int l = 0; l < LANES; l++) b->want[l] = b->lanes[l].steps ? go_on(b, b->lanes + l, l) : 0;
     for (;;) {
         int any = 0, meet = 0, others = 0, waiting = 0, now[LANES];
-        for (int l = 0; l < LANES; l++) others += b->want[l] && !(b->want[l] & (FACTOR | MEET)), waiting += (b->want[l] & FACTOR) != 0;
+        for (int l = 0; l < LANES; l++) {   /* a Jacobian costs six residuals: a few that want one wait for more */
+            waiting += (b->want[l] & FACTOR) != 0;
+            others += b->want[l] && !(b->want[l] & (FACTOR | MEET));
+        }
         for (int l = 0; l < LANES; l++) {
             now[l] = others && waiting < LANES / 2 && b->want[l] & FACTOR ? 0 : b->want[l];
             any |= now[l] & ~MEET, meet |= now[l] & MEET;

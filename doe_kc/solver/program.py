@@ -87,10 +87,8 @@ def program_from(operations: Operations) -> Program:
 
 def _levels(operations: Operations) -> IntArray:
     """(n,) how many operations must come before each one, one after the other."""
-    count = len(operations.rows)
-    levels = [-1] * (
-        count + sum(operations.sizes) + len(operations.constants)
-    )  # arguments and constants from behind
+    count, given = len(operations.rows), sum(operations.sizes) + len(operations.constants)
+    levels = [-1] * (count + given)  # arguments and constants from behind
     for k, (_, a, b) in enumerate(operations.rows.tolist()):
         levels[k] = 1 + max(levels[a], levels[b])
     return np.array(levels[:count], dtype=np.int64)

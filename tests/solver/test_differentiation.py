@@ -108,7 +108,7 @@ def nonzeros(whole: Operations, arguments: list[np.ndarray], kind: type[np.float
 
 @pytest.mark.parametrize("name", EXAMPLE_TYPES)
 def test_rounding_is_no_larger_than_casadis(name: str) -> None:
-    """Numbers of 80 bits tell what both would be without, at an equilibrium."""
+    """What CasADi's would be without, numbers of 80 bits tell, at an equilibrium."""
     axle = read_axle(example_folder(name) / "axle.toml")
     eq, c = assemble(axle.topology), kernel(axle.topology).constant_values(dict(axle.values))
     branch = solve(axle, ["vertical"]).cases["vertical"].branches[0]
@@ -119,7 +119,8 @@ def test_rounding_is_no_larger_than_casadis(name: str) -> None:
     casadis = [ca.jacobian(eq.residual, eq.x), ca.jacobian(eq.residual, eq.c)]
     other = operations_of(ca.Function("casadis", symbols, casadis))
     rounded = [nonzeros(one, at, np.float64) for one in (own, other)]
-    for k, truth in enumerate(nonzeros(own, at, np.longdouble)):
+    for k, truth in enumerate(nonzeros(other, at, np.longdouble)):
+        assert own.patterns[k] == other.patterns[k]
         row = np.array(own.patterns[k].row())
         largest = np.zeros(eq.residual.numel(), dtype=np.longdouble)
         np.maximum.at(largest, row, np.abs(truth))

@@ -10,9 +10,13 @@ import pytest
 
 from doe_kc.axle import Axle
 from doe_kc.load_cases.vertical import Vertical
-from doe_kc.solver import batch_library, lane_march
+from doe_kc.solver import batch_library, lane_march, suite
+from doe_kc.solver.compiled import MarchLibrary
 from doe_kc.solver.elimination import EliminationOrder
+from doe_kc.solver.equilibria import March, MarchProblem
+from doe_kc.solver.kernel import Kernel
 from doe_kc.solver.library import find_compiler
+from doe_kc.solver.march import march_of
 from doe_kc.solver.result import Solution
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
@@ -21,6 +25,19 @@ from tests.solver.test_batch_suite import EFFECTS_OF
 pytestmark = pytest.mark.skipif(find_compiler() is None, reason="no C compiler here")
 FRICTIONAL = EFFECTS_OF["mcpherson_front", True]
 CLOSE = 1e-7
+
+
+@pytest.fixture
+def alone(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """A number for every march that was done alone after all."""
+    done: list[int] = []
+
+    def counted(k: Kernel, library: MarchLibrary | None, problem: MarchProblem) -> March:
+        done.append(len(problem.s))
+        return march_of(k, library, problem)
+
+    monkeypatch.setattr(suite, "march_of", counted)
+    return done
 
 
 def assert_close(found: Solution, expected: Solution) -> None:
@@ -49,9 +66,12 @@ def assert_same(found: Solution, expected: Solution) -> None:
 
 
 @pytest.mark.parametrize("kind", list(EFFECTS_OF))
-def test_they_are_what_each_is_alone(kind: tuple[str, bool]) -> None:
+def test_they_are_what_each_is_alone(kind: tuple[str, bool], alone: list[int]) -> None:
     axle = EFFECTS_OF[kind]
-    assert_close(solve(axle, lanes=True), solve(axle))
+    beside = solve(axle, lanes=True)
+    assert not alone
+    assert_close(beside, solve(axle))
+    assert alone
 
 
 def test_nothing_hangs_on_what_is_beside() -> None:
@@ -62,10 +82,12 @@ def test_nothing_hangs_on_what_is_beside() -> None:
         assert_same(solve(FRICTIONAL, lanes=True, pool=pool), whole)
 
 
-def test_held_wheel_centres_go_beside_held_pads() -> None:
+def test_held_wheel_centres_go_beside_held_pads(alone: list[int]) -> None:
     axle = nominal()
     held = replace(axle, load_cases={**axle.load_cases, "vertical": Vertical(60.0, 16, control="wheel")})
-    assert_close(solve(held, lanes=True), solve(held))
+    beside = solve(held, lanes=True)
+    assert not alone
+    assert_close(beside, solve(held))
 
 
 def test_more_equilibria_inside_steps_than_there_was_room_for(monkeypatch: pytest.MonkeyPatch) -> None:
