@@ -17,10 +17,10 @@ from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     best_of_each_set,
+    held_loss,
     joint_refits,
     leaders,
     overlooked,
-    plausible_beside,
     set_refits,
     stiffer_first,
     temper,
@@ -65,7 +65,7 @@ class Step:
     gap: float
     """Whitened RMS of all records before, in their own errors."""
     candidates: tuple[HypothesisGain, ...]
-    """Best first; those of a plausible size that pass the threshold before all others."""
+    """Best first, by what they gain with their new sizes held where those are believed."""
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map, when that exceeds 1."""
     added: tuple[Hypothesis, ...]
@@ -83,7 +83,7 @@ class Decision:
     screened: tuple[Screened, ...]
     """Every hypothesis that the fit can take, added to it; the largest gain first."""
     trials: tuple[HypothesisFit, ...]
-    """Joint refits, best first, those of a plausible size that pass the threshold before all others. One of
+    """Joint refits, best first, by what they gain with their new sizes held where those are believed. One of
     several effects at once stands by the last of them."""
     temper: float
     """T >= 1: ln evidence is divided by T, the mean square of the residual map with the first refit, or
@@ -171,7 +171,7 @@ def next_decision(
     if unexplained and not laws_open and not any(_accepted(t, current) for t in trials):
         trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
     trials = best_of_each_set(trials)
-    trials.sort(key=lambda t: (_passes(t, current), t.gain), reverse=True)
+    trials.sort(key=lambda t: (_passes(t, current), _believed_gain(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:
         return Decision(current, tuple(screened), (), temper(current), False)
@@ -201,8 +201,13 @@ def _leader_refits(
 
 
 def _passes(trial: HypothesisFit, current: Fit) -> bool:
-    """Whether a refit is worth a step, all new sizes believed."""
-    return trial.gain > ACCEPTED_ODDS and plausible_beside(trial.fit, current.model.members)
+    """Whether a refit is worth a step, all new sizes held where they are believed."""
+    return _believed_gain(trial, current) > ACCEPTED_ODDS
+
+
+def _believed_gain(trial: HypothesisFit, current: Fit) -> float:
+    """ln posterior odds of a refit whose new sizes are held where they are believed."""
+    return trial.gain - held_loss(trial.fit, current.model.members)
 
 
 def _accepted(trial: HypothesisFit, current: Fit) -> bool:

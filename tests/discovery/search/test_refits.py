@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.refits import (
     HypothesisFit,
     believable,
     best_of_each_set,
+    held_loss,
     leaders,
     more_than_none,
     more_than_trace,
     overlooked,
-    plausible_beside,
     stiffer_first,
-    temper,
     untried,
 )
 from doe_kc.effects.hypothesis import Hypothesis, Size
@@ -67,20 +67,30 @@ def test_a_size_is_there_when_that_is_sure() -> None:
     assert more_than_none([])
 
 
-def test_a_size_is_less_sure_where_the_model_leaves_more_than_noise() -> None:
-    """By the root of how much more, so that what is not in the model yet keeps no effect out."""
+def test_a_size_beyond_belief_costs_what_the_records_lose_at_the_limit() -> None:
+    """To second order: with d standard deviations between, d^2 / 2, and nothing that others lose."""
     explained = discovery("named").search.with_law_discrepancy
     (member,) = explained.model.members
-    place = explained.model.place(member)
-    sd = np.sqrt(np.diag(explained.covariance)[place])
-    beyond = explained.z.copy()
-    beyond[place] = np.array([s.most for s in member.sizes]) + 10.0 * sd
-    assert temper(explained) == 1.0
-    for times, believed in ((1.0, False), (30.0, True)):
-        fit = replace(explained, z=beyond, residual=times * explained.residual)
-        assert (np.sqrt(temper(fit)) > 5.0) == believed
-        assert plausible_beside(fit, ()) == believed
-    assert plausible_beside(replace(explained, z=beyond), [member])
+    place, most = explained.model.place(member), np.array([size.most for size in member.sizes])
+    assert not any(size.shape for size in member.sizes)
+    covariance = explained.covariance[place, place]
+    sd = np.sqrt(np.diag(covariance))
+
+    def at(amplitudes: Any) -> Fit:
+        z = explained.z.copy()
+        z[place] = amplitudes
+        return replace(explained, z=z)
+
+    assert held_loss(explained, ()) == held_loss(at(most), ()) == 0.0
+    for apart in (1.0, 7.0):
+        one = at(np.where(np.arange(most.size) == 0, most + apart * sd, 0.0))
+        assert held_loss(one, ()) == pytest.approx(0.5 * apart**2, rel=1e-9)
+        beyond = apart * sd
+        both = 0.5 * beyond @ np.linalg.inv(covariance) @ beyond
+        assert held_loss(at(most + beyond), ()) == pytest.approx(both, rel=1e-9)
+        assert held_loss(at(-most - beyond), ()) == pytest.approx(both, rel=1e-9)
+    assert held_loss(at(explained.model.upper[place]), ()) == np.inf
+    assert held_loss(at(most + 7.0 * sd), [member]) == 0.0
 
 
 @pytest.mark.parametrize(("alike", "refitted"), [(0.8, True), (0.4, False)])
