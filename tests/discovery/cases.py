@@ -63,6 +63,7 @@ HIDDEN: Mapping[str, Mapping[str, Mapping[str, Any]]] = {
     },
     "steady": {"strut_friction": {"force_N": 150.0}},
     "rubber": {"rubber_hysteresis": {"share": 0.3, "yield_mm": 0.1, "spread": 0.5}},
+    "rear_rubber": {"rubber_hysteresis": {"bushings": ["LLR"], "share": 0.4, "yield_mm": 0.1, "spread": 0.5}},
     "lead": {"tie_rod_compliance": {"k_N_mm": 3000.0}},
     "progression": {"bushing_progression": {"UPB": [0.1, 0.1, 0.1]}},
     "beyond": {"hub_compliance": {"camber_Nm_deg": 15000.0, "toe_Nm_deg": 30000.0}},

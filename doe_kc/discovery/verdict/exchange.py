@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
+from doe_kc.discovery.search.all_places import with_all_places
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.law_exchange import with_exchanged_laws
 from doe_kc.discovery.search.refits import temper
@@ -74,8 +75,10 @@ def _start(search: EffectSearch, better: BetterSet) -> FitStart:
 def _with_other_laws(
     search: EffectSearch, library: Sequence[Hypothesis], workers: DiscoveryWorkers
 ) -> EffectSearch:
-    """The search, gone on from sets with another law, or with what a law has taken up."""
-    return with_series_compliances(with_exchanged_laws(search, library, workers), library, workers)
+    """The search, gone on from sets with an effect in all its places, with another law, or with what a law
+    has taken up."""
+    joined = with_all_places(search, library, workers)
+    return with_series_compliances(with_exchanged_laws(joined, library, workers), library, workers)
 
 
 @dataclass(frozen=True)
