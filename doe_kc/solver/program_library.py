@@ -14,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from doe_kc.axle.topology import Topology
+from doe_kc.ground.garbage_collection import no_garbage_collection
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.dialect import LANE_EXPRESSIONS, Dialect
 from doe_kc.solver.instructions import own_instruction_set
@@ -96,7 +97,8 @@ def programs_for(
     if content is not None:
         with suppress(ValueError):
             return read_programs(content)
-    programs = make()
+    with no_garbage_collection():
+        programs = make()
     store_bytes(topology, kind, programs_bytes(programs))
     return programs
 

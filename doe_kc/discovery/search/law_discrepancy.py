@@ -71,16 +71,39 @@ def fit_discrepancy(exact: Fit, signals: Sequence[EffectSignal]) -> tuple[Fit, d
     return settled, dict(zip(names, shares, strict=True))
 
 
+@dataclass(frozen=True, eq=False)
+class ErrorsWithoutOwn(Mapping[str, Likelihood]):
+    """Name of each member with a discrepancy -> the records' errors with the discrepancies of all others.
+
+    Made each time that they are asked for: most never are, and each is 4 MB.
+    """
+
+    likelihood: Likelihood
+    """The records' own errors."""
+    signals: Mapping[str, EffectSignal]
+    """By member's name what it makes."""
+    shares: Mapping[str, float]
+    """By member's name the share of its discrepancy."""
+
+    def __getitem__(self, name: str) -> Likelihood:
+        if not self.shares[name]:
+            raise KeyError(name)
+        others = [share * (n != name) for n, share in self.shares.items()]
+        return with_discrepancy(self.likelihood, [self.signals[n] for n in self.shares], others)
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, share in self.shares.items() if share)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
 def without_own_discrepancy(
     exact: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, float]
-) -> dict[str, Likelihood]:
-    """Name of each member with a discrepancy -> the records' errors with the discrepancies of all others."""
+) -> ErrorsWithoutOwn:
+    """exact, signals: as of `fit_discrepancy`; shares: what that gives."""
     names = [h.name for h in exact.model.members]
-    return {
-        name: with_discrepancy(exact.model.likelihood, signals, [shares[n] * (n != name) for n in names])
-        for name in names
-        if shares[name]
-    }
+    return ErrorsWithoutOwn(exact.model.likelihood, dict(zip(names, signals, strict=True)), shares)
 
 
 def marginal(fit: Fit) -> float:
