@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,16 +17,34 @@ from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects.hypothesis import Hypothesis
 
 
+@dataclass(frozen=True)
+class Elimination:
+    """A set without the members that it makes needless."""
+
+    fit: Fit
+    """Of the members that stay."""
+    removals: dict[str, TriedRemoval]
+    """How the removals of all members ended that were tried, now or before."""
+    beside: Fit | None
+    """What was fitted beside the removals, at its optimum; None where no removal was tried, or a member
+    went."""
+
+
 def backward_elimination(
-    fit: Fit, least: float, workers: DiscoveryWorkers, known: MemberState, prior: SetPrior
-) -> tuple[Fit, dict[str, TriedRemoval]]:
-    """The fit without the members whose posterior odds against their removal are below `least`, ln, and how
-    the removals of all members ended that were tried, now or before.
+    fit: Fit,
+    least: float,
+    workers: DiscoveryWorkers,
+    known: MemberState,
+    prior: SetPrior,
+    beside: Fit | None = None,
+) -> Elimination:
+    """The fit without the members whose posterior odds against their removal are below `least`, ln.
 
     known: of the set before, its `without_own` also of this one: with its own discrepancy among the errors,
-    what a member makes would pass for an error of the records.
+    what a member makes would pass for an error of the records. beside: a fit of the same set that is of use
+    if all members stay, brought to its optimum while a worker would be idle.
     """
-    removals = dict(known.removals)
+    removals, exact = dict(known.removals), None
     while fit.model.members:
         members = fit.model.members
         needed = {h.name: least - _odds(members, h, prior) for h in members}
@@ -36,7 +54,11 @@ def backward_elimination(
             FitStart(w.model.without(h), np.delete(w.z, np.r_[place]), fit, w.cost + 2.0 * BEYOND_DOUBT)
             for w, (h, place) in zip(withs, tried, strict=True)
         ]
-        fewer = workers.fits(starts, "taking effects out")
+        also = [beside] if beside is not None and starts and not beside.converged else []
+        fewer = workers.fits([*starts, *(FitStart(f.model, f.z, f) for f in also)], "taking effects out")
+        if also:
+            *fewer, reached = fewer
+            exact = reached or beside
         spare: dict[str, float] = {}
         for (member, place), near, refit in zip(tried, withs, fewer, strict=True):
             if refit is not None:
@@ -46,10 +68,11 @@ def backward_elimination(
         least_lost = min(spare, key=lambda name: spare[name], default="")
         if not least_lost or spare[least_lost] > 0.0:
             break
+        beside = exact = None
         (without,) = (f for (h, _), f in zip(tried, fewer, strict=True) if h.name == least_lost)
         assert without is not None
         fit = fit_to_errors(without, fit.model.likelihood, workers)
-    return fit, removals
+    return Elimination(fit, removals, exact)
 
 
 def _doubtful(

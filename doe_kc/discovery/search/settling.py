@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.gauss_newton import refit_to_errors
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.search.baseline import with_sides_anew
 from doe_kc.discovery.search.conditioning import own_loops, with_conditioning
-from doe_kc.discovery.search.convergence import converged_fit, fit_to_errors
+from doe_kc.discovery.search.convergence import at_optimum, converged_fit
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.member_state import MemberState
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -46,8 +47,13 @@ def settled(
     known: of the set before it.
     """
     current = with_sides_anew(current)
-    current, removals = backward_elimination(current, ACCEPTED_ODDS, workers, known, prior)
-    exact = fit_to_errors(own_loops(current, own.axle), own.likelihood, workers)
+    near = refit_to_errors(own_loops(current, own.axle), own.likelihood)
+    stays = backward_elimination(current, ACCEPTED_ODDS, workers, known, prior, near)
+    if stays.fit is not current:
+        near = refit_to_errors(own_loops(stays.fit, own.axle), own.likelihood)
+    exact = stays.beside or at_optimum(near, workers)
+    removals = stays.removals
+    del near, stays
     signals = effect_signals(exact, workers)
     at_rest, shares = fit_discrepancy(exact, signals)
     state = MemberState(shares, without_own_discrepancy(exact, signals, shares), removals)

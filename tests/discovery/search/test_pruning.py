@@ -11,6 +11,7 @@ import pytest
 
 from doe_kc.discovery.fit import Fit, rewhitened_fit
 from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns, refit_to_errors
+from doe_kc.discovery.search.convergence import at_optimum
 from doe_kc.discovery.search.law_discrepancy import effect_signals, with_discrepancy, without_own_discrepancy
 from doe_kc.discovery.search.member_state import MemberState, TriedRemoval
 from doe_kc.discovery.search.pruning import backward_elimination
@@ -42,7 +43,7 @@ def pruned(
     workers: DiscoveryWorkers | None = None,
 ) -> Fit:
     asked = workers or DiscoveryWorkers()
-    return backward_elimination(found, least, asked, known or MemberState(), prior or SetPrior({}))[0]
+    return backward_elimination(found, least, asked, known or MemberState(), prior or SetPrior({})).fit
 
 
 def two_fitted() -> tuple[Fit, Hypothesis]:
@@ -110,9 +111,29 @@ def test_what_cost_much_is_not_tried_without_again_while_its_sizes_carry_as_much
 
 def test_removals_are_told() -> None:
     exact, hub = hub_fitted()
-    _, removals = backward_elimination(exact, 1e6, DiscoveryWorkers(), MemberState(), SetPrior({}))
+    removals = backward_elimination(exact, 1e6, DiscoveryWorkers(), MemberState(), SetPrior({})).removals
     assert removals[hub.name].lost > BEYOND_DOUBT
     assert removals[hub.name].carried > 0.0
+
+
+def test_a_fit_beside_the_removals_is_brought_to_its_optimum_where_all_members_stay() -> None:
+    """The same digits as by itself: it only fills a worker that would be idle."""
+    exact, hub = hub_fitted()
+    place, prior, z = exact.model.place(hub), SetPrior({}), exact.z.copy()
+    z[place] *= np.sqrt(20.0 / _carried(exact, place))  # so weak that its removal is tried, and loses more
+    weak, least = replace(exact, z=z), 6.0 + prior.log_odds([], hub)
+    wide = with_discrepancy(exact.model.likelihood, effect_signals(exact, DiscoveryWorkers()), [0.1])
+    beside = replace(rewhitened_fit(exact, wide), z=0.9 * exact.z, converged=False)
+
+    def end(fit: Fit, least: float, near: Fit) -> Fit | None:
+        return backward_elimination(fit, least, DiscoveryWorkers(), MemberState(), prior, near).beside
+
+    alone, together = at_optimum(beside, DiscoveryWorkers()), end(weak, least, beside)
+    assert together is not None and together.converged
+    np.testing.assert_array_equal(together.z, alone.z)
+    assert end(weak, least, replace(beside, converged=True)) is None, "has its end"
+    assert end(exact, least, beside) is None, "no removal was tried"
+    assert end(exact, 1e6, beside) is None, "the member went"
 
 
 def hub_fitted() -> tuple[Fit, Hypothesis]:
