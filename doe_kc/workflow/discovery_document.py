@@ -11,7 +11,7 @@ from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate
 from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, exclusion_limit
-from doe_kc.discovery.verdict.sentences import adequacy_words, odds_words
+from doe_kc.discovery.verdict.sentences import OBJECTION, adequacy_words, odds_words
 from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
@@ -206,6 +206,7 @@ def discovery_lines(discovery: Discovery) -> list[str]:
     lines += [f"trace: {_line(discovery, f)}; too small to matter" for f in discovery.traces]
     for group in discovery.classes:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")
+    lines += [s[0].lower() + s[1:].rstrip(".") for s in discovery.sentences if s.startswith(OBJECTION)]
     lines += [f"unexplained: {contrast_words(c)}, {z:+.1f} sd" for c, z in discovery.unexplained[:3]]
     gap = discovery.gap
     steps = [f"{gap.nominal:.2f} as handed in", f"{gap.tuned:.2f} re-tuned"]

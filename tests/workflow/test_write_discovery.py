@@ -233,6 +233,15 @@ def test_the_terminal_says_verdict_gap_and_what_next(car: str) -> None:
     assert all("\n" not in line for line in lines)
 
 
+def test_the_terminal_says_what_speaks_against_a_name() -> None:
+    found = discovery("none")
+    against = "Against a name: strut bending would have to be 3.3 times its typical size."
+    (line,) = set(discovery_lines(replace(found, sentences=(*found.sentences, against)))) - set(
+        discovery_lines(found)
+    )
+    assert line == "against a name: strut bending would have to be 3.3 times its typical size"
+
+
 def test_the_axle_says_when_its_effects_are_leads_only() -> None:
     assert axle_note(discovery("none")) == "no effect missing; re-tuned"
     assert "leads, not confirmed: tie-rod compliance" in axle_note(discovery("lead"))

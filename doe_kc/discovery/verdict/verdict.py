@@ -18,6 +18,7 @@ from doe_kc.discovery.thresholds import (
     NOISE_CHANCE,
 )
 from doe_kc.discovery.verdict.held_out import HeldOut
+from doe_kc.effects.words import hypothesis_words
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,8 @@ def class_of(finding: Finding) -> tuple[str, ...]:
 
 def _implausible(findings: Sequence[Finding]) -> list[str]:
     return [
-        f"{f.hypothesis.name} would have to be {f.largest:.1f} times its typical size"
+        f"{hypothesis_words(f.hypothesis)} would have to be {f.largest:.1f} times its typical size, more than "
+        "such a part is believed to have"
         for f in findings
         if not f.believed
     ]
