@@ -77,8 +77,8 @@ def class_of(finding: Finding) -> tuple[str, ...]:
 
 def _implausible(findings: Sequence[Finding]) -> list[str]:
     return [
-        f"{hypothesis_words(f.hypothesis)} would have to be {f.largest:.1f} times its typical size, more than "
-        "such a part is believed to have"
+        f"{hypothesis_words(f.hypothesis)} would have to be {f.largest:.1f} times its typical size, more "
+        "than such a part is believed to have"
         for f in findings
         if not f.believed
     ]
