@@ -227,13 +227,13 @@ def held_loss(fit: Fit, others: Sequence[Hypothesis]) -> float:
     places, beyond = [], []
     for member, place in fit.model.places():
         for i, size in enumerate(member.sizes, start=place.start):
-            amplitude = float(fit.z[i])
-            if member.name in names or size.shape or abs(amplitude) <= size.most:
+            excess = float(fit.z[i] - np.clip(fit.z[i], -size.most, size.most))
+            if member.name in names or size.shape or excess == 0.0:
                 continue
             if fit.z[i] in (fit.model.lower[i], fit.model.upper[i]):
                 return np.inf
             places.append(i)
-            beyond.append(abs(amplitude) - size.most if amplitude > 0.0 else size.most - abs(amplitude))
+            beyond.append(excess)
     if not places:
         return 0.0
     return 0.5 * float(np.array(beyond) @ np.linalg.solve(fit.covariance[np.ix_(places, places)], beyond))

@@ -48,12 +48,12 @@ def settled(
     """
     current = with_sides_anew(current)
     near = refit_to_errors(own_loops(current, own.axle), own.likelihood)
-    stays = backward_elimination(current, ACCEPTED_ODDS, workers, known, prior, near)
-    if stays.fit is not current:
-        near = refit_to_errors(own_loops(stays.fit, own.axle), own.likelihood)
-    exact = stays.beside or at_optimum(near, workers)
-    removals = stays.removals
-    del near, stays
+    kept = backward_elimination(current, ACCEPTED_ODDS, workers, known, prior, near)
+    if kept.fit is not current:
+        near = refit_to_errors(own_loops(kept.fit, own.axle), own.likelihood)
+    exact = kept.beside or at_optimum(near, workers)
+    removals = kept.removals
+    del near, kept
     signals = effect_signals(exact, workers)
     at_rest, shares = fit_discrepancy(exact, signals)
     state = MemberState(shares, without_own_discrepancy(exact, signals, shares), removals)
