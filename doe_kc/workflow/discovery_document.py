@@ -206,7 +206,8 @@ def discovery_lines(discovery: Discovery) -> list[str]:
     lines += [f"trace: {_line(discovery, f)}; too small to matter" for f in discovery.traces]
     for group in discovery.classes:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")
-    lines += [s[0].lower() + s[1:].rstrip(".") for s in discovery.sentences if s.startswith(OBJECTION)]
+    against = (s.removeprefix(OBJECTION) for s in discovery.sentences if s.startswith(OBJECTION))
+    lines += [f"{OBJECTION.lower()}{clause.rstrip('.')}" for clause in against]
     lines += [f"unexplained: {contrast_words(c)}, {z:+.1f} sd" for c, z in discovery.unexplained[:3]]
     gap = discovery.gap
     steps = [f"{gap.nominal:.2f} as handed in", f"{gap.tuned:.2f} re-tuned"]

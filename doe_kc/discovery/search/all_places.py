@@ -7,7 +7,6 @@ as that of the lower arms' rear bushings and that of the others.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -39,9 +38,7 @@ def with_all_places(
         gain = fit.evidence - last.evidence + prior
         if gain <= 0.0:
             continue
-        other = search_from(
-            search, replace(start, z=fit.z, ceiling=np.inf), everywhere, gain, library, workers
-        )
+        other = search_from(search, FitStart(fit.model, fit.z, fit), everywhere, gain, library, workers)
         if other.log_posterior > search.log_posterior:
             return other
     return search

@@ -171,7 +171,7 @@ def next_decision(
     if unexplained and not laws_open and not any(_accepted(t, current) for t in trials):
         trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
     trials = best_of_each_set(trials)
-    trials.sort(key=lambda t: (_passes(t, current), _believed_gain(t, current), t.gain), reverse=True)
+    trials.sort(key=lambda t: (_believed_gain(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)
     if not trials:
         return Decision(current, tuple(screened), (), temper(current), False)
