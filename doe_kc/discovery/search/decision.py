@@ -12,6 +12,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.screening.score_test import score_tests
 from doe_kc.discovery.screening.screen import Screened, shape_of
 from doe_kc.discovery.search.compatibility import compatible
+from doe_kc.discovery.search.joined_places import joined_refits
 from doe_kc.discovery.search.nominal_refits import refits_from_nominal
 from doe_kc.discovery.search.proposals import LinearSets, SetProposal
 from doe_kc.discovery.search.refits import (
@@ -170,6 +171,9 @@ def next_decision(
     unexplained = current.residual_map.chance < NOISE_CHANCE
     if unexplained and not laws_open and not any(_accepted(t, current) for t in trials):
         trials += joint_refits(current, untried(screened, trials), prior, workers, ACCEPTED_ODDS)
+    best = max(trials, key=lambda t: _believed_gain(t, current), default=None)
+    if best is not None and _passes(best, current):
+        trials += joined_refits(current, best, library, prior, workers)
     trials = best_of_each_set(trials)
     trials.sort(key=lambda t: (_believed_gain(t, current), t.gain), reverse=True)
     trials = stiffer_first(trials)

@@ -18,12 +18,12 @@ import numpy as np
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.law_variants import default_law, frictions, open_laws, with_law
-from doe_kc.discovery.search.refits import more_than_trace
+from doe_kc.discovery.search.refits import more_than_trace, no_more_than_trace
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, FREE_TRAVELS, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects._friction import SHARES, TRAVEL
-from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.effects.hypothesis import Hypothesis, Size
 
 
 def with_free_shapes(current: Fit, workers: DiscoveryWorkers) -> tuple[Fit, Fit | None]:
@@ -43,7 +43,7 @@ def with_unlike_bushings(current: Fit, workers: DiscoveryWorkers) -> Fit:
     small. And further effects are asked for beside it: what one bushing has more than the others can hide an
     effect.
     """
-    rubber = [h for h in frictions_to_free(current) if _is_rubber(h)]
+    rubber = [h for h in frictions_to_free(current) if is_rubber(h)]
     return _with_shapes(current, rubber, workers)[0]
 
 
@@ -92,20 +92,30 @@ def frictions_to_free(current: Fit) -> list[Hypothesis]:
     free = [h for h in frictions(current) if len(EFFECTS[h.effect].variants(default_law(h))) > 1]
     others = [h for h in current.model.members if h not in free and not EFFECTS[h.effect].on_rig]
     if not others:
-        return [h for h in free if _is_rubber(h)]
+        return [h for h in free if is_rubber(h)]
     return [h for h in free if beyond_trace(current, h)]
 
 
-def _is_rubber(member: Hypothesis) -> bool:
+def is_rubber(member: Hypothesis) -> bool:
     """Whether a friction is that of bushings: dry ones have several laws."""
     return not EFFECTS[member.effect].laws
 
 
 def beyond_trace(current: Fit, member: Hypothesis) -> bool:
     """Whether a member of the set is surely more than a trace."""
+    return more_than_trace(_amounts(current, member))
+
+
+def within_trace(current: Fit, member: Hypothesis) -> bool:
+    """Whether a member of the set is surely no more than a trace."""
+    return no_more_than_trace(_amounts(current, member))
+
+
+def _amounts(current: Fit, member: Hypothesis) -> list[tuple[Size, float, float]]:
+    """Sizes that say how much, in typical ones, with their standard deviations."""
     amplitudes, sds = amplitude_estimates(current, member)
     numbers = zip(member.sizes, np.abs(amplitudes).tolist(), sds.tolist(), strict=True)
-    return more_than_trace([(size, a, sd) for size, a, sd in numbers if not size.shape])
+    return [(size, a, sd) for size, a, sd in numbers if not size.shape]
 
 
 def best_fit(start: FitStart, workers: DiscoveryWorkers) -> Fit | None:

@@ -17,7 +17,14 @@ from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.convergence import fit_to_errors
-from doe_kc.discovery.search.free_shapes import best_fit, beyond_trace, frictions_to_free, with_most_numbers
+from doe_kc.discovery.search.free_shapes import (
+    best_fit,
+    beyond_trace,
+    frictions_to_free,
+    is_rubber,
+    with_most_numbers,
+    within_trace,
+)
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
 from doe_kc.discovery.search.law_variants import frictions, open_laws, other_laws, with_law
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, NOISE_CHANCE
@@ -75,7 +82,7 @@ def with_free_laws(current: Fit, own: Likelihood, workers: DiscoveryWorkers) -> 
     the discrepancy of the linear law says as much with fewer numbers, and the effect stays named.
     """
     exact = fit_to_errors(current, own, workers)
-    members = [h for h in frictions(exact) if open_laws(h)]
+    members = sorted((h for h in frictions(exact) if open_laws(h)), key=lambda h: not is_rubber(h))
     opened, compared = _until_explained(exact, members, lambda fit, h: with_best_law(fit, h, workers))
     bent = _bent(opened, workers)
     if bent is not opened and _explained(bent, workers):
@@ -109,10 +116,13 @@ def with_best_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers, u
     useful: cost above which no law is of use. A free shape pays for the width of its prior, so that it has to
     end below the closed law: of a strut friction by Prandtl-Iwan's law it had 26 to 81 of ln evidence less
     than that, and kept other effects out. It is not given up where it promises to end above it: its cost is
-    rough, and one of two stages, 318 N, that promised 4500 more ended 3160 below.
+    rough, and one of two stages, 318 N, that promised 4500 more ended 3160 below. A trace has laws of no more
+    numbers: 3 N in a strut had all others, beside a free play that makes each fit long.
     """
-    best = _with_closed_law(current, member, other_laws(member), workers, useful)
-    if best.residual_map.chance >= NOISE_CHANCE:
+    trace = within_trace(current, member)
+    laws = [law for law in other_laws(member) if not trace or len(law.sizes) <= len(member.sizes)]
+    best = _with_closed_law(current, member, laws, workers, useful)
+    if trace or best.residual_map.chance >= NOISE_CHANCE:
         return best
     closed = next(h for h in best.model.members if h.name == member.name)
     free = best_fit(replace(with_most_numbers(best, [closed]), ceiling=useful), workers)

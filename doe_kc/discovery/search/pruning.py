@@ -80,11 +80,14 @@ def _doubtful(
 ) -> tuple[list[tuple[Hypothesis, slice]], list[Fit]]:
     """Members that are tried without, with their places, and each one's fit to errors that do not hold its
     law. The others would come in again: in either errors they carry many times what it takes, or not much
-    less than when their removal was last tried and lost that."""
+    less than when their removal was last tried and lost that. What one without a size carries is not known
+    until it is tried: what it lost then counts from there on."""
 
     def weak(near: Fit, member: Hypothesis, place: slice) -> bool:
         loss, tried = _carried(near, place), known.removals.get(member.name)
-        if tried is not None and tried.carried > 0.0:
+        if tried is not None and not member.sizes:
+            loss = min(tried.lost, BEYOND_DOUBT)
+        elif tried is not None and tried.carried > 0.0:
             loss *= max(1.0, min(tried.lost, BEYOND_DOUBT) / tried.carried)
         return loss < REMOVAL_FACTOR * needed[member.name]
 

@@ -117,6 +117,12 @@ def more_than_trace(sizes: Sized) -> bool:
     return not counted or any(abs(a) - CONFIDENT * sd >= RELEVANT for _, a, sd in counted)
 
 
+def no_more_than_trace(sizes: Sized) -> bool:
+    """Whether every size is surely that of a trace; never an effect without a size."""
+    counted = list(sizes)
+    return bool(counted) and all(abs(a) + CONFIDENT * sd < RELEVANT for _, a, sd in counted)
+
+
 def more_than_none(sizes: Sized) -> bool:
     """Whether a size is surely not none; an effect without a size counts when it is there."""
     counted = list(sizes)

@@ -17,6 +17,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.effect_search import EffectSearch
+from doe_kc.discovery.search.free_shapes import within_trace
 from doe_kc.discovery.search.law_variants import default_law, frictions, other_laws, with_law
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import search_from
@@ -48,7 +49,7 @@ def with_series_compliances(
     the best and a free shape stands for it: one of 236 N on a mount of 7600 N/mm had become 155.1 +- 4.0 N by
     Duhem's law, by which a mount brought nothing; by Prandtl-Iwan's the set with it is 9 of ln posterior odds
     better. Then it must fit better than any free shape could: a friction of two stages, 276 N, became 397 +-
-    33 N on a mount that is not there.
+    33 N on a mount that is not there. Not of a trace: half of it is one too.
     """
     if search.with_law_discrepancy.residual_map.chance < NOISE_CHANCE:
         return search
@@ -60,7 +61,8 @@ def with_series_compliances(
         probable = fit is not None and fit.evidence - last.evidence + odds > 0.0
         if not probable and not _stands_for_more_numbers(search, member):
             continue
-        starts = [s for law in _closed_laws(member) for s in _starts(last, member, compliance, law)]
+        laws = [] if within_trace(last, member) else _closed_laws(member)
+        starts = [s for law in laws for s in _starts(last, member, compliance, law)]
         reached = [(start, fit), *zip(starts, _fits(starts, workers), strict=True)]
         there = [(f.evidence, k, f) for k, (_, f) in enumerate(reached) if f is not None]
         if not there:
