@@ -13,6 +13,7 @@ from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
 
@@ -81,8 +82,17 @@ def disagreeing() -> Fit:
 def beside_a_hub() -> Fit:
     """The friction by its default law, and a hub of no size, which moves nothing."""
     (hub,) = library("hub_compliance")
-    found, none = agreeing(), np.zeros(len(hub.sizes))
-    model, z = found.model.extended(hub), np.append(found.z, none)
+    return _beside(agreeing(), hub)
+
+
+def with_rubber(found: Fit) -> Fit:
+    """A fit and rubber of no size in all bushings, which moves nothing."""
+    return _beside(found, EFFECTS["rubber_hysteresis"].hypotheses()[0])
+
+
+def _beside(found: Fit, further: Hypothesis) -> Fit:
+    none = np.zeros(len(further.sizes))
+    model, z = found.model.extended(further), np.append(found.z, none)
     own = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
     return replace(found, model=model, z=z, jacobian=model.jacobian(own))
 

@@ -26,7 +26,15 @@ from doe_kc.effects._backbone import nearest_backbone
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
-from tests.discovery.search.law_answers import CLOSED, Answers, agreeing, beside_a_hub, disagreeing, records
+from tests.discovery.search.law_answers import (
+    CLOSED,
+    Answers,
+    agreeing,
+    beside_a_hub,
+    disagreeing,
+    records,
+    with_rubber,
+)
 
 
 @pytest.mark.parametrize(("share", "opened"), [(0.1, True), (0.0, False)])
@@ -62,6 +70,34 @@ def test_a_free_law_is_taken_only_where_it_gains(cost: float, opened: bool) -> N
     free = ["backbone"] * (1 + len(FREE_TRAVELS))
     assert asked.laws == [*CLOSED, *free]
     assert bool(found.model.members[0].law) is opened
+
+
+@pytest.mark.parametrize(("amplitude", "asked_for"), [(0.02, ["iwan"]), (0.2, CLOSED)])
+def test_a_trace_is_asked_for_no_law_of_more_numbers(amplitude: float, asked_for: list[str]) -> None:
+    """3 N in a strut had the laws of a friction, beside a free play that makes each fit long."""
+    current, asked = disagreeing(), Answers(10.0)
+    z = current.z.copy()
+    z[current.model.dimension] = amplitude
+    (member,) = current.model.members
+    with_best_law(replace(current, z=z), member, asked)
+    free = [] if asked_for == ["iwan"] else ["backbone"] * (1 + len(FREE_TRAVELS))
+    assert asked.laws == [*asked_for, *free]
+
+
+def test_bushings_that_are_unlike_come_before_the_laws_of_other_frictions() -> None:
+    """They always are: laws of two frictions beside bushings alike took a sixth of a search."""
+    current, asked = with_rubber(disagreeing()), []
+
+    class Noted(Answers):
+        def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
+            nonlocal asked
+            asked += [
+                next(h.effect for h in s.model.members if h not in current.model.members) for s in starts
+            ]
+            return super()._answers(starts)
+
+    with_free_laws(current, records(), Noted(10.0))
+    assert asked[0] == "rubber_hysteresis" and set(asked[1:]) == {"steering_friction"}
 
 
 def test_a_closed_law_that_explains_comes_before_a_free_one() -> None:

@@ -109,6 +109,19 @@ def test_what_cost_much_is_not_tried_without_again_while_its_sizes_carry_as_much
     assert bool(again.starts) == tried
 
 
+@pytest.mark.parametrize(("lost", "tried"), [(None, True), (5.0, True), (5000.0, False)])
+def test_what_has_no_size_is_tried_without_until_that_has_cost_much(lost: float | None, tried: bool) -> None:
+    """What another roll technique carries no derivative says: it was taken out for trial in every step."""
+    exact, hub = hub_fitted()
+    technique = library("roll_technique")[0]
+    both = replace(exact, model=exact.model.extended(technique))
+    asked = Watched()
+    removals = {} if lost is None else {technique.name: TriedRemoval(0.0, lost)}
+    found = pruned(both, ACCEPTED_ODDS, MemberState(removals=removals), SetPrior({}), asked)
+    assert bool(asked.starts) is tried
+    assert found.model.members == ((hub,) if tried else (hub, technique)), "no roll record: it moves nothing"
+
+
 def test_removals_are_told() -> None:
     exact, hub = hub_fitted()
     removals = backward_elimination(exact, 1e6, DiscoveryWorkers(), MemberState(), SetPrior({})).removals
