@@ -74,8 +74,6 @@ class Scan:
     """Best first."""
     interface: str | None
     """The interface whose summed probability is above PLACE_PROBABILITY, None without one."""
-    law: str | None
-    """The law whose summed probability is above PLACE_PROBABILITY, None without one."""
 
 
 def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
@@ -93,14 +91,13 @@ def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
         Place(p.interface, p.law, p.side, p.dofs, p.score, p.explained, float(share))
         for (p, _), share in zip(scored, shares, strict=True)
     )
-    return Scan(places, _sure(places, "interface"), _sure(places, "law"))
+    return Scan(places, _sure_interface(places))
 
 
-def _sure(places: Sequence[Place], level: str) -> str | None:
+def _sure_interface(places: Sequence[Place]) -> str | None:
     sums: dict[str, float] = {}
     for p in places:
-        key = getattr(p, level)
-        sums[key] = sums.get(key, 0.0) + p.probability
+        sums[p.interface] = sums.get(p.interface, 0.0) + p.probability
     best = max(sums, key=lambda k: sums[k])
     return best if sums[best] > PLACE_PROBABILITY else None
 

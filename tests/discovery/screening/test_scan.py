@@ -6,6 +6,7 @@ import pytest
 
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.scan import Place, scan
+from doe_kc.discovery.thresholds import PLACE_PROBABILITY
 from tests.discovery.cases import model
 
 
@@ -21,7 +22,7 @@ def test_a_friction_is_told_from_everything_else() -> None:
     """Which of the steering's parts rubs, four load cases do not say."""
     tuned = fit(model("friction"), model("friction").centre)
     found = scan(tuned)
-    assert found.law == "friction"
+    assert sum(p.probability for p in found.places if p.law == "friction") > PLACE_PROBABILITY
     assert {p.interface for p in found.places[:4]} & {"rack|housing", "ball joint"}
 
 
