@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from textwrap import fill
 
 from doe_kc.discovery.result import Discovery
@@ -58,6 +59,8 @@ def _name(hypothesis: Hypothesis) -> str:
 
 STEPS_WIDTH, STEPS_ROW, STEPS_TOP, STEPS_FOOT = 8.0, 0.34, 0.22, 0.55
 """Inches: width; a step; above and below them."""
+STEPS_LINE = 0.145
+"""Inches: a line of a step's name, of which a step has room for two."""
 STEPS_LETTERS = 52
 """Letters of a line of a step's name."""
 STEPS_RIGHT = 46.0
@@ -66,23 +69,25 @@ STEPS_RIGHT = 46.0
 
 def gap_steps_figure(steps: Sequence[GapStep], noise: float) -> Sheet:
     """A bar a step, its number at the end. noise: what noise alone leaves, the dashed line."""
-    height = STEPS_TOP + STEPS_ROW * len(steps) + STEPS_FOOT
-    page = Sheet((STEPS_WIDTH, height))
     labels = [fill(s.label, STEPS_LETTERS) for s in steps]
+    rows = [1.0 + STEPS_LINE / STEPS_ROW * max(0, label.count("\n") - 1) for label in labels]
+    ends = list(accumulate(rows))
+    middles = [end - row / 2.0 for end, row in zip(ends, rows, strict=True)]
+    tall = STEPS_ROW * ends[-1]
+    page = Sheet((STEPS_WIDTH, STEPS_TOP + tall + STEPS_FOOT))
     left = max(text_width(label, 8.0) for label in labels) + 10.0
-    tall = STEPS_ROW * len(steps) * POINTS
-    panel = page.add_panel(PageBox(left, STEPS_FOOT * POINTS, page.width - left - STEPS_RIGHT, tall))
+    panel = page.add_panel(PageBox(left, STEPS_FOOT * POINTS, page.width - left - STEPS_RIGHT, tall * POINTS))
     longest = max(s.gap for s in steps)
     panel.x.set_limits(0.0, longest * 1.02)
-    panel.y.set_limits(len(steps), 0)
-    panel.y.set_ticks([i + 0.5 for i in range(len(steps))], labels)
+    panel.y.set_limits(ends[-1], 0)
+    panel.y.set_ticks(middles, labels)
     panel.number_size["y"] = 8.0
     panel.grid["y"] = panel.marks["y"] = False
     panel.set_labels("deviation of all records from the model, times the noise of the rig", None)
     colours = [_colour(i, len(steps)) for i in range(len(steps))]
-    panel.bars([i + 0.5 for i in range(len(steps))], 0.0, [s.gap for s in steps], 0.62, colours)
-    for i, step in enumerate(steps):
-        panel.text(step.gap, i + 0.5, f"{step.gap:.2f} ×", shift=(4.0, 0.0), size=8.0, along="center")
+    panel.bars(middles, 0.0, [s.gap for s in steps], 0.62, colours)
+    for middle, step in zip(middles, steps, strict=True):
+        panel.text(step.gap, middle, f"{step.gap:.2f} ×", shift=(4.0, 0.0), size=8.0, along="center")
     panel.vline(noise, (0, (4, 2)), color=style.PALETTE["black"], lw=1.0, zorder=3)
     panel.text(noise, 0.0, "noise of the rig", shift=(0.0, 4.0), size=7.5, across="center", color="#333333")
     return page

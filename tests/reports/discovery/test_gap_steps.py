@@ -8,7 +8,8 @@ from itertools import pairwise
 import pytest
 
 from doe_kc.reports.discovery.effect_words import effect_words, effect_words_table, size_name
-from doe_kc.reports.discovery.gap_steps import gap_steps, gap_steps_figure
+from doe_kc.reports.discovery.gap_steps import GapStep, gap_steps, gap_steps_figure
+from doe_kc.reports.drawing.words import extent
 from tests.discovery.cases import discovery
 
 
@@ -51,6 +52,17 @@ def test_the_picture_holds_every_step(car: str) -> None:
     said = [w.text for w in page.words]
     assert page.outside == [] and "noise of the rig" in said
     assert {f"{s.gap:.2f} ×" for s in steps} <= set(said)
+
+
+def test_a_long_name_does_not_touch_the_next() -> None:
+    """An effect that comes in, one that goes and two laws that change have three lines."""
+    gone, laws = "− sub-frame flexibility", "other law of strut friction and rubber hysteresis"
+    long = f"+ tyre horizontal compliance, {gone}, {laws}"
+    names = ["model as handed in", long, long, f"{long}, + hub and wheel-bearing compliance", "re-tuned"]
+    page = gap_steps_figure([GapStep(name, 1.0) for name in names], 1.0)
+    lines = [extent(w) for w in page.words if any(w.text and w.text.split("\n")[0] in n for n in names)]
+    assert len(lines) == len(names)
+    assert all(above[1] > below[3] for above, below in pairwise(sorted(lines, key=lambda e: -e[1])))
 
 
 def test_an_effect_in_one_line() -> None:
