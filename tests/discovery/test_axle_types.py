@@ -15,6 +15,7 @@ from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.discovery.discover import discover
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import Discovery
+from doe_kc.discovery.thresholds import PLACE_PROBABILITY
 from doe_kc.effects import EFFECTS
 from doe_kc.measurement import Measurement
 from doe_kc.study import Study, read_study
@@ -74,7 +75,8 @@ def test_the_compliant_hub_is_named_with_its_size(axle_type: str) -> None:
 def test_the_scan_of_all_interfaces_points_to_the_hub(axle_type: str) -> None:
     """Without a list of effects, over ball joints, bushings, damper and sub-frame too."""
     scan = discovery(axle_type).scan
-    assert (scan.interface, scan.law) == ("wheel|knuckle", "compliance")
+    assert scan.interface == "wheel|knuckle"
+    assert sum(p.probability for p in scan.places if p.law == "compliance") > PLACE_PROBABILITY
     structure = study(axle_type).axle.topology.structure
     tried = {place.interface.split("|")[0] for place in scan.places}
     assert {ball.name for ball in structure.balls} <= tried
