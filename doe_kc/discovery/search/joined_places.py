@@ -31,7 +31,7 @@ def joined_refits(
     `current`.
 
     Beside rubber of the lower arms' rear bushings that of the others gained 142 of ln posterior odds, and
-    rubber of all bushings in the place of both 254. The search took a fault of the rig beside the two.
+    rubber of all bushings in the place of both 254.
     """
     starts = [start for _, start in joined_starts(trial.fit, library)]
     fits = workers.fits(starts, "joining places")

@@ -29,6 +29,11 @@ def other_laws(member: Hypothesis) -> list[Hypothesis]:
     return [v for v in variants if v.law != member.law and len(v.sizes) <= len(default.sizes) + 1]
 
 
+def laws_of_no_more_numbers(member: Hypothesis) -> list[Hypothesis]:
+    """The member by every other law of no more numbers than its own: those that a trace has."""
+    return [law for law in other_laws(member) if len(law.sizes) <= len(member.sizes)]
+
+
 def default_law(member: Hypothesis) -> Hypothesis:
     """The member by the default law of its effect."""
     return replace(member, law="", sizes=EFFECTS[member.effect].sizes) if member.law else member

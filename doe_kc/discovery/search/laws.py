@@ -26,7 +26,13 @@ from doe_kc.discovery.search.free_shapes import (
     within_trace,
 )
 from doe_kc.discovery.search.law_discrepancy import effect_signals, fit_discrepancy
-from doe_kc.discovery.search.law_variants import frictions, open_laws, other_laws, with_law
+from doe_kc.discovery.search.law_variants import (
+    frictions,
+    laws_of_no_more_numbers,
+    open_laws,
+    other_laws,
+    with_law,
+)
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, NOISE_CHANCE
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
@@ -120,7 +126,7 @@ def with_best_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers, u
     numbers: 3 N in a strut had all others, beside a free play that makes each fit long.
     """
     trace = within_trace(current, member)
-    laws = [law for law in other_laws(member) if not trace or len(law.sizes) <= len(member.sizes)]
+    laws = laws_of_no_more_numbers(member) if trace else other_laws(member)
     best = _with_closed_law(current, member, laws, workers, useful)
     if trace or best.residual_map.chance >= NOISE_CHANCE:
         return best
@@ -157,7 +163,7 @@ def with_best_closed_laws(current: Fit, workers: DiscoveryWorkers, compared: Set
             continue
         laws = other_laws(member)
         if member not in free and not beyond_trace(current, member):
-            laws = [law for law in laws if others and len(law.sizes) <= len(member.sizes)]
+            laws = laws_of_no_more_numbers(member) if others else []
         current = _with_closed_law(current, member, laws, workers)
     return current
 

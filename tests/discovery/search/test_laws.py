@@ -86,14 +86,14 @@ def test_a_trace_is_asked_for_no_law_of_more_numbers(amplitude: float, asked_for
 
 def test_bushings_that_are_unlike_come_before_the_laws_of_other_frictions() -> None:
     """They always are: laws of two frictions beside bushings alike took a sixth of a search."""
-    current, asked = with_rubber(disagreeing()), []
+    current = with_rubber(disagreeing())
+    asked: list[str] = []
 
     class Noted(Answers):
         def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
-            nonlocal asked
-            asked += [
+            asked.extend(
                 next(h.effect for h in s.model.members if h not in current.model.members) for s in starts
-            ]
+            )
             return super()._answers(starts)
 
     with_free_laws(current, records(), Noted(10.0))
