@@ -59,7 +59,7 @@ def numbers(curves: CurveSet) -> np.ndarray:
 
 @lru_cache
 def plain() -> CurveSet:
-    return curve_set(solve(short(), compiled=False))
+    return curve_set(solve(short(), lanes=True))
 
 
 def change(h: Hypothesis, amplitude: float, shape: float = 0.0) -> np.ndarray:
@@ -70,7 +70,7 @@ def change(h: Hypothesis, amplitude: float, shape: float = 0.0) -> np.ndarray:
 def _change(name: str, amplitude: float, shape: float) -> np.ndarray:
     (h,) = (h for h in HYPOTHESES if h.name == name)
     axle = with_hypothesis(h, amplitude, shape)
-    curves = steps_only(curve_set(solve(axle, compiled=False)), axle)
+    curves = steps_only(curve_set(solve(axle, lanes=True)), axle)
     return numbers(observed(axle, curves)) - numbers(plain())
 
 
@@ -155,7 +155,7 @@ def test_a_sharp_stop_of_a_wide_gap() -> None:
         (h,) = (h for h in HYPOTHESES if h.name == "tie_rod_free_play ROB")
         table = h.options({"gap_mm": gap, "contact_N_mm": contact})
         axle = apply_effect(nominal(), h.effect, table, source="test")
-        assert solve(axle, compiled=False).failure is None
+        assert solve(axle, lanes=True).failure is None
 
 
 def test_values_of_sizes() -> None:

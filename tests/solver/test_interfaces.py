@@ -67,12 +67,12 @@ def curves(name: str) -> CurveSet:
 
 
 def solved(axle: Axle) -> CurveSet:
-    return curve_set(solve(axle, compiled=False, settings=TIGHT))
+    return curve_set(solve(axle, lanes=True, settings=TIGHT))
 
 
 @lru_cache
 def influences(name: str) -> Influences:
-    return interface_influences(base(name), solve(base(name), compiled=False, settings=TIGHT))
+    return interface_influences(base(name), solve(base(name), lanes=True, settings=TIGHT))
 
 
 def both_sides(interface: str, kind: str, amplitude: float) -> dict[str, float]:

@@ -51,7 +51,7 @@ def short(axle: Axle) -> Axle:
 
 
 def tight(axle: Axle) -> Solution:
-    return solve(axle, compiled=False, settings=TIGHT)
+    return solve(axle, lanes=True, settings=TIGHT)
 
 
 def step_of(axle: Axle, path: str) -> float:

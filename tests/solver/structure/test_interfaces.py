@@ -40,7 +40,7 @@ def short(axle_type: str) -> Axle:
 
 
 def solved(axle: Axle) -> CurveSet:
-    return steps_only(curve_set(solve(axle, compiled=False, settings=TIGHT)), axle)
+    return steps_only(curve_set(solve(axle, lanes=True, settings=TIGHT)), axle)
 
 
 @lru_cache
@@ -51,7 +51,7 @@ def before(axle_type: str) -> CurveSet:
 @lru_cache
 def influences(axle_type: str) -> Influences:
     axle = short(axle_type)
-    return interface_influences(axle, solve(axle, compiled=False, settings=TIGHT))
+    return interface_influences(axle, solve(axle, lanes=True, settings=TIGHT))
 
 
 def series(interface: str, sides: tuple[str, ...] = ("L", "R"), **compliance: float) -> dict[str, float]:
