@@ -76,7 +76,7 @@ VALUES = [
 
 @lru_cache
 def copy_of(database: Path) -> tuple[tempfile.TemporaryDirectory[str], Path]:
-    """A copy for all tests, whose changed files are put back: copying 3000 times takes longer than they do."""
+    """A copy for all tests, whose changed files are put back: 900 copies take longer than the tests."""
     folder = tempfile.TemporaryDirectory()
     return folder, shutil.copytree(database, Path(folder.name) / database.name)
 
