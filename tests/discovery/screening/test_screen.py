@@ -119,6 +119,22 @@ def test_what_re_tuning_absorbs_but_for_a_trace_is_not_excluded(tuned: Fit) -> N
     assert unsure.status == "not testable" and unsure.detectable > 1.0 > 2.0 * 4.84 / hidden.detectability
 
 
+def test_a_member_shows_by_its_fit_where_its_screening_was_blind() -> None:
+    """Screened before what hid it came in; its sizes by the closed form of a Gaussian's information."""
+    search = discovery("named").search
+    last = search.with_law_discrepancy
+    (hub,) = (s for s in search.screened if s.hypothesis.effect == "hub_compliance")
+    blind = replace(hub, size_detectability=np.zeros_like(hub.size_detectability))
+    seen, unseen = (
+        hypothesis_statuses(last, [], [(s, "found")], 4.0, resolved=True)[0] for s in (hub, blind)
+    )
+    posterior = np.diag(last.covariance)[last.model.place(hub.hypothesis)]
+    by_fit = 4.84 * np.hypot(1.0 / np.sqrt(1.0 / posterior - 1.0), TRACE_SD)
+    np.testing.assert_allclose(unseen.limits, by_fit, rtol=1e-3)
+    assert unseen.detectable == pytest.approx(min(by_fit), rel=1e-3)
+    assert np.all(np.array(seen.limits) <= by_fit * 1.001)
+
+
 def test_what_every_car_has_some_of_is_excluded_above_its_mean(tuned: Fit) -> None:
     """The same columns, of an effect whose trace has a mean and of one whose trace has none."""
     (mount,) = library("rack_mount_compliance")
