@@ -48,7 +48,7 @@ def linearize(
     """
     there = with_values(axle, space.values(point))
     solution = solve(there)
-    paths = _moved_paths(space)
+    paths = moved_paths(space)
     exact = sensitivities(there, solution, paths)
     slopes = characteristic_gradients(there, solution, paths, windows=windows, exact=exact)
     curves = _chained(gradients_of(solution, exact), space, point, space.paths)
@@ -68,14 +68,15 @@ def value_gradients(
 
     solution: of that axle. directions, input_gain, pool: see `sensitivities`.
     """
-    paths = _moved_paths(space)
+    paths = moved_paths(space)
     exact = sensitivities(
         there, solution, paths, directions, outputs=CURVE_OUTPUTS, input_gain=input_gain, pool=pool
     )
     return gradients_of(solution, exact)
 
 
-def _moved_paths(space: Space) -> list[str]:
+def moved_paths(space: Space) -> list[str]:
+    """Paths of the variables, then those of what follows them."""
     return [*space.paths, *(tie.follower for tie in space.ties)]
 
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.correlation.linearization import to_places, value_gradients
+from doe_kc.correlation.linearization import moved_paths, to_places, value_gradients
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import AMPLITUDE_STEP, DIRECTION_STEP, INPUT_GAIN
 from doe_kc.effects import EFFECTS
@@ -35,12 +35,19 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
     solution, pool = model.solutions(axle), model.solutions.pool
     gradients = value_gradients(axle, solution, model.space, moves, GAIN_COLUMN, pool)
     exact, tuned = _whitened(model, gradients, axle), model.parameters + len(model.space.ties)
+    exact[:, :tuned] *= _path_ratios(model, z)
     out[:, : model.parameters] = to_places(exact[:, :tuned], model.space, slopes)
     for curve, place in model.likelihood.slices():  # each calibration moves its own load case alone
         at = model.calibrations.start + model.cases.index(curve.load_case)
         out[place, at] = INPUT_GAIN * sound.load_cases[curve.load_case].gain * exact[place, -1]
     out[:, model.linear.start :] = _with_differences(model, z, residual, places, moves, exact[:, tuned:-1])
     return out
+
+
+def _path_ratios(model: EffectModel, z: FloatArray) -> FloatArray:
+    """(p + ties,) value that a path is set to over that of the space: see `EffectModel.values_with`."""
+    ratios = model.member_ratios(model.with_effects(z))
+    return np.array([ratios.get(path, 1.0) for path in moved_paths(model.space)])
 
 
 def amplitude_columns(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from doe_kc.axle.model import Axle
+from doe_kc.axle.parameter_kinds import must_be_positive
 from doe_kc.axle.parameters import names_touched, with_values
 from doe_kc.correlation.likelihood import Likelihood, Rewhitening
 from doe_kc.curves import CurveSet
@@ -198,15 +199,43 @@ class EffectModel(FieldsOnly):
 
     def axle_at(self, z: FloatArray) -> Axle:
         """The axle at a point, its load cases driven as the rig says."""
-        return with_values(self.with_effects(z), self.space.values(z[: self.parameters]))
+        extended = self.with_effects(z)
+        return with_values(extended, self.values_with(extended, z))
+
+    def values_with(self, extended: Axle, z: FloatArray) -> dict[str, float]:
+        """Path -> value at a point that the axle with the members is set to.
+
+        A plain path is read from the left side. Where a member changes that, as a bushing that is stiffer on
+        the left alone, the parameter is what the left side would have without it: a mount that was 2.29 times
+        its nominal stiffness on the left and 1.50 times on the right was cut off at its bound of 2.
+        """
+        values, ratios = self.space.values(z[: self.parameters]), self.member_ratios(extended)
+        return {path: value * ratios.get(path, 1.0) for path, value in values.items()}
+
+    def member_ratios(self, extended: Axle) -> dict[str, float]:
+        """Path -> its value with the members over that of the nominal axle, of the stiffnesses that they
+        change."""
+        known = self.axle.values
+        return {
+            path: extended.values[left] / known[left]
+            for path, left in self._stiffness_paths
+            if extended.values[left] != known[left]
+        }
+
+    @cached_property
+    def _stiffness_paths(self) -> tuple[tuple[str, str], ...]:
+        """Every plain path of a stiffness with two sides that the space sets, and its left internal value."""
+        paths = [p for p in self.space.values(self.space.start) if must_be_positive(p)]
+        return tuple((p, f"{p}@L") for p in paths if f"{p}@L" in self.axle.values)
 
     def axles_beside(
         self, z: FloatArray, here: Axle, places: Sequence[int], step: float
     ) -> Iterator[tuple[int, Axle]]:
         """Each place of an amplitude, and the axle at z, `here`, with that amplitude larger by a step, see
         `Size.beside`."""
-        values, before, plain = self.space.values(z[: self.parameters]), self.axle, self.with_effects(z)
-        tuned, members = names_touched(plain, tuple(values)), list(self.places())
+        before, plain = self.axle, self.with_effects(z)
+        tuned = names_touched(plain, tuple(self.values_with(plain, z)))
+        members = list(self.places())
         tables = [(h, h.options(self.sizes_at(z, h))) for h, _ in members]
         for k, (member, own) in enumerate(members):
             for i in (i for i in places if own.start <= i < own.stop):
@@ -220,7 +249,7 @@ class EffectModel(FieldsOnly):
                 if same and axle.values.keys() == plain.values.keys() and tuned.isdisjoint(moved):
                     yield i, here.changed(moved)  # what tuning sets it sets alike
                 else:
-                    yield i, with_values(axle, values)
+                    yield i, with_values(axle, self.values_with(axle, z))
             before = self._with(before, member, z)
 
     def curves(self, z: FloatArray) -> CurveSet:

@@ -84,7 +84,7 @@ def adopt(study: Study, discovery: Discovery) -> Adoption:
     return Adoption(
         axle=with_effects(study.axle, effects),
         effects=effects,
-        refit=best.model.space.values(best.z[: best.model.parameters]),
+        refit=best.model.values_with(best.model.with_effects(best.z), best.z),
         without=_without(discovery, bool(chosen)),
     )
 

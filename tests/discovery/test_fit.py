@@ -117,6 +117,21 @@ def test_exact_derivatives_to_sizes_are_those_of_differences() -> None:
         assert np.linalg.norm(exact - differences) < 0.01 * np.linalg.norm(differences)
 
 
+@pytest.mark.parametrize("place", ["LLR_L", "LLR_R"])
+def test_derivatives_to_a_stiffness_beside_unequal_bushings_are_those_of_differences(place: str) -> None:
+    (member,) = (h for h in library("left_right_asymmetry") if h.location == place)
+    car = model("none", ("lateral", "steer")).extended(member)
+    z = np.append(car.centre[: car.dimension], 1.5)
+    residual = car.residual(z)
+    own = own_columns(car, z, residual)
+    places = [i for i, path in enumerate(car.space.paths) if path.startswith("llr.F")]
+    assert places
+    for i in places:
+        step = 1e-3 * np.eye(z.size)[i]
+        change = (car.residual(z + step) - car.residual(z - step)) / 2e-3
+        assert np.linalg.norm(own[:, i] - change) < 1e-5 * np.linalg.norm(change) + 1e-4
+
+
 @pytest.mark.parametrize(
     "effect", ["bushing_progression", "hub_compliance", "rubber_hysteresis", "steering_friction"]
 )

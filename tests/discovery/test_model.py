@@ -32,6 +32,20 @@ def test_the_axle_beside_a_point_is_the_one_there(effect: str, first: bool) -> N
             assert (axle.topology, axle.load_cases) == (there.topology, there.load_cases)
 
 
+@pytest.mark.parametrize(("side", "twin"), [("L", "R"), ("R", "L")])
+def test_an_unequal_bushing_is_so_many_times_what_both_are_tuned_to(side: str, twin: str) -> None:
+    """Also on the left, whose value a plain path reads: a mount of 1.49 there was told as 1.26."""
+    (member,) = (h for h in library("left_right_asymmetry") if h.location == f"LLR_{side}")
+    car = model("none").extended(member)
+    z = np.append(car.centre[: car.dimension] + 0.1, 1.5)
+    axle, tuned = car.axle_at(z), car.space.values(z[: car.parameters])
+    stiffnesses = [p for p in tuned if p.startswith("llr.F")]
+    assert stiffnesses
+    for path in stiffnesses:
+        assert axle.values[f"{path}@{twin}"] == pytest.approx(tuned[path], rel=1e-12)
+        assert axle.values[f"{path}@{side}"] == pytest.approx(tuned[path] * 1.25**1.5, rel=1e-12)
+
+
 def test_what_tuning_touches_are_all_values_that_it_changes() -> None:
     before = nominal()
     touched = names_touched(before, space().paths)
