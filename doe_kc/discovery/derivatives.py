@@ -46,7 +46,7 @@ def own_columns(model: EffectModel, z: FloatArray, residual: FloatArray) -> Floa
 
 def _path_ratios(model: EffectModel, z: FloatArray) -> FloatArray:
     """(p + ties,) value that a path is set to over that of the space: see `EffectModel.values_with`."""
-    ratios = model.member_ratios(model.with_effects(z))
+    ratios = model.effect_ratios(model.with_effects(z))
     return np.array([ratios.get(path, 1.0) for path in moved_paths(model.space)])
 
 

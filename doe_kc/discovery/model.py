@@ -203,18 +203,17 @@ class EffectModel(FieldsOnly):
         return with_values(extended, self.values_with(extended, z))
 
     def values_with(self, extended: Axle, z: FloatArray) -> dict[str, float]:
-        """Path -> value at a point that the axle with the members is set to.
+        """Path -> value at a point that the axle with effects, members or some of them, is set to.
 
-        A plain path is read from the left side. Where a member changes that, as a bushing that is stiffer on
+        A plain path is read from the left side. Where an effect changes that, as a bushing that is stiffer on
         the left alone, the parameter is what the left side would have without it: a mount that was 2.29 times
         its nominal stiffness on the left and 1.50 times on the right was cut off at its bound of 2.
         """
-        values, ratios = self.space.values(z[: self.parameters]), self.member_ratios(extended)
+        values, ratios = self.space.values(z[: self.parameters]), self.effect_ratios(extended)
         return {path: value * ratios.get(path, 1.0) for path, value in values.items()}
 
-    def member_ratios(self, extended: Axle) -> dict[str, float]:
-        """Path -> its value with the members over that of the nominal axle, of the stiffnesses that they
-        change."""
+    def effect_ratios(self, extended: Axle) -> dict[str, float]:
+        """Path -> its value with effects over the nominal one, of the stiffnesses that they change."""
         known = self.axle.values
         return {
             path: extended.values[left] / known[left]
@@ -234,7 +233,7 @@ class EffectModel(FieldsOnly):
         """Each place of an amplitude, and the axle at z, `here`, with that amplitude larger by a step, see
         `Size.beside`."""
         before, plain = self.axle, self.with_effects(z)
-        tuned = names_touched(plain, tuple(self.values_with(plain, z)))
+        tuned = names_touched(plain, tuple(self.space.values(z[: self.parameters])))
         members = list(self.places())
         tables = [(h, h.options(self.sizes_at(z, h))) for h, _ in members]
         for k, (member, own) in enumerate(members):

@@ -43,8 +43,8 @@ class AdoptedEffect:
 class Adoption:
     """axle: the study's, with the effects at the sizes found. effects: those added, largest first.
 
-    refit: path -> absolute value of the parameters in the discovery's fit. without: (load case, response)
-    that nothing explains.
+    refit: path -> absolute value that the axle is set to for the parameters of the discovery's fit. without:
+    (load case, response) that nothing explains.
     """
 
     axle: Axle
@@ -81,10 +81,11 @@ def adopt(study: Study, discovery: Discovery) -> Adoption:
         for f in chosen
     )
     best = fitted if chosen else discovery.search.tuned
+    axle = with_effects(study.axle, effects)
     return Adoption(
-        axle=with_effects(study.axle, effects),
+        axle=axle,
         effects=effects,
-        refit=best.model.values_with(best.model.with_effects(best.z), best.z),
+        refit=best.model.values_with(axle, best.z),
         without=_without(discovery, bool(chosen)),
     )
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from doe_kc.axle import with_values
 from doe_kc.discovery.options import DiscoveryOptions
 from doe_kc.ground.errors import InputError
 from doe_kc.study import read_study
 from doe_kc.workflow.adopt import adopt, adopted
-from tests.discovery.cases import discovery
+from tests.discovery.cases import discovery, library
 from tests.workflow.chain_cases import study
 
 
@@ -28,6 +30,28 @@ def test_named_effects_are_added_at_the_sizes_found(tmp_path: Path) -> None:
     assert adoption.axle.values["LLF.z@L"] == plain.axle.values["LLF.z@L"], "parameters stay nominal"
     assert adoption.refit["LLF.z"] != plain.axle.values["LLF.z@L"] and not adoption.without
     assert adoption.sentences == ("hub and wheel-bearing compliance: added to the axle",)
+
+
+@pytest.mark.parametrize("added", [True, False])
+def test_a_refit_beside_a_bushing_unlike_on_the_left_has_the_stiffness_of_both(
+    added: bool, tmp_path: Path
+) -> None:
+    """The effect comes on top where it is added to the axle; where it is not, nothing of it is left."""
+    found, plain = discovery("named"), study(tmp_path)
+    (member,) = (h for h in library("left_right_asymmetry") if h.location == "LLR_L")
+    before = found.fitted
+    fitted = replace(before, model=before.model.extended(member), z=np.append(before.z, 1.5))
+    named = replace(found.findings[0], hypothesis=member)
+    findings = (*found.findings, named) if added else found.findings
+    search = replace(found.search, with_effects=fitted)
+    adoption = adopt(plain, replace(found, search=search, findings=findings))
+    axle = with_values(adoption.axle, adoption.refit)
+    asked = fitted if added else before
+    expected = asked.model.axle_at(asked.z)
+    for side in "LR":
+        assert axle.values[f"llr.Fx@{side}"] == pytest.approx(expected.values[f"llr.Fx@{side}"], rel=1e-9)
+    ratio = axle.values["llr.Fx@L"] / axle.values["llr.Fx@R"]
+    assert ratio == pytest.approx(1.25**1.5 if added else 1.0, rel=1e-6)
 
 
 def test_the_leading_one_of_a_class_is_added_and_marked(tmp_path: Path) -> None:
