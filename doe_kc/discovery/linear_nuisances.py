@@ -68,11 +68,16 @@ class LinearNuisances(CommonArgument):
         """l, the number of columns."""
         return int(self.columns.shape[1])
 
+    @property
+    def sides(self) -> int:
+        """Number of the columns that are differences between the sides; none where those are not known."""
+        return self.count - len(self.traces)
+
     @cached_property
     def centre(self) -> FloatArray:
         """(l,) means before the records, in standard deviations."""
         out = np.zeros(self.count)
-        out[self.count - len(self.traces) :] = [trace_mean(t.size) / TRACE_SD for t in self.traces]
+        out[self.sides :] = [trace_mean(t.size) / TRACE_SD for t in self.traces]
         return out
 
     @cached_property
@@ -97,7 +102,7 @@ class LinearNuisances(CommonArgument):
         """(l,) 1 for a column that counts, 0 for the trace of an effect in the model."""
         names = {h.name for h in members}
         out = np.ones(self.count)
-        out[self.count - len(self.traces) :] = [t.hypothesis.name not in names for t in self.traces]
+        out[self.sides :] = [t.hypothesis.name not in names for t in self.traces]
         return out
 
     def with_traces(self, traces: Sequence[Trace], columns: FloatArray) -> LinearNuisances:
@@ -106,7 +111,7 @@ class LinearNuisances(CommonArgument):
 
     def with_sides(self, columns: FloatArray) -> LinearNuisances:
         """The same with other columns (M, k) of the differences between the sides."""
-        traces = self.columns[:, self.count - len(self.traces) :]
+        traces = self.columns[:, self.sides :]
         return LinearNuisances(np.hstack([columns, traces]), self.traces)
 
     @property

@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameters import parameter_value
 from doe_kc.correlation.likelihood import Likelihood
 from doe_kc.discovery.thresholds import (
     INPUT_GAIN,
@@ -49,21 +48,27 @@ def input_gain_amplitude(size: Size) -> float:
     return float(np.log1p(INPUT_GAIN) / np.log(size.typical))
 
 
+def sided_variables(axle: Axle, space: Space) -> tuple[Variable, ...]:
+    """Variables whose parameter either side has, in the order of the columns of `side_differences`."""
+    return tuple(v for v in space.variables if f"{v.path}@R" in axle.values)
+
+
 def side_differences(axle: Axle, space: Space, likelihood: Likelihood) -> FloatArray:
     """(M, k) derivative of the residual at an axle to each parameter's right minus left, per its sd."""
-    sided = [v for v in space.variables if f"{v.path}@R" in axle.values]
+    sided = sided_variables(axle, space)
     paths = [f"{side}.{v.path}" for side in ("left", "right") for v in sided]
     solution = solve(axle)
     gradients = curve_gradients(axle, solution, paths)
     columns = likelihood.jacobian(gradients, np.zeros((0, len(paths))))
     left, right = columns[:, : len(sided)], columns[:, len(sided) :]
-    sd = np.array([_sd(v, parameter_value(axle, v.path)) for v in sided])
+    left_sd, right_sd = np.array([[_sd(v, axle.values[f"{v.path}@{side}"]) for v in sided] for side in "LR"])
     # y of a hardpoint is given in the chassis frame, where the right side's is the left's mirror image
     mirrored = np.array([-1.0 if v.parameter.mirrored else 1.0 for v in sided])
-    return np.asarray((mirrored * right - left) * sd / 2.0)
+    return np.asarray((mirrored * right * right_sd - left * left_sd) / 2.0)
 
 
 def _sd(variable: Variable, value: float) -> float:
+    """Standard deviation of a parameter's right minus left by the value on one side."""
     quantity = variable.parameter.quantity
     fixed = {"clearance": SIDE_CLEARANCE, "coordinate": SIDE_POSITION, "angle": SIDE_ANGLE}
     return fixed.get(quantity, abs(value) * (SIDE_BUSHING if quantity == "stiffness" else SIDE_RATE))

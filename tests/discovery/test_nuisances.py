@@ -11,8 +11,10 @@ from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.gauss_newton import fit, known_columns
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
-from doe_kc.discovery.thresholds import INPUT_GAIN
+from doe_kc.discovery.nuisances import side_differences, sided_variables
+from doe_kc.discovery.thresholds import INPUT_GAIN, SIDE_BUSHING
 from doe_kc.effects.hypothesis import Hypothesis
+from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
 from tests.discovery.cases import LOAD_CASES, library, nominal, records, space
@@ -78,3 +80,23 @@ def test_the_records_show_the_sum_of_both(tuned: Fit) -> None:
         for at in (z, moved)
     ]
     assert totals[0] == pytest.approx(totals[1], rel=5e-3)
+
+
+def test_a_side_differs_by_a_share_of_its_own_value() -> None:
+    """Of a bushing twice as stiff on the right the right one scatters twice as much."""
+    path = "llr.Fy"
+    stiffer = nominal().changed({f"{path}@R": 2.0 * nominal().values[f"{path}@L"]})
+    likelihood = record_likelihood(nominal(), records("none", 1))
+    place = [v.path for v in sided_variables(stiffer, space())].index(path)
+    half = 0.5 * SIDE_BUSHING
+
+    def unlike(of: float) -> FloatArray:
+        moved = {
+            f"{path}@{side}": stiffer.values[f"{path}@{side}"] * (1.0 + sign * of * half)
+            for side, sign in (("L", -1.0), ("R", 1.0))
+        }
+        return likelihood.residual(curve_set(solve(stiffer.changed(moved))), np.zeros(0))
+
+    change = 0.5 * (unlike(1.0) - unlike(-1.0))
+    column = side_differences(stiffer, space(), likelihood)[:, place]
+    assert np.linalg.norm(column - change) < 1e-3 * np.linalg.norm(change)

@@ -97,7 +97,7 @@ def with_traces_anew(current: Fit, workers: DiscoveryWorkers) -> Fit:
     model, known = current.model, current.model.nuisances
     if known is None or not model.members:
         return current
-    columns, first = known.columns.copy(), known.count - len(known.traces)
+    columns, first = known.columns.copy(), known.sides
     able = [(i, t) for i, t in enumerate(known.traces, start=first) if compatible(model, t.hypothesis)]
     signed = [(i, t) for i, t in able if t.size.signed]
     with suppress(NotConverged):
@@ -125,7 +125,7 @@ def with_friction_traces(current: Fit, workers: DiscoveryWorkers) -> Fit:
     model, known = current.model, current.model.nuisances
     if known is None or not model.members:
         return current
-    columns, first = known.columns.copy(), known.count - len(known.traces)
+    columns, first = known.columns.copy(), known.sides
     by_law: dict[int, list[Trace]] = {}
     for i, trace in enumerate(known.traces, start=first):
         effect = EFFECTS[trace.hypothesis.effect]

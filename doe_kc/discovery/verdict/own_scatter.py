@@ -21,6 +21,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from doe_kc.discovery.fit import Fit, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit
+from doe_kc.discovery.nuisances import sided_variables
 from doe_kc.discovery.thresholds import SCATTER_LOG_SD
 from doe_kc.ground.typing import FloatArray
 
@@ -28,6 +29,8 @@ MAXIMIZATION_STEPS = 100
 """A guard: 10 to 30 are enough."""
 SETTLED = 1e-3
 """Relative change of a scatter below which it is found."""
+MADE = ("HARDPOINTS", "BUSHINGS")
+"""Groups of parameters that scatter as parts are made; others are set or chosen."""
 
 
 @dataclass(frozen=True)
@@ -42,20 +45,23 @@ class UnknownGroup:
 
 def unknown_groups(fit: Fit) -> list[UnknownGroup]:
     """Hardpoints and bushings whose bounds are a guess, calibrations of the rig's inputs, and differences
-    between the sides; those without any left out.
+    between the sides, of hardpoints, of bushings and of the rest; those without any left out.
 
-    A variable with a distribution of its own is one that somebody has measured.
+    A variable with a distribution of its own is one that somebody has measured. What differs between the
+    sides comes of welding, of a batch of rubber, of setting: three processes.
     """
     model, known = fit.model, fit.model.nuisances
-    variables = model.space.variables
-    sides = 0 if known is None else known.count - len(known.traces)
-    groups = [
-        (group.lower(), [i for i, v in enumerate(variables) if v.parameter.group == group and v.is_guess])
-        for group in ("HARDPOINTS", "BUSHINGS")
-    ]
-    groups.append(("calibrations", list(range(*model.calibrations.indices(model.dimension)))))
-    groups.append(("sides", list(range(model.linear.start, model.linear.start + sides))))
-    return [UnknownGroup(name, np.array(places)) for name, places in groups if places]
+    places: dict[str, list[int]] = {}
+    for i, variable in enumerate(model.space.variables):
+        if variable.parameter.group in MADE and variable.is_guess:
+            places.setdefault(variable.parameter.group.lower(), []).append(i)
+    places["calibrations"] = list(range(*model.calibrations.indices(model.dimension)))
+    sided = sided_variables(model.axle, model.space) if known is not None and known.sides else ()
+    for i, variable in enumerate(sided, model.linear.start):
+        group = variable.parameter.group
+        kind = group.lower() if group in MADE else "settings"
+        places.setdefault(f"{kind} between the sides", []).append(i)
+    return [UnknownGroup(name, np.array(own)) for name, own in places.items() if own]
 
 
 def most_probable_scatter(fit: Fit) -> FloatArray:

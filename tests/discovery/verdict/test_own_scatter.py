@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit
+from doe_kc.discovery.nuisances import sided_variables
 from doe_kc.discovery.result_cache import fingerprint
 from doe_kc.discovery.thresholds import SCATTER_LOG_SD
 from doe_kc.discovery.verdict.own_scatter import most_probable_scatter, unknown_groups, with_own_scatter
@@ -47,16 +48,47 @@ def test_it_is_the_most_probable_one(last: Fit) -> None:
             assert log_posterior(last, other) < best, f"{group.name} by {factor}"
 
 
-def test_hardpoints_bushings_calibrations_and_sides_have_one_each(last: Fit) -> None:
+def test_what_is_made_set_or_measured_alike_has_one_each(last: Fit) -> None:
     scatter, model = most_probable_scatter(last), last.model
     groups = unknown_groups(last)
-    assert [g.name for g in groups] == ["hardpoints", "bushings", "calibrations", "sides"]
+    assert {g.name for g in groups} == {
+        "hardpoints",
+        "bushings",
+        "calibrations",
+        "hardpoints between the sides",
+        "bushings between the sides",
+        "settings between the sides",
+    }
     for group in groups:
         assert np.ptp(scatter[group.places]) == 0.0
     rest = np.setdiff1d(np.arange(scatter.size), np.concatenate([g.places for g in groups]))
     assert set(range(model.dimension, scatter.size)) <= set(rest), "sizes have their own prior"
     assert set(range(*model.traces.indices(scatter.size))) <= set(rest)
     np.testing.assert_array_equal(scatter[rest], 1.0)
+
+
+def test_each_difference_between_the_sides_is_in_one_group(last: Fit) -> None:
+    model, known = last.model, last.model.nuisances
+    assert known is not None
+    sided = sided_variables(model.axle, model.space)
+    columns = list(range(model.linear.start, model.linear.start + known.sides))
+    groups = {g.name: g.places.tolist() for g in unknown_groups(last) if "between the sides" in g.name}
+    assert sorted(i for places in groups.values() for i in places) == columns
+    for column, variable in zip(columns, sided, strict=True):
+        (name,) = [n for n, places in groups.items() if column in places]
+        own = variable.parameter.group.lower()
+        assert name.removesuffix(" between the sides") == (
+            own if own in ("hardpoints", "bushings") else "settings"
+        )
+
+
+def test_sides_that_are_not_known_have_no_scatter(last: Fit) -> None:
+    known = last.model.nuisances
+    assert known is not None
+    traces = replace(known, columns=known.columns[:, known.sides :])
+    fit = replace(last, model=replace(last.model, nuisances=traces))
+    assert traces.sides == 0 and traces.traces
+    assert {g.name for g in unknown_groups(fit)} == {"hardpoints", "bushings", "calibrations"}
 
 
 def test_what_somebody_has_measured_keeps_its_own(last: Fit) -> None:
