@@ -13,7 +13,6 @@ from doe_kc.axle.parameter_kinds import (
     ParameterKind,
     Quantity,
     is_lateral,
-    kind_of,
     quantity_of,
     side_prefix,
 )
@@ -41,9 +40,7 @@ class Parameter:
 
     @property
     def quantity(self) -> Quantity:
-        """What it measures; of a path that is not declared, by its group or last name."""
-        if self.group == "HARDPOINTS" and kind_of(self.path) is None:
-            return "coordinate"
+        """What it measures; of a path that is not declared, by its last name."""
         return quantity_of(self.path)
 
     @property

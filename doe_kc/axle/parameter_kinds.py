@@ -131,17 +131,18 @@ def side_prefix(path: str) -> str:
 
 
 def kind_of(path: str) -> ParameterKind | None:
-    """The declaration of a path, with or without a side; None for a value that is no design parameter.
+    """The declaration of a path, with or without a side; None for a value that no axle type has as a design
+    parameter.
 
-    Points and bushings of an axle whose type is data are declared by the form of their path.
+    Points and bushings that KINDS does not hold are an axle type's own, declared by the form of their path.
     """
     name = path.removeprefix(side_prefix(path))
     head, _, rest = name.partition(".")
-    if name not in KINDS and rest in COORDINATES and head not in EXTRA_HARDPOINTS:
-        return point_kind(head, rest)
-    if name not in KINDS and rest in BUSHING_AXES:
-        return bushing_kind(head, rest)
-    return KINDS.get(name)
+    if name in KINDS:
+        return KINDS[name]
+    if rest in COORDINATES:
+        return point_kind(EXTRA_HARDPOINTS.get(head, head), rest)
+    return bushing_kind(head, rest) if rest in BUSHING_AXES else None
 
 
 @lru_cache(maxsize=PATHS)

@@ -11,8 +11,9 @@ import numpy as np
 
 from doe_kc.axle.geometry import check_geometry
 from doe_kc.axle.model import Axle
-from doe_kc.axle.parameter_kinds import kind_of
+from doe_kc.axle.parameter_kinds import ParameterKind
 from doe_kc.axle.parameters import parameter_value, settable_paths
+from doe_kc.axle.structure_parameters import structure_kinds
 from doe_kc.characteristics import Characteristic
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.typing import FloatArray
@@ -129,7 +130,8 @@ def influence_matrix(
     lowered = _points_beside_the_wheel(axle) if wheel_radius_held and WHEEL_HEIGHT in paths else []
     cases = list(dict.fromkeys(c.load_case for c in characteristics if c.load_case in axle.load_cases))
     gradients = characteristic_gradients(axle, solve(axle, cases), [*paths, *lowered], characteristics).T
-    matrix = gradients[: len(paths)] * np.array([[_step(axle, path)] for path in paths])
+    kinds = structure_kinds(axle.topology.structure, axle.labels)
+    matrix = gradients[: len(paths)] * np.array([[_step(axle, path, kinds[path])] for path in paths])
     if lowered:
         matrix[list(paths).index(WHEEL_HEIGHT)] = -gradients[len(paths) :].sum(axis=0)
     return np.asarray(matrix)
@@ -141,9 +143,7 @@ def _points_beside_the_wheel(axle: Axle) -> list[str]:
     return [p for p in settable_paths(axle) if p.endswith(".z") and p.partition(".")[0] not in still]
 
 
-def _step(axle: Axle, path: str) -> float:
-    kind = kind_of(path)
-    assert kind is not None
+def _step(axle: Axle, path: str, kind: ParameterKind) -> float:
     return kind.step * (abs(parameter_value(axle, path)) if kind.relative else 1.0)
 
 

@@ -9,6 +9,7 @@ import pytest
 from doe_kc.axle.design_parameters import design_parameters
 from doe_kc.axle.parameter_kinds import KINDS, SWITCHES, kind_of, quantity_of
 from doe_kc.axle.parameters import switched_topology, with_values
+from tests import axle_type_reference as axle_types
 from tests.axle.test_parameters import nominal
 
 
@@ -45,6 +46,15 @@ def test_units_and_groups_agree_with_the_quantity() -> None:
 def test_a_side_has_the_declaration_of_both() -> None:
     assert kind_of("right.spring.rate") is KINDS["spring.rate"]
     assert kind_of("hub.toe") is None
+
+
+@pytest.mark.parametrize("axle_type", axle_types.TYPES)
+def test_a_path_alone_declares_the_parameters_of_every_axle_type(axle_type: str) -> None:
+    """As an outside solver is told of them: ARB is a point of its own where no strut carries it."""
+    for parameter in design_parameters(axle_types.nominal(axle_type)):
+        kind = kind_of(parameter.path)
+        assert kind is not None, parameter.path
+        assert (kind.group, kind.unit, kind.quantity) == (parameter.group, parameter.unit, parameter.quantity)
 
 
 def test_only_y_of_points_is_mirrored() -> None:

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from doe_kc.axle.design_parameters import design_parameters
-from doe_kc.characteristics import appendix_c, reduce_all
+from doe_kc.characteristics import CHARACTERISTICS, appendix_c, reduce_all
 from doe_kc.effects import apply_effect
 from doe_kc.identification.matrix_model import in_windows, influence_matrix
 from doe_kc.load_cases.roll import ROLL_TECHNIQUES
 from doe_kc.parameter_influence.study import exact_changes
 from doe_kc.solver.curve_set import curve_set
 from doe_kc.solver.suite import solve
+from tests import axle_type_reference as axle_types
 from tests.identification.cases import ROWS, car_matrix, model
 from tests.reference import nominal
 
@@ -30,6 +31,15 @@ def test_short_sweeps_have_the_matrix_of_long_ones(technique: str) -> None:
     assert max(c.steps for c in short.load_cases.values()) <= 10 < axle.load_cases["vertical"].steps
     own = influence_matrix(short, [p.path for p in rows], appendix_c())
     np.testing.assert_allclose(own, full, rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("axle_type", axle_types.TYPES)
+def test_every_parameter_of_every_axle_type_has_its_row(axle_type: str) -> None:
+    axle = axle_types.nominal(axle_type)
+    rows = [p for p in design_parameters(axle) if p.in_model]
+    columns = [c for c in CHARACTERISTICS.values() if c.load_case == "vertical"]
+    own = influence_matrix(in_windows(axle), [p.path for p in rows], columns)
+    np.testing.assert_allclose(own, exact_changes(axle, rows, columns), rtol=1e-6, atol=1e-9)
 
 
 def test_friction_keeps_its_loops() -> None:

@@ -89,8 +89,6 @@ def meaning(code: str) -> str:
         return f"{known[rest]}, {side} side alone"
     if code in known or not rest:
         return known.get(code, "")
-    if side in EXTRA_HARDPOINTS and rest in COORDINATES:
-        return _parameter(point_kind(EXTRA_HARDPOINTS[side], rest))
     kind = kind_of(code)  # a point or bushing of an axle whose type is data
     return _parameter(kind) if kind is not None else ""
 
