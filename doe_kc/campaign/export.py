@@ -9,10 +9,9 @@ from typing import Literal
 
 import pandas as pd
 
-from doe_kc.axle.parameter_kinds import KINDS
 from doe_kc.campaign.record import StoredEvaluation
 from doe_kc.campaign.store import Store
-from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.characteristics.result_columns import CHARACTERISTIC_RESULTS, STATUS
 from doe_kc.curves import SIDES, CurveSet
 from doe_kc.ground.errors import InputError
 from doe_kc.ground.output import write_csv, write_whole
@@ -21,8 +20,6 @@ from doe_kc.true_solver.protocol import Values
 
 Format = Literal["csv", "parquet"]
 FORMATS: tuple[Format, ...] = ("csv", "parquet")
-RESULTS = tuple(f"result.{name}" if name in KINDS else name for name in CHARACTERISTICS)
-"""Columns of the characteristics: their ids, but `result.static.toe`, as `static.toe` is a parameter."""
 
 
 def require_format(form: str) -> Format:
@@ -36,9 +33,9 @@ def require_format(form: str) -> Format:
 
 def design_row(values: Values, outcome: Outcome) -> dict[str, object]:
     """Parameters, status, reason, characteristics in their units (empty where unknown), seconds."""
-    known = dict(zip(RESULTS, map(float, outcome.characteristics), strict=True))
+    known = dict(zip(CHARACTERISTIC_RESULTS, map(float, outcome.characteristics), strict=True))
     status = "failed" if outcome.failed else "ok"
-    return {**values, "status": status, "reason": outcome.reason, **known, "seconds": outcome.seconds}
+    return {**values, STATUS: status, "reason": outcome.reason, **known, "seconds": outcome.seconds}
 
 
 def designs_frame(designs: Sequence[Values], outcomes: Sequence[Outcome]) -> pd.DataFrame:
@@ -57,7 +54,7 @@ def evaluations_frame(store: Store, windows: Mapping[str, float], origin: str = 
         parameters |= dict.fromkeys(record.parameters)
         tail = {"origin": record.origin, "created": record.created}
         rows.append({"key": record.key, **design_row(record.parameters, outcome), **tail})
-    end = ("status", "reason", *RESULTS, "seconds", "origin", "created")
+    end = (STATUS, "reason", *CHARACTERISTIC_RESULTS, "seconds", "origin", "created")
     return pd.DataFrame(rows, columns=["key", *parameters, *end])
 
 

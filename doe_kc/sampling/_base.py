@@ -38,7 +38,6 @@ class Sampler(ABC):
     """
 
     id: ClassVar[str]
-    label: ClassVar[str]
     sized: ClassVar[bool] = True
     seeded: ClassVar[bool] = True
     extends: ClassVar[bool] = False

@@ -25,7 +25,6 @@ class FullFactorial(Sampler):
     """
 
     id: ClassVar[str] = "full_factorial"
-    label: ClassVar[str] = "Full factorial"
     sized: ClassVar[bool] = False
     seeded: ClassVar[bool] = False
 

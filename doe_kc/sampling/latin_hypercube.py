@@ -31,7 +31,6 @@ class LatinHypercube(Sampler):
     """
 
     id: ClassVar[str] = "lhs"
-    label: ClassVar[str] = "Latin hypercube"
     extends: ClassVar[bool] = True
 
     def sample(self, space: Space, request: Request) -> Design:

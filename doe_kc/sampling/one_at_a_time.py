@@ -39,7 +39,6 @@ class OneAtATime(Sampler):
     """
 
     id: ClassVar[str] = "one_at_a_time"
-    label: ClassVar[str] = "One at a time"
     sized: ClassVar[bool] = False
     seeded: ClassVar[bool] = False
 

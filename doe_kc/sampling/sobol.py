@@ -21,7 +21,6 @@ class Sobol(Sampler):
     designs with the same seed are those of 100."""
 
     id: ClassVar[str] = "sobol"
-    label: ClassVar[str] = "Scrambled Sobol sequence"
 
     def sample(self, space: Space, request: Request) -> Design:
         from scipy.stats import qmc  # half a second that other commands need not wait for

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from doe_kc.characteristics.result_columns import design_columns
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.files import read_bytes
 from doe_kc.ground.typing import FloatArray
@@ -28,10 +29,9 @@ BOUND_SLACK = 1e-9
 @sampler
 class TableSampler(Sampler):
     """Values as they are in the table; a variable without a column keeps its start, and a column `label`
-    names the rows."""
+    names the rows. Results of designs that were evaluated before are not read."""
 
     id: ClassVar[str] = "table"
-    label: ClassVar[str] = "TableSampler of designs"
     sized: ClassVar[bool] = False
     seeded: ClassVar[bool] = False
 
@@ -72,12 +72,13 @@ def read_frame(file: Path) -> pd.DataFrame:
 
 
 def _columns(frame: pd.DataFrame, space: Space, file: Path) -> set[str]:
-    names = [str(name) for name in frame.columns if name != LABEL]
-    for number, name in enumerate(frame.columns, start=1):
-        if name != LABEL and name not in space.paths:
+    names = [name for name in design_columns(map(str, frame.columns)) if name != LABEL]
+    for name in names:
+        if name not in space.paths:
+            number = list(frame.columns).index(name) + 1
             raise InputError(
                 f"{file}: column {number}, {name!r}, is not a variable of the study; remove it, or make it "
-                f"one in [variables].{nearest(str(name), space.paths)}"
+                f"one in [variables].{nearest(name, space.paths)}"
             )
     if len(set(names)) != len(names):
         twice = next(n for n in names if names.count(n) > 1)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from doe_kc.characteristics.result_columns import design_columns
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
@@ -60,9 +61,10 @@ def saved_surrogate(report: SurrogateReport, *, study: str) -> SavedSurrogate:
 def predict_table(saved: SavedSurrogate, table: Path, *, fill: bool = False) -> Predicted:
     """Predictions for every row of a table of designs, or for a list of parameters.
 
-    A table has a column a variable, `PATH` or `PATH [unit]`, and may have `label`. A list has the columns
-    parameter, value and perhaps unit; what it does not name keeps its start. fill: columns that are missing
-    from a table do so too. InputError naming file, row and column; values outside the bounds are a warning.
+    A table has a column a variable, `PATH` or `PATH [unit]`, and may have `label`; results of designs that
+    were evaluated are not read. A list has the columns parameter, value and perhaps unit; what it does not name
+    keeps its start. fill: columns that are missing from a table do so too. InputError naming file, row and
+    column; values outside the bounds are a warning.
     """
     frame = read_frame(table)
     if set(frame.columns) >= LIST_COLUMNS:
@@ -78,13 +80,13 @@ def _tabled(
     saved: SavedSurrogate, frame: pd.DataFrame, table: Path, fill: bool
 ) -> tuple[tuple[str, ...], FloatArray]:
     columns: dict[str, str] = {}
-    for head in frame.columns:
+    for head in design_columns(map(str, frame.columns)):
         if head == LABEL:
             continue
-        known = _known(saved, str(head), f"{table}: column {head!r}")
+        known = _known(saved, head, f"{table}: column {head!r}")
         if known.path in columns:
             raise InputError(f"{table}: column {known.path} is there twice; remove one.")
-        columns[known.path] = str(head)
+        columns[known.path] = head
     missing = [known.path for known in saved.inputs if known.path not in columns]
     if missing and not fill:
         raise InputError(

@@ -13,10 +13,11 @@ import pytest
 
 from doe_kc.axle import design_parameters
 from doe_kc.campaign import export
-from doe_kc.campaign.export import RESULTS, Format, designs_frame, evaluations_frame, export_store
+from doe_kc.campaign.export import Format, designs_frame, evaluations_frame, export_store
 from doe_kc.campaign.runner import Campaign
 from doe_kc.campaign.store import Store, open_store
 from doe_kc.characteristics import CHARACTERISTICS
+from doe_kc.characteristics.result_columns import CHARACTERISTIC_RESULTS, RESULT_COLUMNS
 from doe_kc.ground.errors import InputError
 from tests.campaign.toys import Toy, bump_steer, designs, toy_curves
 from tests.reference import nominal
@@ -75,8 +76,15 @@ def test_windows_and_origins_are_chosen(store: Store) -> None:
 def test_no_column_is_there_twice() -> None:
     """static.toe is a parameter and a characteristic."""
     parameters = {p.path for p in design_parameters(nominal())}
-    assert not parameters & set(RESULTS) and len(set(RESULTS)) == len(CHARACTERISTICS)
-    assert "result.static.toe" in RESULTS and "vertical.bump_steer" in RESULTS
+    assert not parameters & RESULT_COLUMNS
+    assert len(set(CHARACTERISTIC_RESULTS)) == len(CHARACTERISTICS)
+    assert {"result.static.toe", "vertical.bump_steer"} <= RESULT_COLUMNS
+
+
+def test_every_column_but_the_parameters_is_known_as_a_result(toy: Toy) -> None:
+    with Campaign(toy, workers=1) as campaign:
+        frame = designs_frame([{"x": 1.0}], campaign.evaluate(designs(1), "test"))
+    assert set(frame.columns) == {"x", *RESULT_COLUMNS}
 
 
 def test_a_design_may_name_a_parameter_that_another_does_not(toy: Toy) -> None:

@@ -49,6 +49,21 @@ def test_a_workbook_and_other_separators(tmp_path: Path) -> None:
     assert read(semicolons).labels == ("row 2", "row 3")
 
 
+def test_designs_that_were_evaluated_are_read_without_their_results(tmp_path: Path) -> None:
+    design = sample(SPACE, 3, seed=1)
+    frame = pd.DataFrame(list(design.rows()))[list(SPACE.paths)]
+    frame.insert(0, "label", list(design.labels))
+    evaluated = frame.assign(status="ok", reason="", seconds=0.1, **{"vertical.bump_steer": -3.0})
+    evaluated.to_csv(tmp_path / "designs.csv", index=False)
+    again = read(tmp_path / "designs.csv")
+    np.testing.assert_allclose(again.values, design.values, rtol=1e-12)
+    assert again.labels == design.labels
+    unknown = evaluated.drop(columns="status")
+    unknown.to_csv(tmp_path / "designs.csv", index=False)
+    with pytest.raises(InputError, match=r"column 5, 'reason', is not a variable"):
+        read(tmp_path / "designs.csv")
+
+
 @pytest.mark.parametrize(
     ("text", "pattern"),
     [

@@ -109,6 +109,12 @@ def test_a_table_and_a_list_are_predicted(tmp_path: Path) -> None:
     np.testing.assert_array_equal(one.values, [[0.0, 207.0, 0.5, 5.5, 1.0]])
 
 
+def test_designs_that_were_evaluated_are_predicted_again(tmp_path: Path) -> None:
+    evaluated = frame().assign(status="ok", reason="", seconds=0.1, **{"vertical.bump_steer": -3.0})
+    again = predict_table(saved(), table(tmp_path, evaluated))
+    np.testing.assert_array_equal(again.values, values())
+
+
 def test_bad_tables_are_named(tmp_path: Path) -> None:
     file = save_surrogate(tmp_path / "s.npz", saved())
     head = "P1 [mm]"
