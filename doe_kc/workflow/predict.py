@@ -62,9 +62,9 @@ def predict_table(saved: SavedSurrogate, table: Path, *, fill: bool = False) -> 
     """Predictions for every row of a table of designs, or for a list of parameters.
 
     A table has a column a variable, `PATH` or `PATH [unit]`, and may have `label`; results of designs that
-    were evaluated are not read. A list has the columns parameter, value and perhaps unit; what it does not name
-    keeps its start. fill: columns that are missing from a table do so too. InputError naming file, row and
-    column; values outside the bounds are a warning.
+    were evaluated are not read. A list has the columns parameter, value and perhaps unit; what it does not
+    name keeps its start. fill: columns that are missing from a table do so too. InputError naming file, row
+    and column; values outside the bounds are a warning.
     """
     frame = read_frame(table)
     if set(frame.columns) >= LIST_COLUMNS:
