@@ -6,12 +6,13 @@ unit: only its direction counts, so that neither the unit nor the size of the ch
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
@@ -55,10 +56,11 @@ class MeasuredMatrix:
 def measured_matrix(frame: pd.DataFrame, axle: Axle, mask: Cells, source: str) -> MeasuredMatrix:
     """The matrix of a table: parameter paths as index, characteristic ids as columns.
 
-    A blank in a path stands for its dot. Empty cells do not count, nor those of `mask`.
+    A blank in a path stands for its dot. Empty cells do not count, nor those of `mask`. A row of zeros of what
+    the axle's equations do not contain, such as the radius of a rigid arm, is left out.
 
-    Raises InputError for a name that the axle does not have or that occurs twice, a cell that is not a
-    number, a mask that meets no cell, or a table of which nothing is left to fit.
+    Raises InputError for a name that the axle does not have or that occurs twice, a row of what its equations
+    do not contain that is not zero, a cell that is not a number, a mask that meets no cell, or a table of which nothing is left to fit.
     """
     rows = _rows(frame, axle, source)
     columns = _columns(frame, axle, source)
@@ -75,7 +77,8 @@ def measured_matrix(frame: pd.DataFrame, axle: Axle, mask: Cells, source: str) -
                 'the rows and a characteristic or glob of the columns, such as ("upb.Tz", "*").'
             )
         counted &= ~met
-    matrix = MeasuredMatrix(rows, columns, values, counted)
+    there = _contained(rows, values, axle, source)
+    matrix = MeasuredMatrix(tuple(p for p in rows if p.active), columns, values[there], counted[there])
     if not matrix.fitted_columns.any():
         raise InputError(
             f"{source}: nothing is left to fit; expected a column with at least {FEWEST_CELLS} cells that "
@@ -94,12 +97,18 @@ def _rows(frame: pd.DataFrame, axle: Axle, source: str) -> tuple[Parameter, ...]
                 f"{source}: row {path!r} is not a parameter of the axle {axle.name!r}; rows are named by "
                 f"paths such as LLF.x or llr.Fx, remove or rename it.{nearest(path, known)}"
             )
-        if not known[path].active:
-            raise InputError(
-                f"{source}: row {path!r}: the equations of the axle {axle.name!r} do not contain it; remove "
-                "the row."
-            )
     return tuple(known[path] for path in paths)
+
+
+def _contained(rows: Sequence[Parameter], values: FloatArray, axle: Axle, source: str) -> NDArray[np.bool_]:
+    """(p,) whether the axle's equations contain each row's parameter."""
+    for parameter, row in zip(rows, values, strict=True):
+        if not parameter.active and np.any(np.nan_to_num(row) != 0.0):
+            raise InputError(
+                f"{source}: row {parameter.path!r}: the equations of the axle {axle.name!r} do not contain it; "
+                "remove the row."
+            )
+    return np.array([p.active for p in rows], dtype=bool)
 
 
 def _columns(frame: pd.DataFrame, axle: Axle, source: str) -> tuple[Characteristic, ...]:

@@ -27,6 +27,16 @@ def test_a_blank_stands_for_the_dot_and_a_column_of_zeros_is_not_fitted() -> Non
     assert matrix.frame(matrix.values).loc["llr.Fx", "drive.drive_steer"] == -100.0
 
 
+def test_rows_of_zeros_that_the_equations_do_not_contain_are_left_out() -> None:
+    """As the influence of a rigid arm's radius is written; a mask may name them."""
+    frame = pd.concat([FRAME, pd.DataFrame(0.0, index=["steer_arm.radius"], columns=FRAME.columns)])
+    for mask in ((), (("steer_arm.*", "*"),)):
+        matrix = read(frame, mask)
+        assert [p.path for p in matrix.parameters] == ["LLF.x", "llr.Fx", "RIB.z"]
+        np.testing.assert_array_equal(matrix.values, FRAME.values)
+        assert matrix.counted.shape == FRAME.shape and matrix.counted.all()
+
+
 def test_empty_cells_and_masks_do_not_count() -> None:
     frame = FRAME.astype(object)
     frame.iloc[0, 0], frame.iloc[1, 1], frame.iloc[2, 0] = None, "", " 3 % "
