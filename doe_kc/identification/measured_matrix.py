@@ -56,11 +56,12 @@ class MeasuredMatrix:
 def measured_matrix(frame: pd.DataFrame, axle: Axle, mask: Cells, source: str) -> MeasuredMatrix:
     """The matrix of a table: parameter paths as index, characteristic ids as columns.
 
-    A blank in a path stands for its dot. Empty cells do not count, nor those of `mask`. A row of zeros of what
-    the axle's equations do not contain, such as the radius of a rigid arm, is left out.
+    A blank in a path stands for its dot. Empty cells do not count, nor those of `mask`. A row of zeros of
+    what the axle's equations do not contain, such as the radius of a rigid arm, is left out.
 
     Raises InputError for a name that the axle does not have or that occurs twice, a row of what its equations
-    do not contain that is not zero, a cell that is not a number, a mask that meets no cell, or a table of which nothing is left to fit.
+    do not contain that is not zero, a cell that is not a number, a mask that meets no cell, or a table of
+    which nothing is left to fit.
     """
     rows = _rows(frame, axle, source)
     columns = _columns(frame, axle, source)
@@ -105,8 +106,8 @@ def _contained(rows: Sequence[Parameter], values: FloatArray, axle: Axle, source
     for parameter, row in zip(rows, values, strict=True):
         if not parameter.active and np.any(np.nan_to_num(row) != 0.0):
             raise InputError(
-                f"{source}: row {parameter.path!r}: the equations of the axle {axle.name!r} do not contain it; "
-                "remove the row."
+                f"{source}: row {parameter.path!r}: the equations of the axle {axle.name!r} do not contain "
+                "it; remove the row."
             )
     return np.array([p.active for p in rows], dtype=bool)
 
