@@ -24,12 +24,15 @@ EXCEL = (".xlsx", ".xlsm")
 HEADER_ROWS = 1
 BOUND_SLACK = 1e-9
 """Share of the range by which a rounded value may be beyond a bound."""
+WRITTEN_DIGITS = 1e-8
+"""Tables are written with ten digits."""
 
 
 @sampler
 class TableSampler(Sampler):
     """Values as they are in the table; a variable without a column keeps its start, and a column `label`
-    names the rows. Results of designs that were evaluated before are not read."""
+    names the rows. Tied and fixed parameters may stand beside them with the study's values; results of
+    designs that were evaluated are not read."""
 
     id: ClassVar[str] = "table"
     sized: ClassVar[bool] = False
@@ -47,7 +50,9 @@ class TableSampler(Sampler):
         for i, variable in enumerate(space.variables):
             if variable.path in columns:
                 points[:, i] = _places(frame, variable, request.table)
-        return design_of(self.id, space, points, _labels(frame))
+        design = design_of(self.id, space, points, _labels(frame))
+        _check_dependent(frame, design, space, request.table)
+        return design
 
 
 def read_frame(file: Path) -> pd.DataFrame:
@@ -72,7 +77,8 @@ def read_frame(file: Path) -> pd.DataFrame:
 
 
 def _columns(frame: pd.DataFrame, space: Space, file: Path) -> set[str]:
-    names = [name for name in design_columns(map(str, frame.columns)) if name != LABEL]
+    dependent = space.values(space.start).keys() - set(space.paths)
+    names = [n for n in design_columns(map(str, frame.columns)) if n != LABEL and n not in dependent]
     for name in names:
         if name not in space.paths:
             number = list(frame.columns).index(name) + 1
@@ -86,6 +92,27 @@ def _columns(frame: pd.DataFrame, space: Space, file: Path) -> set[str]:
     if not names:
         raise InputError(f"{file}: has no column of a variable; expected parameter paths such as LLF.x.")
     return set(names)
+
+
+def _check_dependent(frame: pd.DataFrame, design: Design, space: Space, file: Path) -> None:
+    """InputError where a tied or fixed parameter has another value than the study gives it."""
+    for place, name in enumerate(design.paths):
+        if name in space.paths or name not in frame:
+            continue
+        for i, (cell, value) in enumerate(zip(frame[name], design.values[:, place], strict=True)):
+            if not _is_number(str(cell), value):
+                raise InputError(
+                    f"{file}: row {i + HEADER_ROWS + 1}, column {name}: {cell}, but the study ties or fixes "
+                    f"it to {value:.10g} there; remove the column, or make it a variable in [variables]."
+                )
+
+
+def _is_number(cell: str, value: float) -> bool:
+    """Whether a cell has a value, to the digits that tables are written with."""
+    try:
+        return math.isclose(float(cell), value, rel_tol=WRITTEN_DIGITS, abs_tol=WRITTEN_DIGITS)
+    except ValueError:
+        return False
 
 
 def _places(frame: pd.DataFrame, variable: Variable, file: Path) -> FloatArray:

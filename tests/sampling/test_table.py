@@ -64,6 +64,33 @@ def test_designs_that_were_evaluated_are_read_without_their_results(tmp_path: Pa
         read(tmp_path / "designs.csv")
 
 
+def test_tied_and_fixed_parameters_may_stand_beside_with_their_values(tmp_path: Path) -> None:
+    tied = build_space(
+        nominal(),
+        VariableOptions(
+            use=["LLF.z", "llr.Fx"],
+            change=[Change(match="LLR.z", tie="LLF.z"), Change(match="tyre.rate", fixed=210.0)],
+        ),
+        "test",
+    )
+    design = sample(tied, 3, seed=1)
+    assert {"LLR.z", "tyre.rate"} < set(design.paths)
+    path = tmp_path / "designs.csv"
+    frame = pd.DataFrame(list(design.rows()))
+    frame.to_csv(path, index=False, float_format="%.10g")
+    again = sample(tied, 1, seed=1, method="table", table=path)
+    np.testing.assert_allclose(again.values, design.values, rtol=1e-9)
+    for column, value in (("LLR.z", frame["LLR.z"][1] + 0.001), ("tyre.rate", 211.0), ("tyre.rate", None)):
+        other = frame.copy()
+        other.loc[1, column] = value
+        other.to_csv(path, index=False)
+        with pytest.raises(InputError, match=rf"row 3, column {column}: .*ties or fixes it to"):
+            sample(tied, 1, seed=1, method="table", table=path)
+    frame[["LLR.z"]].to_csv(path, index=False)
+    with pytest.raises(InputError, match="has no column of a variable"):
+        sample(tied, 1, seed=1, method="table", table=path)
+
+
 @pytest.mark.parametrize(
     ("text", "pattern"),
     [
