@@ -12,7 +12,6 @@ from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from doe_kc.axle.design_parameters import Parameter, design_parameters
 from doe_kc.axle.model import Axle
@@ -78,8 +77,9 @@ def measured_matrix(frame: pd.DataFrame, axle: Axle, mask: Cells, source: str) -
                 'the rows and a characteristic or glob of the columns, such as ("upb.Tz", "*").'
             )
         counted &= ~met
-    there = _contained(rows, values, axle, source)
-    matrix = MeasuredMatrix(tuple(p for p in rows if p.active), columns, values[there], counted[there])
+    _check_contained(rows, values, axle, source)
+    active = np.array([p.active for p in rows], dtype=bool)
+    matrix = MeasuredMatrix(tuple(p for p in rows if p.active), columns, values[active], counted[active])
     if not matrix.fitted_columns.any():
         raise InputError(
             f"{source}: nothing is left to fit; expected a column with at least {FEWEST_CELLS} cells that "
@@ -101,15 +101,14 @@ def _rows(frame: pd.DataFrame, axle: Axle, source: str) -> tuple[Parameter, ...]
     return tuple(known[path] for path in paths)
 
 
-def _contained(rows: Sequence[Parameter], values: FloatArray, axle: Axle, source: str) -> NDArray[np.bool_]:
-    """(p,) whether the axle's equations contain each row's parameter."""
+def _check_contained(rows: Sequence[Parameter], values: FloatArray, axle: Axle, source: str) -> None:
+    """InputError for a row that is not zero of what the axle's equations do not contain."""
     for parameter, row in zip(rows, values, strict=True):
         if not parameter.active and np.any(np.nan_to_num(row) != 0.0):
             raise InputError(
                 f"{source}: row {parameter.path!r}: the equations of the axle {axle.name!r} do not contain "
                 "it; remove the row."
             )
-    return np.array([p.active for p in rows], dtype=bool)
 
 
 def _columns(frame: pd.DataFrame, axle: Axle, source: str) -> tuple[Characteristic, ...]:
