@@ -71,6 +71,7 @@ class PosteriorRecord(Strict):
     """The fields of `ParameterPosterior` but the prior."""
 
     sd: list[float]
+    offset: list[float]
     correlation: list[list[float]]
     misfit: float
     at_bound: list[int]
@@ -158,6 +159,7 @@ def run_document(
 def _posterior(after: ParameterPosterior) -> PosteriorRecord:
     return PosteriorRecord(
         sd=after.sd.tolist(),
+        offset=after.offset.tolist(),
         correlation=after.correlation.tolist(),
         misfit=after.misfit,
         at_bound=after.at_bound.tolist(),
@@ -236,6 +238,7 @@ def recalled(
         known = record.posterior
         after = ParameterPosterior(
             np.array(known.sd),
+            np.array(known.offset),
             problem.space.prior_sd,
             np.array(known.correlation),
             known.misfit,

@@ -8,9 +8,12 @@ from typing import Any
 
 from doe_kc.axle.model import Axle
 from doe_kc.correlation.record import EffectRecord
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Discovery, Finding
 from doe_kc.discovery.screening.contrasts import LOOP_SHAPES, Contrast
+from doe_kc.discovery.thresholds import AMPLITUDE_STEP
 from doe_kc.effects import EFFECTS, apply_effect
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.effects.words import effect_label, place_words
 from doe_kc.study import Study
 
@@ -44,13 +47,16 @@ class Adoption:
     """axle: the study's, with the effects at the sizes found. effects: those added, largest first.
 
     refit: path -> absolute value that the axle is set to for the parameters of the discovery's fit. without:
-    (load case, response) that nothing explains.
+    (load case, response) that nothing explains. size_steps: the axle with one size of one effect larger by
+    AMPLITUDE_STEP, for each of them: the records leave sizes as open as parameters; none for a run that is
+    read back.
     """
 
     axle: Axle
     effects: tuple[AdoptedEffect, ...]
     refit: Mapping[str, float]
     without: frozenset[tuple[str, str]]
+    size_steps: tuple[Axle, ...] = ()
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -72,11 +78,10 @@ def adopt(study: Study, discovery: Discovery) -> Adoption:
     fitted = discovery.fitted
     ambiguous = {effect for group in discovery.classes for effect in group}
     effects = tuple(
-        AdoptedEffect(
-            f.hypothesis.effect,
-            f.hypothesis.location,
-            f.hypothesis.options(fitted.model.sizes_at(fitted.z, f.hypothesis)),
-            discovery.verdict != "named" and f.hypothesis.effect in ambiguous,
+        _effect(
+            f.hypothesis,
+            fitted.model.sizes_at(fitted.z, f.hypothesis),
+            uncertain=discovery.verdict != "named" and f.hypothesis.effect in ambiguous,
         )
         for f in chosen
     )
@@ -87,7 +92,26 @@ def adopt(study: Study, discovery: Discovery) -> Adoption:
         effects=effects,
         refit=best.model.values_with(axle, best.z),
         without=_without(discovery, bool(chosen)),
+        size_steps=tuple(_size_steps(study.axle, effects, chosen, fitted)),
     )
+
+
+def _effect(
+    hypothesis: Hypothesis, amplitudes: Mapping[str, float], *, uncertain: bool = False
+) -> AdoptedEffect:
+    """amplitudes: by `Size.name`."""
+    return AdoptedEffect(hypothesis.effect, hypothesis.location, hypothesis.options(amplitudes), uncertain)
+
+
+def _size_steps(
+    axle: Axle, effects: Sequence[AdoptedEffect], findings: Sequence[Finding], fitted: Fit
+) -> Iterator[Axle]:
+    """axle: without effects. findings: in the order of the effects. fitted: with them."""
+    for i, finding in enumerate(findings):
+        amplitudes = fitted.model.sizes_at(fitted.z, finding.hypothesis)
+        for size in finding.hypothesis.sizes:
+            larger = {**amplitudes, size.name: size.beside(amplitudes[size.name], AMPLITUDE_STEP)}
+            yield with_effects(axle, [*effects[:i], _effect(finding.hypothesis, larger), *effects[i + 1 :]])
 
 
 def adopted(study: Study, records: Sequence[EffectRecord], without: Sequence[Sequence[str]]) -> Adoption:

@@ -9,6 +9,7 @@ from typing import TypedDict
 
 import numpy as np
 
+from doe_kc.axle.model import Axle
 from doe_kc.campaign.runner import Campaign
 from doe_kc.correlation.linearization import Linearization
 from doe_kc.correlation.loop import Evaluate, Run, run_method
@@ -18,13 +19,16 @@ from doe_kc.correlation.problem import Candidate, Evaluated, Problem
 from doe_kc.correlation.reach import Relaxation, conflict_sentences, level_sentences, reach_sentences
 from doe_kc.correlation.result import Correlation
 from doe_kc.correlation.twin_agreement import twin_agreement
+from doe_kc.discovery.thresholds import AMPLITUDE_STEP
 from doe_kc.ground.errors import InputError, RunError
 from doe_kc.ground.threads import one_thread
+from doe_kc.ground.typing import FloatArray
 from doe_kc.parameter_influence.selection_result import Selection
 from doe_kc.solver.result import NotConverged
 from doe_kc.study import Study
 from doe_kc.true_solver.make import solver_for
 from doe_kc.true_solver.outcome import Outcome
+from doe_kc.true_solver.own import AxleSolver
 from doe_kc.variables import Space
 from doe_kc.workflow.adopt import Adoption
 from doe_kc.workflow.correlation_problem import (
@@ -49,14 +53,41 @@ def expansion_at(problem: Problem, design: Evaluated) -> Linearization | None:
 
 @one_thread()
 def posterior_at(
-    problem: Problem, expansion: Linearization | None, best: Evaluated
+    problem: Problem,
+    expansion: Linearization | None,
+    best: Evaluated,
+    size_steps: Sequence[Axle] = (),
 ) -> ParameterPosterior | None:
-    """What the data say of each variable; None without exact sensitivities."""
+    """What the data say of each variable; None without exact sensitivities.
+
+    size_steps: of effects that were found in the same data, see `Adoption`, so that their sizes are open as
+    well: each within its typical size before any record. Those of an outside solver's model are held.
+    """
     if expansion is None or best.outcome.failed or not problem.likelihood.size:
         return None
-    jacobian = problem.likelihood.jacobian(expansion.curves, expansion.characteristics)
     residual = problem.likelihood.residual(best.outcome.curves, best.outcome.characteristics)
-    return posterior(jacobian, problem.space.prior_sd, residual=residual, point=best.point)
+    return posterior(
+        problem.likelihood.jacobian(expansion.curves, expansion.characteristics),
+        problem.space.prior_sd,
+        residual=residual,
+        point=best.point,
+        start=problem.space.start,
+        nuisance=_size_slopes(problem, best, residual, size_steps) if problem.exact else None,
+    )
+
+
+def _size_slopes(
+    problem: Problem, best: Evaluated, residual: FloatArray, size_steps: Sequence[Axle]
+) -> FloatArray:
+    """(M, at most as many as steps) derivatives of the residual to the amplitudes at a design; a size with
+    which there is no equilibrium is held."""
+    values, columns = problem.space.values(best.point), []
+    for axle in size_steps:
+        outcome = AxleSolver(axle, problem.windows).evaluate(values)
+        if not outcome.failed:
+            larger = problem.likelihood.residual(outcome.curves, outcome.characteristics)
+            columns.append((larger - residual) / AMPLITUDE_STEP)
+    return np.column_stack(columns) if columns else np.zeros((residual.size, 0))
 
 
 @one_thread()
@@ -192,7 +223,9 @@ def correlate(
         run=run,
         steps=(*steps, *(adoption.sentences if adoption is not None else ())),
         notes=notes_on(problem, run, at_best, relaxed),
-        posterior=posterior_at(problem, at_best, run.evaluated[run.best]),
+        posterior=posterior_at(
+            problem, at_best, run.evaluated[run.best], () if adoption is None else adoption.size_steps
+        ),
         seconds=time.perf_counter() - started,
         relaxation=relaxed,
         given=None if given is None else problem.judged(-1, Candidate(space.start, "given axle"), given),

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.discovery.options import DiscoveryOptions
+from doe_kc.discovery.thresholds import AMPLITUDE_STEP
 from doe_kc.ground.errors import InputError
 from doe_kc.study import read_study
 from doe_kc.workflow.adopt import adopt, adopted
@@ -30,6 +33,33 @@ def test_named_effects_are_added_at_the_sizes_found(tmp_path: Path) -> None:
     assert adoption.axle.values["LLF.z@L"] == plain.axle.values["LLF.z@L"], "parameters stay nominal"
     assert adoption.refit["LLF.z"] != plain.axle.values["LLF.z@L"] and not adoption.without
     assert adoption.sentences == ("hub and wheel-bearing compliance: added to the axle",)
+
+
+def test_every_size_of_an_effect_has_an_axle_in_which_it_alone_is_larger(tmp_path: Path) -> None:
+    found, plain = discovery("pair"), study(tmp_path)
+    adoption = adopt(plain, found)
+    sizes = [
+        (effect.id, size)
+        for effect, finding in zip(adoption.effects, found.findings, strict=True)
+        for size in finding.hypothesis.sizes
+    ]
+    assert len(adoption.effects) == 2 and len(sizes) >= 4
+    before = {ident: _numbers(options) for ident, options in adoption.axle.effects.items()}
+    for (effect, size), axle in zip(sizes, adoption.size_steps, strict=True):
+        after = {ident: _numbers(options) for ident, options in axle.effects.items()}
+        assert {k for k in after[effect] if after[effect][k] != before[effect][k]} == {size.name}
+        low, high = (size.amplitude(float(o[effect][size.name])) for o in (before, after))
+        assert high - low == pytest.approx(AMPLITUDE_STEP, rel=1e-6)
+        assert all(after[e.id] == before[e.id] for e in adoption.effects if e.id != effect)
+
+
+def _numbers(options: Mapping[str, Any]) -> dict[str, Any]:
+    """An effect's options by `Size.name`, of lists place by place."""
+    out: dict[str, Any] = {}
+    for key, value in options.items():
+        parts = {f"{key}[{i}]": v for i, v in enumerate(value)} if isinstance(value, list) else {key: value}
+        out |= parts
+    return out
 
 
 @pytest.mark.parametrize("added", [True, False])

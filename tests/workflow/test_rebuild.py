@@ -79,6 +79,7 @@ def test_the_same_weights_give_the_same_correlation(tmp_path: Path) -> None:
         assert (one.candidate.predicted is None) == (other.candidate.predicted is None)
     assert again.posterior is not None and found.posterior is not None
     np.testing.assert_array_equal(again.posterior.sd, found.posterior.sd)
+    np.testing.assert_array_equal(again.posterior.offset, found.posterior.offset)
     for mine, known in zip(again.problem.space.variables, found.problem.space.variables, strict=True):
         assert replace(mine, parameter=known.parameter) == known
     assert again.problem.space.ties == found.problem.space.ties

@@ -25,11 +25,11 @@ UNSEEN_LISTED = 12
 class ParameterRow:
     """One parameter; baseline, final, lower, upper, sd absolute in `unit`, nan where there is none.
 
-    role: free between bounds, tied to `leader`, or fixed. at_bound: "lower", "upper" or "". sd: from the
-    posterior, nan at a bound. inward: there the distance from the bound within which the value lies with a
-    probability of 68 %, nan elsewhere. visible: whether the measurement at least halves what was known
-    before; None without posterior. start, place, spread: baseline, final and sd as places between the
-    bounds (0 = lower, 1 = upper).
+    role: free between bounds, tied to `leader`, or fixed. at_bound: "lower", "upper" or "". sd: root mean
+    square error of the final value by the posterior, nan at a bound. inward: there the distance from the
+    bound within which the value lies with a probability of 68 %, nan elsewhere. visible: whether the
+    measurement at least halves what was known before; None without posterior. start, place, spread: baseline,
+    final and sd as places between the bounds (0 = lower, 1 = upper).
     """
 
     path: str
@@ -93,7 +93,7 @@ def _variables(
     for i, variable in enumerate(space.variables):
         place = float(correlation.best.point[i])
         ended = seen is not None and seen.at_bound[i] != 0
-        spread = float(seen.sd[i]) if seen is not None and not ended else np.nan
+        spread = float(seen.rms_error[i]) if seen is not None and not ended else np.nan
         yield ParameterRow(
             path=variable.path,
             label=variable.parameter.label,

@@ -43,8 +43,10 @@ CORRELATION_LEGEND = {
     "standard deviations of the target away.",
     "Distance": "(value - target) / sd of the target; empty for a target without error.",
     "Normalised": "1 + sign(target) (value - target) / sqrt(target² + 0.005): value / target away from zero.",
-    "sd of a parameter": "Standard deviation from the exact sensitivities at the final design (of the twin "
-    "where an outside solver has one), all variables free together, prior from the bounds.",
+    "sd of a parameter": "Of the car's value about the final one, by the exact sensitivities at the final "
+    "design (of the twin where an outside solver has one): all variables and the sizes of effects that were "
+    "found free together, prior from the bounds; with the distance of the most probable value from the final "
+    "one.",
     "Not visible": "The measurement does not halve what was known before it; the final value says nothing "
     "about the car.",
     "Curves": "RMS deviation from the measured mean curve of both wheels; noise is the RMS error of that "
