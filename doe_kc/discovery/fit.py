@@ -201,8 +201,9 @@ def size_weights(model: EffectModel, hypothesis: Hypothesis) -> FloatArray:
     """(s, d + m) what of the unknowns makes each amplitude of a member, in typical sizes.
 
     The records show only the sum of a wrong input and of its load case's calibration: that is what counts. So
-    do they of an effect on both sides and of its traces on either: a free play of 0.1268 mm was told as
-    0.1274 +- 0.0043 mm, where the mean of both sides is 0.1265 +- 0.0007.
+    do they of an effect on both sides and of its traces on either, whose mean counts: a free play of 0.1268
+    mm was told as 0.1274 +- 0.0043 mm, where the mean of both sides is 0.1265 +- 0.0007. And of an effect on
+    one side and of its trace on both: what the side has counts, whichever it is of.
     """
     place = model.place(hypothesis)
     weights = np.eye(model.dimension + len(model.sizes))[place]
@@ -213,12 +214,20 @@ def size_weights(model: EffectModel, hypothesis: Hypothesis) -> FloatArray:
     if model.nuisances is None or hypothesis.location is None:
         return weights
     names = [size.name for size in hypothesis.sizes]
-    sides = [f"{hypothesis.location}_{side}" for side in "LR"]
     for at, trace in enumerate(model.nuisances.traces, start=model.traces.start):
         own, name = trace.hypothesis, trace.size.name
-        if own.effect == hypothesis.effect and own.location in sides and name in names:
-            weights[names.index(name), at] = 0.5 * TRACE_SD
+        if own.effect == hypothesis.effect and own.location is not None and name in names:
+            share = _share_of_trace(hypothesis.location, own.location)
+            weights[names.index(name), at] = share * TRACE_SD
     return weights
+
+
+def _share_of_trace(member: str, trace: str) -> float:
+    """Of a trace in one place, what a member in another has of it: half where that is on both sides of this,
+    all where this is on both sides of that."""
+    if trace in (f"{member}_L", f"{member}_R"):
+        return 0.5
+    return 1.0 if member in (f"{trace}_L", f"{trace}_R") else 0.0
 
 
 def last_member(fit: Fit, hypothesis: Hypothesis) -> Fit:

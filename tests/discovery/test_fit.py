@@ -180,24 +180,33 @@ def test_without_derivatives_size_covariance_and_evidence_are_those_of_the_fit(w
     np.testing.assert_array_equal(short.without_derivatives.gradient, with_hub.gradient)
 
 
-def test_the_size_of_an_effect_on_both_sides_is_its_mean() -> None:
-    """Moved from a free play to its traces on either side, nothing changes but the prior's cost."""
+@pytest.mark.parametrize(("at", "shared_with", "share"), [(0, (1, 2), 0.5), (1, (0,), 1.0), (2, (0,), 1.0)])
+def test_the_size_of_an_effect_has_what_its_traces_share_of_it(
+    at: int, shared_with: tuple[int, ...], share: float
+) -> None:
+    """Moved from a free play to its traces, nothing changes but the prior's cost: on both sides to those of
+    either, of which it is the mean; on one side to that of both, less that of the other side."""
     bare = tune(model("named"))
-    both, left, right = library("tie_rod_free_play")
-    traced = with_traces(bare, DiscoveryWorkers().screenings(bare, [both, left, right]))
-    beside = traced.model.extended(both)
+    places = library("tie_rod_free_play")
+    member = places[at]
+    traced = with_traces(bare, DiscoveryWorkers().screenings(bare, list(places)))
+    beside = traced.model.extended(member)
     assert traced.model.nuisances is not None
     names = [f"{t.hypothesis.name} {t.size.name}" for t in traced.model.nuisances.traces]
-    sides = [beside.traces.start + names.index(f"{h.name} gap_mm") for h in (left, right)]
+    traces = [beside.traces.start + names.index(f"{h.name} gap_mm") for h in places]
+    shared = [traces[i] for i in shared_with]
     z = np.append(traced.z, [0.5, 1.0])
     moved = z.copy()
     moved[-2] -= TRACE_SD
-    moved[sides] += 1.0
+    moved[shared] += 1.0
+    if at:
+        moved[traces[3 - at]] -= 1.0
     change = beside.residual(z) - bare.residual
     assert np.linalg.norm(beside.residual(moved) - beside.residual(z)) < 0.03 * np.linalg.norm(change)
     blank = Jacobian(np.zeros((bare.residual.size, z.size)))
     sizes = [
-        amplitude_estimates(Fit(beside, at, bare.residual, blank, 0.0, 1, True), both)[0] for at in (z, moved)
+        amplitude_estimates(Fit(beside, there, bare.residual, blank, 0.0, 1, True), member)[0]
+        for there in (z, moved)
     ]
     np.testing.assert_allclose(sizes[0], sizes[1])
-    assert sizes[0][0] == pytest.approx(0.5 + TRACE_SD * z[sides].mean())
+    assert sizes[0][0] == pytest.approx(0.5 + share * TRACE_SD * z[shared].sum())
