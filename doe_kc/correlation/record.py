@@ -181,8 +181,11 @@ def _evaluation(candidate: Candidate) -> EvaluationRecord:
 
 
 def read_record(document: Mapping[str, Any], source: str) -> RunRecord:
-    """The checked record; InputError for a damaged file."""
-    record = validate(RunRecord, document, source)
+    """The checked record; InputError for a damaged file, or one of another version."""
+    try:
+        record = validate(RunRecord, document, source)
+    except InputError as error:
+        raise InputError(f"{error} Or run doe-kc correlate again, which writes the file anew.") from None
     if not 0 <= record.best < len(record.evaluations):
         raise InputError(
             f"{source}: best = {record.best} is no evaluation of the file; run doe-kc correlate again."

@@ -313,7 +313,7 @@ def test_report_without_a_correlation(tmp_path: Path) -> None:
     record.write_text("{")
     fails(2, r"run\.json: is not valid JSON", "report", study)
     record.write_text("{}")
-    fails(2, r"run\.json: key method is missing", "report", study)
+    fails(2, r"(?s)run\.json: key method is missing.*run doe-kc correlate again", "report", study)
 
 
 def test_a_full_disk_keeps_what_was_evaluated(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
