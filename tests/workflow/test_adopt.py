@@ -57,8 +57,7 @@ def _numbers(options: Mapping[str, Any]) -> dict[str, Any]:
     """An effect's options by `Size.name`, of lists place by place."""
     out: dict[str, Any] = {}
     for key, value in options.items():
-        parts = {f"{key}[{i}]": v for i, v in enumerate(value)} if isinstance(value, list) else {key: value}
-        out |= parts
+        out |= {f"{key}[{i}]": v for i, v in enumerate(value)} if isinstance(value, list) else {key: value}
     return out
 
 

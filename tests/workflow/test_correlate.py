@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from doe_kc.correlation.posterior import posterior
 from doe_kc.correlation.problem import Candidate
@@ -55,6 +54,4 @@ def test_the_sizes_of_effects_that_were_found_are_as_open_as_the_variables(tmp_p
     assert seen is not None and held is not None
     np.testing.assert_allclose(seen.sd, expected.sd, rtol=1e-3)
     np.testing.assert_allclose(seen.offset, expected.offset, atol=1e-3 * float(seen.sd.max()))
-    assert (seen.sd >= held.sd * (1 - 1e-9)).all() and seen.sd.max() > 0
-    assert (seen.sd / held.sd).max() == pytest.approx((expected.sd / held.sd).max(), rel=1e-3)
-    assert (seen.sd / held.sd).max() > 1.05
+    assert (seen.sd >= held.sd * (1 - 1e-9)).all() and (seen.sd / held.sd).max() > 1.05

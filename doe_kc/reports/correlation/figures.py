@@ -33,8 +33,8 @@ SEEN, UNSEEN, BOUND = style.PALETTE["blue"], "#B9BEC3", style.PALETTE["vermillio
 
 
 def parameter_figure(correlation: Correlation, study: str) -> Sheet:
-    """Bar from baseline to final between lower and upper bound, whisker ± sd of the posterior; beside it the
-    change."""
+    """Bar from baseline to final between lower and upper bound, whisker ± sd of the final value; beside it
+    the change."""
     rows = [r for r in parameter_rows(correlation) if r.role == "variable"]
     parts = _columns(_lines(rows))
     columns, deep = len(parts), max(map(len, parts))
