@@ -21,7 +21,6 @@ from doe_kc.discovery.search.refits import (
 from doe_kc.discovery.thresholds import (
     CONSTANT_TO,
     DECISIVE_EVIDENCE,
-    LINEAR_TO,
     NAME_LEVEL,
     NOISE_CHANCE,
     NOT_SHOWN,
@@ -109,20 +108,18 @@ def _finding(
 
 
 def sd_of_one_number(hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray) -> FloatArray:
-    """(m,) standard deviations; a stiffness is one number to `LINEAR_TO` at best, a friction's force to
-    `CONSTANT_TO`, a shape along which the cost has several optima to `OPTIMA_TO`."""
+    """(m,) standard deviations; a friction's force is one number to `CONSTANT_TO` at best, a shape along
+    which the cost has several optima to `OPTIMA_TO`."""
     amplitudes = zip(hypothesis.sizes, most_probable, strict=True)
     own = [_one_number_to(hypothesis, size, float(a)) for size, a in amplitudes]
     return np.asarray(np.hypot(sd, own))
 
 
 def _one_number_to(hypothesis: Hypothesis, size: Size, amplitude: float) -> float:
-    """Standard deviation of an amplitude, as far as one number stands for what it is at all loads and
-    travels, and as fits end at the optimum that is the car's."""
+    """Standard deviation of an amplitude, as far as one number stands for what it is at all travels, and as
+    fits end at the optimum that is the car's."""
     if size.starts:
         return OPTIMA_TO / size.log_sd
-    if size.growth == "compliance":
-        return LINEAR_TO * amplitude
     friction = EFFECTS[hypothesis.effect].frictional and size.key == LIMIT
     return CONSTANT_TO * amplitude if friction else 0.0
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from doe_kc.discovery.fit import Fit, rewhitened_fit, size_weights
+from doe_kc.discovery.fit import Fit, amplitude_estimates, rewhitened_fit, size_weights
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
 from doe_kc.discovery.search.baseline import with_friction_traces
@@ -24,7 +24,7 @@ from doe_kc.discovery.search.law_discrepancy import (
     effect_signals,
     fit_discrepancy,
 )
-from doe_kc.discovery.thresholds import LAW_OPEN
+from doe_kc.discovery.thresholds import LAW_OPEN, LINEAR_TO
 from doe_kc.discovery.verdict.own_scatter import with_own_scatter
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales, with_systematic_errors
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -44,14 +44,21 @@ class SizeFit:
 
     fit: Fit
     """Its amplitudes are the sizes."""
-    law_shifts: FloatArray
-    """(d + m, k) by how much the unknowns shift for each shape that the law of a member may have besides,
-    one standard deviation of it."""
+    law_shifts: Mapping[str, FloatArray]
+    """Member -> (d + m, k) by how much the unknowns shift for each shape that its law may have besides, one
+    standard deviation of it."""
 
     def law_sd(self, member: Hypothesis) -> FloatArray:
-        """(s,) standard deviations of a member's sizes by the laws of all members."""
-        shifts = size_weights(self.fit.model, member) @ self.law_shifts
-        return np.asarray(np.linalg.norm(shifts, axis=1))
+        """(s,) standard deviations of a member's sizes by the laws of all members.
+
+        By its own a stiffness is one number to `LINEAR_TO` at best.
+        """
+        weights = size_weights(self.fit.model, member)
+        sd = {name: np.linalg.norm(weights @ shifts, axis=1) for name, shifts in self.law_shifts.items()}
+        amplitudes, _ = amplitude_estimates(self.fit, member)
+        one_number = np.where(_compliant(member), LINEAR_TO * np.abs(amplitudes), 0.0)
+        sd[member.name] = np.maximum(sd.get(member.name, 0.0), one_number)
+        return np.asarray(np.linalg.norm(list(sd.values()), axis=0))
 
 
 def size_fit(search: EffectSearch, workers: DiscoveryWorkers) -> SizeFit:
@@ -73,31 +80,31 @@ def size_fit(search: EffectSearch, workers: DiscoveryWorkers) -> SizeFit:
     return SizeFit(own_fit, law_shifts(own_fit, signals, shares))
 
 
-def law_shifts(fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, float]) -> FloatArray:
-    """(d + m, k) see `SizeFit`, of the elastic members of a fit; signals: one a member.
+def law_shifts(
+    fit: Fit, signals: Sequence[EffectSignal], shares: Mapping[str, float]
+) -> dict[str, FloatArray]:
+    """See `SizeFit`, of the elastic members of a fit; signals: one a member.
 
     The law is the member's own and the same in every curve: errors curve by curve let it be hidden by what
     tells the curves apart. A mount that stiffens by 12 % made a hub beside it 4 standard deviations softer.
     A compliance's law is open by `LAW_OPEN` at least, of what yields: the gap of a free play has none.
     """
-    changes = [
-        _law_changes(fit, member, signal, shares[member.name])
+    changes = {
+        member.name: _law_changes(fit, member, signal, shares[member.name])
         for member, signal in zip(fit.model.members, signals, strict=True)
         if not signal.friction
-    ]
-    return _shifts(fit, [np.concatenate(law) for law in changes if law])
+    }
+    return {name: _shifts(fit, np.concatenate(law)) for name, law in changes.items() if law}
 
 
-def _shifts(fit: Fit, changes: Sequence[FloatArray]) -> FloatArray:
-    """(d + m, MODES k) shifts of the unknowns by k changes (N,) of all curves, each bent by every mode."""
-    if not changes:
-        return np.zeros((fit.z.size, 0))
-    return np.asarray(fit.covariance @ fit.jacobian.pulled(_bent(fit, np.array(changes).T)))
+def _shifts(fit: Fit, change: FloatArray) -> FloatArray:
+    """(d + m, MODES) shifts of the unknowns by a change (N,) of all curves, bent by every mode."""
+    return np.asarray(fit.covariance @ fit.jacobian.pulled(_bent(fit, change)))
 
 
 def _law_changes(fit: Fit, member: Hypothesis, signal: EffectSignal, share: float) -> list[FloatArray]:
     """Change (n,) of every curve by one standard deviation of a member's law; none where its law fits."""
-    compliant = np.array([size.growth == "compliance" for size in member.sizes], dtype=bool)
+    compliant = _compliant(member)
     if share >= LAW_OPEN or not compliant.any():
         return [share * change for change in signal.changes] if share else []
     changes = signal.changes
@@ -105,6 +112,11 @@ def _law_changes(fit: Fit, member: Hypothesis, signal: EffectSignal, share: floa
         with suppress(NotConverged):
             changes = _yielding(fit, member, compliant)
     return [LAW_OPEN * change for change in changes]
+
+
+def _compliant(member: Hypothesis) -> NDArray[np.bool_]:
+    """(s,) which sizes of a member are compliances."""
+    return np.array([size.growth == "compliance" for size in member.sizes], dtype=bool)
 
 
 def _yielding(fit: Fit, member: Hypothesis, compliant: NDArray[np.bool_]) -> tuple[FloatArray, ...]:
@@ -116,14 +128,14 @@ def _yielding(fit: Fit, member: Hypothesis, compliant: NDArray[np.bool_]) -> tup
     return tuple(curve.root @ yielding[at] for curve, at in fit.model.likelihood.slices())
 
 
-def _bent(fit: Fit, changes: FloatArray) -> FloatArray:
-    """(M, MODES k) changes of the residual where k of all curves (N, k) go by each mode over the input."""
-    out, modes = np.zeros((fit.residual.size, MODES * changes.shape[1])), _modes()
+def _bent(fit: Fit, change: FloatArray) -> FloatArray:
+    """(M, MODES) changes of the residual where that of all curves (N,) goes by each mode over the input."""
+    out, modes = np.zeros((fit.residual.size, MODES)), _modes()
     for group in fit.model.likelihood.groups:
         at = group.first.input / np.abs(group.first.input).max()
         along = np.array([np.interp(at, GRID, mode) for mode in modes]).T
-        own = changes[group.place].reshape(len(group.curves), at.size, -1, 1) * along[:, None]
-        out[group.place] = group.whitened(own.reshape(len(group.curves), at.size, -1))
+        own = change[group.place].reshape(len(group.curves), at.size, 1) * along
+        out[group.place] = group.whitened(own)
     return np.where(fit.model.used[:, None], out, 0.0)
 
 

@@ -172,7 +172,6 @@ def test_odds_are_against_the_best_alternative_the_removal_among_them() -> None:
 
 
 def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And a joint's stiffness is one number to some percent at best."""
     found = discovery("pair").search
     large = next(h for h in found.with_law_discrepancy.model.members if h.effect == "hub_compliance")
     place = [h.name for h, _ in found.with_law_discrepancy.model.places()].index(large.name)
@@ -186,12 +185,12 @@ def test_a_size_is_that_of_the_fit_that_knows_of_other_laws(monkeypatch: pytest.
         refit, own = HypothesisFit(member, found.with_law_discrepancy, 1000.0), (screened[member.name],)
         compared.append(comparison(found.tuned, own, effect_change(found.tuned, own), (refit,), 1.0))
     for share in (0.0, 0.05, 0.1):
-        shifts = share * np.outer(sized.fit.z, [0.6, 0.8])
+        shifts = {large.name: share * np.outer(sized.fit.z, [0.6, 0.8])}
         monkeypatch.setattr(findings_module, "size_fit", lambda *_, s=shifts: replace(sized, law_shifts=s))
         camber, _ = findings(searched, compared, DiscoveryWorkers())[place].estimates
         assert camber.value == pytest.approx(large.sizes[0].value(float(amplitudes[0])), rel=1e-3)
         assert camber.sd / camber.value == pytest.approx(
-            np.sqrt((sd[0] / amplitudes[0]) ** 2 + share**2 + LINEAR_TO**2), rel=0.02
+            np.hypot(sd[0] / amplitudes[0], max(share, LINEAR_TO)), rel=0.02
         )
 
 

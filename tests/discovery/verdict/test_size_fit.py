@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import doe_kc.discovery.verdict.size_fit as size_fit_module
-from doe_kc.discovery.fit import Fit, cost_of
+from doe_kc.discovery.fit import Fit, amplitude_estimates, cost_of
 from doe_kc.discovery.gauss_newton import chord_fit
 from doe_kc.discovery.gauss_newton import fit as optimum
 from doe_kc.discovery.search.law_discrepancy import effect_signals
 from doe_kc.discovery.search.law_variants import default_law, with_law
-from doe_kc.discovery.thresholds import LAW_OPEN
+from doe_kc.discovery.thresholds import LAW_OPEN, LINEAR_TO
 from doe_kc.discovery.verdict.size_fit import MODES, law_shifts, size_fit
 from doe_kc.discovery.verdict.systematic_errors import systematic_scales
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -77,12 +77,16 @@ def test_a_compliance_is_not_linear_even_where_its_law_fits() -> None:
     )
     names = [h.name for h in sized.model.members]
     assert names == ["hub_compliance", "steering_friction"]
-    fits = law_shifts(sized, signals, {"hub_compliance": 0.0, "steering_friction": 0.0})
-    open_laws = law_shifts(sized, signals, {"hub_compliance": LAW_OPEN, "steering_friction": 0.1})
+
+    def shifts(hub: float, friction: float) -> FloatArray:
+        by_member = law_shifts(sized, signals, {"hub_compliance": hub, "steering_friction": friction})
+        assert list(by_member) == ["hub_compliance"]
+        return by_member["hub_compliance"]
+
+    fits = shifts(0.0, 0.0)
     assert fits.shape == (sized.z.size, MODES) and np.any(fits)
-    np.testing.assert_array_equal(fits, open_laws)
-    twice = law_shifts(sized, signals, {"hub_compliance": 2.0 * LAW_OPEN, "steering_friction": 0.0})
-    np.testing.assert_allclose(twice, 2.0 * fits)
+    np.testing.assert_array_equal(shifts(LAW_OPEN, 0.1), fits)
+    np.testing.assert_allclose(shifts(2.0 * LAW_OPEN, 0.0), 2.0 * fits)
 
 
 def test_shifts_are_those_of_records_that_follow_another_law() -> None:
@@ -96,7 +100,7 @@ def test_shifts_are_those_of_records_that_follow_another_law() -> None:
     model, signals = last.model, effect_signals(last, DiscoveryWorkers())
     hub = next(i for i, h in enumerate(model.members) if h.effect == "hub_compliance")
     shares = {h.name: SHARE * (i == hub) for i, h in enumerate(model.members)}
-    shifts = law_shifts(last, signals, shares)
+    (shifts,) = law_shifts(last, signals, shares).values()
     assert shifts.shape == (last.z.size, MODES)
     bent = []
     for curve, change in zip(model.likelihood.curves, signals[hub].changes, strict=True):
@@ -121,11 +125,27 @@ def test_the_gap_of_a_free_play_has_no_law() -> None:
     (play, *_) = library("tie_rod_free_play")
     model = replace(last.model, members=(play,))
 
-    def shifts(contact: float) -> FloatArray:
+    def shifts(contact: float) -> dict[str, FloatArray]:
         z = np.append(last.z[: model.dimension], [1.0, contact])
         own = np.hstack([last.jacobian.own[:, : -last.amplitudes.size], np.zeros((last.residual.size, 2))])
         at = replace(last, model=model, z=z, residual=model.residual(z), jacobian=model.jacobian(own))
         return law_shifts(at, effect_signals(at, DiscoveryWorkers()), {play.name: 0.0})
 
-    assert not np.any(shifts(0.0))
-    assert np.any(shifts(1.0))
+    assert not np.any(shifts(0.0)[play.name])
+    assert np.any(shifts(1.0)[play.name])
+
+
+def test_a_stiffness_is_one_number_to_a_share_at_best() -> None:
+    """By its own law: more than the share is not added to it. Laws of others are beside it."""
+    sized = size_fit(discovery("pair").search, DiscoveryWorkers())
+    hub, friction = sized.fit.model.members
+    (camber, _), _ = amplitude_estimates(sized.fit, hub)
+
+    def share(**shifts: float) -> float:
+        by_member = {name: x * np.outer(sized.fit.z, [0.6, 0.8]) for name, x in shifts.items()}
+        return float(replace(sized, law_shifts=by_member).law_sd(hub)[0] / camber)
+
+    assert share() == share(hub_compliance=0.5 * LINEAR_TO) == pytest.approx(LINEAR_TO)
+    assert share(hub_compliance=3.0 * LINEAR_TO) == pytest.approx(3.0 * LINEAR_TO)
+    assert share(strut_bending=0.05) == pytest.approx(np.hypot(0.05, LINEAR_TO))
+    assert not np.any(replace(sized, law_shifts={}).law_sd(friction))
