@@ -63,7 +63,9 @@ def _sentence(error: Any, model: type[BaseModel]) -> str:
     if kind == "missing":
         return f"key {where} is missing; add it."
     if kind == "extra_forbidden":
-        return f"key {where} is unknown; remove or rename it.{nearest(keys[-1], _siblings(model, keys))}"
+        known = _siblings(model, keys)
+        hint = nearest(keys[-1], known) or (f" Known there: {', '.join(known)}." if known else "")
+        return f"key {where} is unknown; remove or rename it.{hint}"
     if kind == "literal_error":
         return f"{where} is {error['input']!r}, expected {error['ctx']['expected']}."
     if kind == "finite_number":

@@ -100,14 +100,14 @@ def _check_dependent(frame: pd.DataFrame, design: Design, space: Space, file: Pa
         if name in space.paths or name not in frame:
             continue
         for i, (cell, value) in enumerate(zip(frame[name], design.values[:, place], strict=True)):
-            if not _agrees(str(cell), value):
+            if not agrees(str(cell), value):
                 raise InputError(
                     f"{file}: row {i + HEADER_ROWS + 1}, column {name}: {cell}, but the study ties or fixes "
                     f"it to {value:.10g} there; remove the column, or make it a variable in [variables]."
                 )
 
 
-def _agrees(cell: str, value: float) -> bool:
+def agrees(cell: str, value: float) -> bool:
     """Whether a cell holds a value, to the digits that tables are written with."""
     try:
         return math.isclose(float(cell), value, rel_tol=WRITTEN_DIGITS, abs_tol=WRITTEN_DIGITS)

@@ -6,7 +6,8 @@ from __future__ import annotations
 import io
 import json
 import zipfile
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,9 @@ from doe_kc.ground.output import write_whole
 from doe_kc.ground.typing import FloatArray
 from doe_kc.surrogate_models.codec import UnreadableModel, decode, encode
 from doe_kc.surrogate_models.interface import Fitted
+from doe_kc.variables import Tie
 
-TAG = "doe-kc surrogate 2"
+TAG = "doe-kc surrogate 3"
 """Format and its version, the first entry of the header."""
 
 
@@ -56,18 +58,31 @@ class Output:
 @dataclass(frozen=True)
 class SavedSurrogate:
     """inputs: (d,), outputs: (m,). model: over the unit cube, variances calibrated. designs: it was fitted
-    to."""
+    to. ties, fixed: parameters of those designs besides, to variables and at values."""
 
     study: str
     designs: int
     inputs: tuple[Input, ...]
     outputs: tuple[Output, ...]
     model: Fitted
+    ties: tuple[Tie, ...] = ()
+    fixed: Mapping[str, float] = field(default_factory=dict)
 
     def places(self, values: FloatArray) -> FloatArray:
         """(p, d) points of the unit cube of absolute values (p, d)."""
         columns = [known.places(column) for known, column in zip(self.inputs, values.T, strict=True)]
         return np.column_stack(columns).reshape(values.shape)
+
+    @property
+    def dependent_paths(self) -> tuple[str, ...]:
+        """Of every tied and fixed parameter."""
+        return (*(tie.follower for tie in self.ties), *self.fixed)
+
+    def dependent(self, values: FloatArray) -> dict[str, FloatArray]:
+        """Path -> (p,) of every tied and fixed parameter, of absolute values (p, d)."""
+        own = dict(zip((known.path for known in self.inputs), values.T, strict=True))
+        tied = {tie.follower: np.array([tie.value(float(x)) for x in own[tie.leader]]) for tie in self.ties}
+        return tied | {path: np.full(len(values), value) for path, value in self.fixed.items()}
 
     def predict(self, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """(p, m) means and standard deviations, in the outputs' units, of absolute values (p, d)."""
@@ -84,6 +99,8 @@ def save_surrogate(path: Path, saved: SavedSurrogate) -> Path:
         "designs": saved.designs,
         "inputs": [asdict(known) for known in saved.inputs],
         "outputs": [asdict(known) for known in saved.outputs],
+        "ties": [asdict(tie) for tie in saved.ties],
+        "fixed": dict(saved.fixed),
         "model": document,
     }
     buffer = io.BytesIO()
@@ -105,11 +122,22 @@ def load_surrogate(path: Path) -> SavedSurrogate:
             )
         inputs = tuple(Input(**known) for known in header["inputs"])
         outputs = tuple(Output(**known) for known in header["outputs"])
+        ties = tuple(Tie(**known) for known in header["ties"])
+        fixed = {str(path): float(value) for path, value in header["fixed"].items()}
         model = decode(header["model"], arrays)
-        return SavedSurrogate(header["study"], int(header["designs"]), inputs, outputs, model)
+        return SavedSurrogate(header["study"], int(header["designs"]), inputs, outputs, model, ties, fixed)
     except InputError:
         raise
-    except (ValueError, KeyError, TypeError, OSError, EOFError, zipfile.BadZipFile, UnreadableModel):
+    except (
+        ValueError,
+        KeyError,
+        TypeError,
+        AttributeError,
+        OSError,
+        EOFError,
+        zipfile.BadZipFile,
+        UnreadableModel,
+    ):
         raise InputError(
             f"{path}: is no surrogate; expected the file surrogate.npz that doe-kc surrogates writes."
         ) from None

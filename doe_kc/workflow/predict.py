@@ -14,7 +14,7 @@ from doe_kc.characteristics.result_columns import design_columns
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
-from doe_kc.sampling.table import HEADER_ROWS, LABEL, read_frame
+from doe_kc.sampling.table import HEADER_ROWS, LABEL, agrees, read_frame
 from doe_kc.surrogate_models.report import SurrogateReport
 from doe_kc.surrogate_models.saved import Input, Output, SavedSurrogate
 from doe_kc.surrogate_models.validation import NOMINAL_WIDTH
@@ -55,7 +55,10 @@ def saved_surrogate(report: SurrogateReport, *, study: str) -> SavedSurrogate:
         Output(c.id, c.label, c.unit, fitted.chosen[j], float(q2[j]), float(rmse[j]))
         for j, c in enumerate(report.designs.characteristics)
     )
-    return SavedSurrogate(study, len(report.designs.x), inputs, outputs, fitted.model)
+    space = report.space
+    return SavedSurrogate(
+        study, len(report.designs.x), inputs, outputs, fitted.model, space.ties, dict(space.fixed or {})
+    )
 
 
 def predict_table(saved: SavedSurrogate, table: Path, *, fill: bool = False) -> Predicted:
@@ -63,8 +66,9 @@ def predict_table(saved: SavedSurrogate, table: Path, *, fill: bool = False) -> 
 
     A table has a column a variable, `PATH` or `PATH [unit]`, and may have `label`; results of designs that
     were evaluated are not read. A list has the columns parameter, value and perhaps unit; what it does not
-    name keeps its start. fill: columns that are missing from a table do so too. InputError naming file, row
-    and column; values outside the bounds are a warning.
+    name keeps its start. fill: columns that are missing from a table do so too. Parameters that were tied or
+    fixed in the surrogate's designs may stand beside the variables, with the values that they had there.
+    InputError naming file, row and column; values outside the bounds are a warning.
     """
     frame = read_frame(table)
     if set(frame.columns) >= LIST_COLUMNS:
@@ -80,8 +84,12 @@ def _tabled(
     saved: SavedSurrogate, frame: pd.DataFrame, table: Path, fill: bool
 ) -> tuple[tuple[str, ...], FloatArray]:
     columns: dict[str, str] = {}
+    beside: dict[str, str] = {}
     for head in design_columns(map(str, frame.columns)):
         if head == LABEL:
+            continue
+        if (path := _path(head)) in saved.dependent_paths:
+            beside[path] = head
             continue
         known = _known(saved, head, f"{table}: column {head!r}")
         if known.path in columns:
@@ -101,6 +109,9 @@ def _tabled(
                 _number(cell, known, f"{table}: row {i + HEADER_ROWS + 1}, column {columns[known.path]!r}")
                 for i, cell in enumerate(cells)
             ]
+    for path, head in beside.items():
+        for i, (cell, value) in enumerate(zip(frame[head], saved.dependent(values)[path], strict=True)):
+            _check_dependent(str(cell), float(value), f"{table}: row {i + HEADER_ROWS + 1}, column {head!r}")
     numbered = [f"row {i + HEADER_ROWS + 1}" for i in range(len(frame))]
     labels = [str(text) for text in frame[LABEL].fillna("")] if LABEL in frame else numbered
     return tuple(labels), values
@@ -108,9 +119,13 @@ def _tabled(
 
 def _listed(saved: SavedSurrogate, frame: pd.DataFrame, table: Path) -> tuple[tuple[str, ...], FloatArray]:
     values = {known.path: known.start for known in saved.inputs}
+    beside: dict[str, tuple[str, str]] = {}
     seen: set[str] = set()
     for i, row in frame.iterrows():
         where = f"{table}: row {int(str(i)) + HEADER_ROWS + 1}"
+        if (path := str(row["parameter"]).strip()) in saved.dependent_paths:
+            beside[path] = str(row["value"]), f"{where}, {path}"
+            continue
         unit = str(row["unit"]) if "unit" in frame and isinstance(row["unit"], str) else None
         head = str(row["parameter"]) + (f" [{unit}]" if unit is not None else "")
         known = _known(saved, head, f"{where}, parameter {row['parameter']!r}")
@@ -118,7 +133,25 @@ def _listed(saved: SavedSurrogate, frame: pd.DataFrame, table: Path) -> tuple[tu
             raise InputError(f"{where}: {known.path} is there twice; remove one.")
         seen.add(known.path)
         values[known.path] = _number(row["value"], known, f"{where}, {known.path}")
-    return (table.stem,), np.array([list(values.values())])
+    design = np.array([list(values.values())])
+    for path, (cell, place) in beside.items():
+        _check_dependent(cell, float(saved.dependent(design)[path][0]), place)
+    return (table.stem,), design
+
+
+def _check_dependent(cell: str, value: float, where: str) -> None:
+    """InputError where a tied or fixed parameter has another value than the surrogate's designs had."""
+    if not agrees(cell, value):
+        raise InputError(
+            f"{where}: {cell}, but the surrogate's study tied or fixed it to {value:.10g} there; remove it, "
+            "or fit the surrogate with it as a variable."
+        )
+
+
+def _path(head: str) -> str:
+    """Of a head `PATH` or `PATH [unit]`."""
+    match = HEAD.match(head.strip())
+    return match["path"] if match else head
 
 
 def _known(saved: SavedSurrogate, head: str, where: str) -> Input:

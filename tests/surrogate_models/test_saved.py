@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from doe_kc.surrogate_models.models.gp_slopes import SlopeProcess
 from doe_kc.surrogate_models.saved import Input, Output, SavedSurrogate, load_surrogate, save_surrogate
 from doe_kc.surrogate_models.selection import join
 from doe_kc.surrogate_models.varying import fit_varying
+from doe_kc.variables import Tie
 from doe_kc.workflow.predict import predict_table
 from tests.cli.runner import fails, succeeds
 from tests.surrogate_models.problems import differences, outputs, problem
@@ -82,7 +84,7 @@ def test_what_is_no_surrogate_is_refused(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"is no surrogate; expected the file surrogate\.npz"):
             load_surrogate(tmp_path / "s.npz")
     np.savez(tmp_path / "other.npz", header=np.frombuffer(b'{"format": "else"}', dtype=np.uint8))
-    with pytest.raises(InputError, match="is a 'else', expected 'doe-kc surrogate 2'"):
+    with pytest.raises(InputError, match="is a 'else', expected 'doe-kc surrogate 3'"):
         load_surrogate(tmp_path / "other.npz")
 
 
@@ -113,6 +115,24 @@ def test_designs_that_were_evaluated_are_predicted_again(tmp_path: Path) -> None
     evaluated = frame().assign(status="ok", reason="", seconds=0.1, **{"vertical.bump_steer": -3.0})
     again = predict_table(saved(), table(tmp_path, evaluated))
     np.testing.assert_array_equal(again.values, values())
+
+
+def test_tied_and_fixed_parameters_may_stand_beside_the_variables(tmp_path: Path) -> None:
+    """With the values that they had in the surrogate's designs, to the digits of a table."""
+    offset, ratio = Tie("Q1", "P1", False, 215.0, 205.0), Tie("Q4", "P4", True, 3.0, 1.0)
+    with_ties = replace(saved(), ties=(offset, ratio), fixed={"F": 7.0})
+    again = load_surrogate(save_surrogate(tmp_path / "s.npz", with_ties))
+    assert again.dependent_paths == ("Q1", "Q4", "F")
+    beside = {"Q1": values()[:, 1] + 10.0, "Q4 [-]": 3.0 * values()[:, 4], "F": np.full(len(values()), 7.0)}
+    done = predict_table(again, table(tmp_path, frame().assign(**beside).round(9)))
+    np.testing.assert_allclose(done.values, values(), rtol=1e-8, atol=1e-8)
+    listed = pd.DataFrame({"parameter": ["Q1", "P1", "F"], "value": ["217", "207", "7"]})
+    np.testing.assert_array_equal(predict_table(again, table(tmp_path, listed)).values[0, 1], 207.0)
+    with pytest.raises(InputError, match=r"row 2, column 'F': 8\.0, but .* tied or fixed it to 7 there"):
+        predict_table(again, table(tmp_path, frame().assign(F=8.0)))
+    listed.loc[0, "value"] = "216"
+    with pytest.raises(InputError, match=r"row 2, Q1: 216, but .* tied or fixed it to 217 there"):
+        predict_table(again, table(tmp_path, listed))
 
 
 def test_bad_tables_are_named(tmp_path: Path) -> None:
