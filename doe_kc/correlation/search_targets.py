@@ -29,7 +29,7 @@ ROUNDING = 1e-6
 """Share by which a limit lies beyond the baseline's own distance: the baseline meets its holds."""
 MISFIT_WEIGHT = 2.0
 """Of the mean squared residual, 1 for noise alone: a fit that doubles it gives away as much as one objective
-that is missed by its own size. To hit all characteristics exactly a double wishbone gave away a fifth of one."""
+that is missed by its own size. To hit all characteristics exactly one axle gave away a fifth of one."""
 NEGLIGIBLE_SHARE = 0.01
 """Share of the interval's measure below which no deviation is worth removing: exact targets have no noise."""
 STILL_SHARE = 0.02
