@@ -27,6 +27,7 @@ from doe_kc.discovery.search.refits import (
     temper,
     untried,
 )
+from doe_kc.discovery.search.rig_faults import refits_of_the_car
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
@@ -164,6 +165,7 @@ def next_decision(
     if not any(_passes(t, current) for t in trials):
         trials += _leader_refits(current, screened, least, prior, workers)
     trials += refits_from_nominal(current, screened, first_screened, trials, prior, workers)
+    trials += refits_of_the_car(current, screened, least / 2.0, trials, prior, workers)
     if current.residual_map.chance < NOISE_CHANCE and not any(_passes(t, current) for t in trials):
         done = {t.hypothesis.name for t in trials}
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]

@@ -24,6 +24,7 @@ from doe_kc.discovery.search.refits import (
     set_fit,
     useful_cost,
 )
+from doe_kc.discovery.search.rig_faults import rig_fault_leads
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
@@ -54,7 +55,7 @@ def refits_from_nominal(
     screened before any effect. trials: other refits of the same step, which count among all.
     """
     bent, first = many_held(current), leading_at_first(first_screened, current.model)
-    if current.residual_map.chance >= NOISE_CHANCE or not (bent or (first and _rig_fault_leads(trials))):
+    if current.residual_map.chance >= NOISE_CHANCE or not (bent or (first and rig_fault_leads(trials))):
         return []
     try:
         nominal = nominal_fit(current)
@@ -90,12 +91,6 @@ def refit_anew(current: Fit, workers: DiscoveryWorkers) -> Fit | None:
     if refit is None or refit.evidence - current.evidence <= ACCEPTED_ODDS:
         return None
     return refit
-
-
-def _rig_fault_leads(trials: Sequence[HypothesisFit]) -> bool:
-    """A ride height 7 mm off gave 403 of ln evidence to a gain of the tyre load, and lost 890 beside it."""
-    best = max(trials, key=lambda t: t.gain, default=None)
-    return best is not None and best.gain > ACCEPTED_ODDS and EFFECTS[best.hypothesis.effect].on_rig
 
 
 def leading_from_nominal(gains: Sequence[BoundedGain]) -> list[BoundedGain]:
