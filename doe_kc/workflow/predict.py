@@ -109,8 +109,9 @@ def _tabled(
                 _number(cell, known, f"{table}: row {i + HEADER_ROWS + 1}, column {columns[known.path]!r}")
                 for i, cell in enumerate(cells)
             ]
+    dependent = saved.dependent(values)
     for path, head in beside.items():
-        for i, (cell, value) in enumerate(zip(frame[head], saved.dependent(values)[path], strict=True)):
+        for i, (cell, value) in enumerate(zip(frame[head], dependent[path], strict=True)):
             _check_dependent(str(cell), float(value), f"{table}: row {i + HEADER_ROWS + 1}, column {head!r}")
     numbered = [f"row {i + HEADER_ROWS + 1}" for i in range(len(frame))]
     labels = [str(text) for text in frame[LABEL].fillna("")] if LABEL in frame else numbered
@@ -134,8 +135,9 @@ def _listed(saved: SavedSurrogate, frame: pd.DataFrame, table: Path) -> tuple[tu
         seen.add(known.path)
         values[known.path] = _number(row["value"], known, f"{where}, {known.path}")
     design = np.array([list(values.values())])
+    dependent = saved.dependent(design)
     for path, (cell, place) in beside.items():
-        _check_dependent(cell, float(saved.dependent(design)[path][0]), place)
+        _check_dependent(cell, float(dependent[path][0]), place)
     return (table.stem,), design
 
 

@@ -24,10 +24,10 @@ def rig_fault_leads(trials: Sequence[HypothesisFit]) -> bool:
 
     A ride height 7 mm off gave 403 of ln evidence to a gain of the tyre load, and lost 890 beside it.
     """
-    return _fault_in_front(trials) is not None
+    return _leading_fault(trials) is not None
 
 
-def _fault_in_front(trials: Sequence[HypothesisFit]) -> Hypothesis | None:
+def _leading_fault(trials: Sequence[HypothesisFit]) -> Hypothesis | None:
     best = max(trials, key=lambda t: t.gain, default=None)
     leads = best is not None and best.gain > ACCEPTED_ODDS and EFFECTS[best.hypothesis.effect].on_rig
     return best.hypothesis if best is not None and leads else None
@@ -48,7 +48,7 @@ def refits_of_the_car(
     245 by their refit; a gain of the camber sensor that gained 88 was named instead.
     least: ln evidence to first order below which none is refitted. trials: other refits of the same step.
     """
-    fault = _fault_in_front(trials)
+    fault = _leading_fault(trials)
     if fault is None or not fault.sizes:
         return []
     done = {t.hypothesis.name for t in trials}

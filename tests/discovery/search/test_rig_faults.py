@@ -73,7 +73,7 @@ def test_where_an_effect_of_the_car_leads_nothing_more_is_asked_for(
     assert refits_of_the_car(current, screened, LEAST, [fault, hub], NONE, DiscoveryWorkers()) == []
 
 
-def test_a_technique_is_no_disguise(current: Fit, screened: list[Screened]) -> None:
+def test_a_technique_stands_for_nothing_else(current: Fit, screened: list[Screened]) -> None:
     """It has no size that could stand for another effect's."""
     technique = HypothesisFit(library("roll_technique")[0], current, 400.0)
     assert rig_fault_leads([technique])
