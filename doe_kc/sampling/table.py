@@ -100,19 +100,23 @@ def _check_dependent(frame: pd.DataFrame, design: Design, space: Space, file: Pa
         if name in space.paths or name not in frame:
             continue
         for i, (cell, value) in enumerate(zip(frame[name], design.values[:, place], strict=True)):
-            if not agrees(str(cell), value):
-                raise InputError(
-                    f"{file}: row {i + HEADER_ROWS + 1}, column {name}: {cell}, but the study ties or fixes "
-                    f"it to {value:.10g} there; remove the column, or make it a variable in [variables]."
-                )
+            check_dependent(
+                str(cell),
+                value,
+                f"{file}: row {i + HEADER_ROWS + 1}, column {name}",
+                "remove the column, or make it a variable in [variables]",
+            )
 
 
-def agrees(cell: str, value: float) -> bool:
-    """Whether a cell holds a value, to the digits that tables are written with."""
+def check_dependent(cell: str, value: float, where: str, mend: str) -> None:
+    """InputError where a cell of a tied or fixed parameter holds another value than the study gives it, to
+    the digits that tables are written with. mend: what to do then."""
     try:
-        return math.isclose(float(cell), value, rel_tol=WRITTEN_DIGITS, abs_tol=WRITTEN_DIGITS)
+        agrees = math.isclose(float(cell), value, rel_tol=WRITTEN_DIGITS, abs_tol=WRITTEN_DIGITS)
     except ValueError:
-        return False
+        agrees = False
+    if not agrees:
+        raise InputError(f"{where}: {cell}, but the study ties or fixes it to {value:.10g} there; {mend}.")
 
 
 def _places(frame: pd.DataFrame, variable: Variable, file: Path) -> FloatArray:

@@ -14,7 +14,7 @@ from doe_kc.characteristics.result_columns import design_columns
 from doe_kc.ground.errors import InputError, nearest
 from doe_kc.ground.output import write_columns
 from doe_kc.ground.typing import FloatArray
-from doe_kc.sampling.table import HEADER_ROWS, LABEL, agrees, read_frame
+from doe_kc.sampling.table import HEADER_ROWS, LABEL, check_dependent, read_frame
 from doe_kc.surrogate_models.report import SurrogateReport
 from doe_kc.surrogate_models.saved import Input, Output, SavedSurrogate
 from doe_kc.surrogate_models.validation import NOMINAL_WIDTH
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 HEAD = re.compile(r"^(?P<path>[^\[\]]+?)\s*(?:\[(?P<unit>[^\]]*)\])?$")
 LIST_COLUMNS = {"parameter", "value"}
 """Columns of a list of parameters, one a row; `unit` may stand beside them."""
+MEND = "remove it, or fit the surrogate with it as a variable"
+"""What to do with a parameter that the surrogate's study ties or fixes to another value."""
 OUTSIDE_SLACK = 1e-9
 """Of the unit cube, within which a value counts as inside its bounds."""
 
@@ -88,8 +90,8 @@ def _tabled(
     for head in design_columns(map(str, frame.columns)):
         if head == LABEL:
             continue
-        if (path := _path(head)) in saved.dependent_paths:
-            beside[path] = head
+        if (path := _parts(head)[0]) in saved.dependent_paths:
+            beside[head] = path
             continue
         known = _known(saved, head, f"{table}: column {head!r}")
         if known.path in columns:
@@ -110,9 +112,10 @@ def _tabled(
                 for i, cell in enumerate(cells)
             ]
     dependent = saved.dependent(values)
-    for path, head in beside.items():
+    for head, path in beside.items():
         for i, (cell, value) in enumerate(zip(frame[head], dependent[path], strict=True)):
-            _check_dependent(str(cell), float(value), f"{table}: row {i + HEADER_ROWS + 1}, column {head!r}")
+            where = f"{table}: row {i + HEADER_ROWS + 1}, column {head!r}"
+            check_dependent(str(cell), float(value), where, MEND)
     numbered = [f"row {i + HEADER_ROWS + 1}" for i in range(len(frame))]
     labels = [str(text) for text in frame[LABEL].fillna("")] if LABEL in frame else numbered
     return tuple(labels), values
@@ -120,12 +123,12 @@ def _tabled(
 
 def _listed(saved: SavedSurrogate, frame: pd.DataFrame, table: Path) -> tuple[tuple[str, ...], FloatArray]:
     values = {known.path: known.start for known in saved.inputs}
-    beside: dict[str, tuple[str, str]] = {}
+    beside: list[tuple[str, str, str]] = []
     seen: set[str] = set()
     for i, row in frame.iterrows():
         where = f"{table}: row {int(str(i)) + HEADER_ROWS + 1}"
         if (path := str(row["parameter"]).strip()) in saved.dependent_paths:
-            beside[path] = str(row["value"]), f"{where}, {path}"
+            beside.append((path, str(row["value"]), f"{where}, {path}"))
             continue
         unit = str(row["unit"]) if "unit" in frame and isinstance(row["unit"], str) else None
         head = str(row["parameter"]) + (f" [{unit}]" if unit is not None else "")
@@ -136,31 +139,21 @@ def _listed(saved: SavedSurrogate, frame: pd.DataFrame, table: Path) -> tuple[tu
         values[known.path] = _number(row["value"], known, f"{where}, {known.path}")
     design = np.array([list(values.values())])
     dependent = saved.dependent(design)
-    for path, (cell, place) in beside.items():
-        _check_dependent(cell, float(dependent[path][0]), place)
+    for path, cell, place in beside:
+        check_dependent(cell, float(dependent[path][0]), place, MEND)
     return (table.stem,), design
 
 
-def _check_dependent(cell: str, value: float, where: str) -> None:
-    """InputError where a tied or fixed parameter has another value than the surrogate's designs had."""
-    if not agrees(cell, value):
-        raise InputError(
-            f"{where}: {cell}, but the surrogate's study tied or fixed it to {value:.10g} there; remove it, "
-            "or fit the surrogate with it as a variable."
-        )
-
-
-def _path(head: str) -> str:
-    """Of a head `PATH` or `PATH [unit]`."""
+def _parts(head: str) -> tuple[str, str | None]:
+    """Path and unit of a head `PATH` or `PATH [unit]`."""
     match = HEAD.match(head.strip())
-    return match["path"] if match else head
+    return (match["path"], match["unit"]) if match else (head, None)
 
 
 def _known(saved: SavedSurrogate, head: str, where: str) -> Input:
     """The variable that a head names, its unit checked."""
-    match = HEAD.match(head.strip())
     paths = {known.path: known for known in saved.inputs}
-    path, unit = (match["path"], match["unit"]) if match else (head, None)
+    path, unit = _parts(head)
     if path not in paths:
         raise InputError(
             f"{where}: is no variable of the surrogate; remove it, or fit the surrogate with it."

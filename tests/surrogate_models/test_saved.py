@@ -128,10 +128,10 @@ def test_tied_and_fixed_parameters_may_stand_beside_the_variables(tmp_path: Path
     np.testing.assert_allclose(done.values, values(), rtol=1e-8, atol=1e-8)
     listed = pd.DataFrame({"parameter": ["Q1", "P1", "F"], "value": ["217", "207", "7"]})
     np.testing.assert_array_equal(predict_table(again, table(tmp_path, listed)).values[0, 1], 207.0)
-    with pytest.raises(InputError, match=r"row 2, column 'F': 8\.0, but .* tied or fixed it to 7 there"):
-        predict_table(again, table(tmp_path, frame().assign(F=8.0)))
+    with pytest.raises(InputError, match=r"row 2, column 'F': 8\.0, but .* ties or fixes it to 7 there"):
+        predict_table(again, table(tmp_path, frame().assign(F=8.0, **{"F [mm]": 7.0})))
     listed.loc[0, "value"] = "216"
-    with pytest.raises(InputError, match=r"row 2, Q1: 216, but .* tied or fixed it to 217 there"):
+    with pytest.raises(InputError, match=r"row 2, Q1: 216, but .* ties or fixes it to 217 there"):
         predict_table(again, table(tmp_path, listed))
 
 

@@ -24,7 +24,7 @@ from doe_kc.discovery.search.refits import (
     set_fit,
     useful_cost,
 )
-from doe_kc.discovery.search.rig_faults import rig_fault_leads
+from doe_kc.discovery.search.rig_faults import leading_rig_fault
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
@@ -55,7 +55,7 @@ def refits_from_nominal(
     screened before any effect. trials: other refits of the same step, which count among all.
     """
     bent, first = many_held(current), leading_at_first(first_screened, current.model)
-    if current.residual_map.chance >= NOISE_CHANCE or not (bent or (first and rig_fault_leads(trials))):
+    if current.residual_map.chance >= NOISE_CHANCE or not (bent or (first and leading_rig_fault(trials))):
         return []
     try:
         nominal = nominal_fit(current)

@@ -19,18 +19,15 @@ from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 
 
-def rig_fault_leads(trials: Sequence[HypothesisFit]) -> bool:
-    """Whether a fault of the rig is the best refit, and gains enough to be taken.
+def leading_rig_fault(trials: Sequence[HypothesisFit]) -> Hypothesis | None:
+    """The fault of the rig that is the best refit and gains enough to be taken, if one is.
 
     A ride height 7 mm off gave 403 of ln evidence to a gain of the tyre load, and lost 890 beside it.
     """
-    return _leading_fault(trials) is not None
-
-
-def _leading_fault(trials: Sequence[HypothesisFit]) -> Hypothesis | None:
     best = max(trials, key=lambda t: t.gain, default=None)
-    leads = best is not None and best.gain > ACCEPTED_ODDS and EFFECTS[best.hypothesis.effect].on_rig
-    return best.hypothesis if best is not None and leads else None
+    if best is None or best.gain <= ACCEPTED_ODDS or not EFFECTS[best.hypothesis.effect].on_rig:
+        return None
+    return best.hypothesis
 
 
 def refits_of_the_car(
@@ -48,7 +45,7 @@ def refits_of_the_car(
     245 by their refit; a gain of the camber sensor that gained 88 was named instead.
     least: ln evidence to first order below which none is refitted. trials: other refits of the same step.
     """
-    fault = _leading_fault(trials)
+    fault = leading_rig_fault(trials)
     if fault is None or not fault.sizes:
         return []
     done = {t.hypothesis.name for t in trials}

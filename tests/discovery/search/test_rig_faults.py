@@ -10,7 +10,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.search.rig_faults import refits_of_the_car, rig_fault_leads
+from doe_kc.discovery.search.rig_faults import leading_rig_fault, refits_of_the_car
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -68,13 +68,13 @@ def test_where_an_effect_of_the_car_leads_nothing_more_is_asked_for(
             ("hub_compliance", 500.0),
         )
     )
-    assert rig_fault_leads([fault]) and not rig_fault_leads([fault, hub])
-    assert not rig_fault_leads([weak]) and not rig_fault_leads([])
+    assert leading_rig_fault([weak, fault]) is fault.hypothesis
+    assert all(leading_rig_fault(trials) is None for trials in ([fault, hub], [weak], []))
     assert refits_of_the_car(current, screened, LEAST, [fault, hub], NONE, DiscoveryWorkers()) == []
 
 
 def test_a_technique_stands_for_nothing_else(current: Fit, screened: list[Screened]) -> None:
     """It has no size that could stand for another effect's."""
     technique = HypothesisFit(library("roll_technique")[0], current, 400.0)
-    assert rig_fault_leads([technique])
+    assert leading_rig_fault([technique]) is technique.hypothesis
     assert refits_of_the_car(current, screened, LEAST, [technique], NONE, DiscoveryWorkers()) == []
