@@ -102,6 +102,13 @@ def test_a_free_shape_in_place_of_a_law_of_more_numbers_asks_every_closed_law(
     assert asked.count == asked_for and not taken
 
 
+def test_a_law_of_more_numbers_asks_every_closed_law(taken: list[FitStart]) -> None:
+    """271 N on a mount of 7060 N/mm were 217.7 +- 1.9 N by Duhem's law, near which no free shape came."""
+    before, asked = alone("friction", "duhem"), Counted()
+    assert with_series_compliances(before, EVERY, asked) is before
+    assert asked.count == 9 and not taken
+
+
 def test_a_trace_is_asked_for_by_its_own_law_alone(taken: list[FitStart]) -> None:
     """Beside a free play eight fits of a mount in series with 8 N took a tenth of a search."""
     before, asked = freed("friction", "duhem"), Counted()
