@@ -52,6 +52,7 @@ def laws_instead(
         return None
     exact, rival = fit_to_errors(current, own, workers), refit_to_errors(further.fit, own)
     (added,) = workers.fits([FitStart(rival.model, rival.z, rival)], "freeing laws")
+    del rival  # its derivatives
     best, useful = exact, np.inf if added is None else _useful_cost(exact, added.evidence + further.prior)
     for member in members:
         best = with_best_law(best, member, workers, useful)
@@ -106,7 +107,9 @@ def needless_beside_laws(
     bent, both = workers.fits(starts, "freeing laws")
     if bent is None or both is None or bent.evidence <= rival.evidence + further.prior:
         return False
+    del exact, rival, starts  # the derivatives of six fits are 100 MB
     settled, _ = fit_discrepancy(bent, effect_signals(bent, workers))
+    del bent
     beside = fit_to_errors(both, settled.model.likelihood, workers)
     return beside.evidence + further.prior - settled.evidence <= ACCEPTED_ODDS
 

@@ -139,7 +139,7 @@ class _SetSearch:
             del following, decision  # derivatives go as soon as nothing begins from them
 
     def _decided(self) -> Decision:
-        """The next step, as it is told for now."""
+        """The next step, as it is told for now, with its first refit alone."""
         self._laws_open = not self._laws_asked and may_open(self._current)
         decision = next_decision(
             self._current,
@@ -152,14 +152,14 @@ class _SetSearch:
         )
         self._first = self._first or decision
         self._steps.append(decision.step(self._tuned.model.likelihood, self._prior))
-        return decision
+        return replace(decision, trials=decision.trials[:1])  # derivatives of the others go
 
     def _following(self, decision: Decision) -> Fit | None:
         """The set that the search goes on from: the current one where the same step is asked for again, None
         at the end."""
         full = decision.accepted and len(decision.trials[0].fit.model.members) > EFFECTS_MOST
         if full or len(self._steps) >= MOST_STEPS:
-            self._refuse(decision)
+            self._refuse()
             final = with_final_laws(self._current, self._compared, self._workers)
             self._current, self._shape_loss = final.fit, self._shape_loss + final.loss
             return None
@@ -167,10 +167,9 @@ class _SetSearch:
             return taken
         return refit_anew(self._current, self._workers) or self._other_laws()
 
-    def _refuse(self, decision: Decision) -> None:
-        """Tell that the step accepts nothing."""
-        own = self._tuned.model.likelihood
-        self._steps[-1] = replace(decision, accepted=False).step(own, self._prior)
+    def _refuse(self) -> None:
+        """Tell that the last step accepts nothing."""
+        self._steps[-1] = replace(self._steps[-1], added=(), accepted=False)
 
     def _effect_or_laws(self, decision: Decision) -> Fit | None:
         """The set with what the step accepts, beside the laws that say most with it, or by other laws in its
@@ -189,7 +188,7 @@ class _SetSearch:
             self._last_laws = False
             return other
         if needless_beside_laws(current, further, own, self._workers):
-            self._refuse(decision)
+            self._refuse()
             return None
         return self._with_effect(further.fit if other is None else other)
 

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from doe_kc.discovery.gauss_newton import fit
-from doe_kc.discovery.search.bound_check import at_bounds, beyond, bound_evidence, with_wider_bounds
+from doe_kc.discovery.model import EffectModel
+from doe_kc.discovery.search import bound_check
+from doe_kc.discovery.search.bound_check import (
+    at_bounds,
+    beyond,
+    bound_evidence,
+    search_within_bounds,
+    with_wider_bounds,
+)
+from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.search import search
 from doe_kc.discovery.workers import DiscoveryWorkers
 from tests.discovery.cases import OFF_NOMINAL, discovery, known_to, model, space
@@ -41,6 +51,27 @@ def test_no_other_car_asks_for_wider_bounds(car: str) -> None:
     found = discovery(car)
     assert found.widened == 1.0 and found.beyond == ()
     assert not any("outside the bounds" in s for s in found.sentences)
+
+
+@pytest.mark.parametrize(("gain", "asked"), [(100.0, [1.0, 1.5]), (-100.0, [1.0, 1.5, 1.0])])
+def test_the_first_search_is_let_go_while_the_wider_one_runs(
+    gain: float, asked: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It holds 80 MB; where it is the better one after all it is run again."""
+    known, widened = discovery("none").search, []
+    ended: list[weakref.ref[EffectSearch]] = []
+
+    def searched(within: EffectModel, *_: object) -> EffectSearch:
+        assert all(search() is None for search in ended)
+        widened.append(within.widened)
+        out = replace(known, shape_loss=gain if within.widened > 1.0 else 0.0)
+        ended.append(weakref.ref(out))
+        return out
+
+    monkeypatch.setattr(bound_check, "search", searched)
+    monkeypatch.setattr(bound_check, "bound_evidence", lambda *_: 1.5)
+    last = search_within_bounds(model("none"), [], DiscoveryWorkers())
+    assert widened == asked and last.shape_loss == max(gain, 0.0)
 
 
 def test_bounds_are_not_widened_where_tuning_cannot_be_the_reason() -> None:
