@@ -62,7 +62,7 @@ def test_the_first_search_is_let_go_while_the_wider_one_runs(
     ended: list[weakref.ref[EffectSearch]] = []
 
     def searched(within: EffectModel, *_: object) -> EffectSearch:
-        assert all(search() is None for search in ended)
+        assert all(before() is None for before in ended)
         widened.append(within.widened)
         out = replace(known, shape_loss=gain if within.widened > 1.0 else 0.0)
         ended.append(weakref.ref(out))
