@@ -30,8 +30,8 @@ def search_within_bounds(
 
     Wider ranges are tried only where what re-tuning could not absorb agrees with noise, so that they
     cannot bend parameters in place of an effect; then the search begins anew between them. The first one is
-    let go meanwhile, some 80 MB of a car of six effects: where it is the better one after all, against what a fit
-    between those bounds promised, it is run again, of what the cache remembers.
+    let go meanwhile, some 80 MB of a car of six effects: where it is the better one after all, against what a
+    fit between those bounds promised, it is run again, of what the cache remembers.
     NotConverged when the nominal axle has no equilibrium.
     """
     first = search(model, library, workers)
