@@ -9,11 +9,15 @@ from typing import Any
 
 import pytest
 
-from benchmarks.discovery import running
+from benchmarks.discovery import running, unsealing
 from benchmarks.discovery.analyser import finite
+from benchmarks.discovery.car import Car
 from benchmarks.discovery.cases import Case, case_folder, cases, publish, published, unseal
+from benchmarks.discovery.detectability import Detectability
 from benchmarks.discovery.key import seal
 from benchmarks.discovery.unsealing import scores
+from doe_kc.axle import Axle
+from doe_kc.correlation.likelihood import Likelihood
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +54,11 @@ def test_a_key_that_changed_is_refused(run: tuple[list[Case], Path], tmp_path: P
         publish(chosen[:1], tmp_path)
 
 
+def _all_detectable(_: Axle, car: Car, __: Likelihood) -> dict[str, Detectability]:
+    """In place of what takes seconds and has tests of its own."""
+    return {effect.id: Detectability(9.0, "another", 0.0, ()) for effect in car.hidden}
+
+
 def test_a_killed_run_goes_on(run: tuple[list[Case], Path], monkeypatch: pytest.MonkeyPatch) -> None:
     chosen, folder = run
     asked: list[list[str]] = []
@@ -62,6 +71,7 @@ def test_a_killed_run_goes_on(run: tuple[list[Case], Path], monkeypatch: pytest.
         return subprocess.CompletedProcess(command, 0, "", "")
 
     monkeypatch.setattr(running.subprocess, "run", fake)
+    monkeypatch.setattr(unsealing, "detectability", _all_detectable)
     with pytest.raises(KeyboardInterrupt):
         running.analyse_missing(chosen, folder, workers=1)
     running.analyse_missing(chosen, folder, workers=1)

@@ -90,10 +90,11 @@ def test_sizes_have_the_variance_of_what_is_left_out(tuned: Fit) -> None:
     sizes = np.random.default_rng(3).standard_normal((tuned.residual.size, 2))
     jacobian = wide.jacobian(np.hstack([tuned.jacobian.own, sizes]))
     fit = Fit(wide, z, tuned.residual, jacobian, 0.0, 1, True)
-    errors = np.eye(tuned.residual.size) + TRACE_SD**2 * np.outer(column, column)
     seen = np.hstack([tuned.jacobian.dense, sizes])
+    shared = TRACE_SD**2 / (1.0 + TRACE_SD**2 * (column @ column))  # of (I + t^2 c c')^-1, Sherman-Morrison
+    weighted = seen - shared * np.outer(column, column @ seen)
     prior = np.concatenate([tuned.model.prior_sd, np.ones(2)])
-    expected = np.linalg.inv(seen.T @ np.linalg.solve(errors, seen) + np.diag(prior**-2.0))
+    expected = np.linalg.inv(seen.T @ weighted + np.diag(prior**-2.0))
     np.testing.assert_allclose(fit.covariance[-2:, -2:], expected[-2:, -2:], rtol=1e-6)
 
 

@@ -12,6 +12,7 @@ from doe_kc.sampling.options import ConstraintOptions
 from doe_kc.variables import Space, VariableOptions, build_space
 from tests.reference import nominal
 
+pytestmark = pytest.mark.usefixtures("few_exchanges")
 RACK_BELOW = LinearConstraint((("ROB.z", 1.0), ("RIB.z", -1.0)), low=4.0, high=6.0)
 """Of ROB.z = 282 and RIB.z = 279, each by 3 mm: differences from -3 to 9."""
 

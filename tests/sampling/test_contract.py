@@ -17,6 +17,7 @@ from doe_kc.sampling.latin_hypercube import SPREAD_UP_TO
 from doe_kc.variables import Change, Space, VariableOptions, build_space
 from tests.reference import nominal
 
+pytestmark = pytest.mark.usefixtures("few_exchanges")
 N = 64
 MANY = 1024
 """More designs than are kept apart, which moves none within its variable."""

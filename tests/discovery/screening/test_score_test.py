@@ -1,4 +1,4 @@
-"""The score test at another model: the closed form, by derivatives known from a screening."""
+"""The score test at another model: least squares over sizes and parameters within their priors."""
 
 from __future__ import annotations
 
@@ -18,11 +18,9 @@ def test_to_first_order_it_is_the_score_test(tuned: Fit) -> None:
     unseen = replace(found, failed="no equilibrium")
     again, failed = score_tests(tuned, [found, replace(unseen, hypothesis=library("strut_friction")[0])])
     assert failed.failed and failed.gain == found.gain
-    prior = tuned.model.prior_sd
-    jacobian = tuned.jacobian.dense
-    marginal = np.eye(tuned.residual.size) + (jacobian * prior**2) @ jacobian.T
-    weighted = np.linalg.solve(marginal, found.columns)
-    hessian = found.columns.T @ weighted + np.eye(2)
-    offset = tuned.residual - jacobian @ (tuned.z - tuned.model.centre)
-    expected = -np.linalg.solve(hessian, weighted.T @ offset)
+    scaled = np.hstack([tuned.jacobian.dense * tuned.model.prior_sd, found.columns])
+    rows = np.vstack([scaled, np.eye(scaled.shape[1])])
+    offset = tuned.residual - tuned.jacobian.dense @ (tuned.z - tuned.model.centre)
+    wanted = np.concatenate([-offset, np.zeros(scaled.shape[1])])
+    expected = np.linalg.lstsq(rows, wanted)[0][-2:]
     assert np.allclose(again.amplitudes, expected, rtol=1e-5, atol=1e-6)

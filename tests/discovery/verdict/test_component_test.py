@@ -38,9 +38,10 @@ def rack(tuned: Fit) -> Screened:
 
 def shown(tuned: Fit, prior_sd: FloatArray, change: FloatArray) -> float:
     """Standard deviations of a change once the parameters are re-tuned within their priors."""
-    jacobian = tuned.jacobian.dense * prior_sd
-    covariance = np.eye(change.size) + jacobian @ jacobian.T
-    return float(np.sqrt(change @ np.linalg.solve(covariance, change)))
+    rows = np.vstack([tuned.jacobian.dense * prior_sd, np.eye(prior_sd.size)])
+    wanted = np.concatenate([change, np.zeros(prior_sd.size)])
+    retuned = np.linalg.lstsq(rows, wanted)[0]
+    return float(np.linalg.norm(wanted - rows @ retuned))
 
 
 def test_the_column_hides_the_rack_s_mount_until_it_is_measured(tuned: Fit, rack: Screened) -> None:

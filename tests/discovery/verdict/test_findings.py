@@ -52,7 +52,8 @@ def trial(
     tuning = tuned.jacobian.own.copy()
     tuning[: len(sizes)] = 0.0
     model, z = tuned.model.extended(hypothesis), np.append(tuned.z, sizes)
-    residual = tuned.residual + np.eye(tuned.residual.size)[0] * apart
+    residual = tuned.residual.copy()
+    residual[0] += apart
     return HypothesisFit(
         hypothesis,
         replace(

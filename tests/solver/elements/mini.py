@@ -75,7 +75,8 @@ def number(b: Builder, expression: ca.SX, given: Mapping[str, float] | None = No
         symbols, expressions = zip(*b.constants, strict=True)
         _, (result,) = ca.substitute_inplace(list(symbols), list(expressions), [result])
     names = [s for s, _ in pairs]
-    free = [s for s in ca.symvar(result) if not any(s.is_valid_input() and ca.is_equal(s, n) for n in names)]
+    known_symbols = {s.element_hash() for s in names}
+    free = [s for s in ca.symvar(result) if s.element_hash() not in known_symbols]
     assert not free, f"no number for {free}"
     values = ca.Function("number", names, [result])(*[v for _, v in pairs]) if names else ca.DM(result)
     return np.asarray(ca.DM(values)).squeeze()

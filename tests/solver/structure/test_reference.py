@@ -33,12 +33,13 @@ def differences(
         wanted = wanted * 360.0 / axle.rack_mm_per_rev
     index = [int(np.argmin(np.abs(ours.input - value))) for value in wanted]
     assert np.allclose(ours.input[index], wanted, atol=1e-5)
-    columns = [(theirs, f"{own}@{side}") for theirs, own in SIDED.items()] + list(AXLE_WIDE.items())
+    columns = {theirs: f"{own}@{side}" for theirs, own in SIDED.items()} | AXLE_WIDE
+    there = {theirs: name for theirs, name in columns.items() if name in solution.output_names}
+    off = ours.y[index][:, [solution.column(name) for name in there.values()]] - rows[list(there)].to_numpy()
+    largest = np.abs(off).max(axis=0).tolist()
     return {
-        theirs: float(np.abs(ours.y[index, solution.column(name)] - rows[theirs]).max())
-        / TOLERANCE[theirs.rsplit("_", 1)[1]]
-        for theirs, name in columns
-        if name in solution.output_names
+        theirs: value / TOLERANCE[theirs.rsplit("_", 1)[1]]
+        for theirs, value in zip(there, largest, strict=True)
     }
 
 
