@@ -89,8 +89,25 @@ def test_a_size_beyond_belief_costs_what_the_records_lose_at_the_limit() -> None
         both = 0.5 * beyond @ np.linalg.inv(covariance) @ beyond
         assert held_loss(at(most + beyond), ()) == pytest.approx(both, rel=1e-9)
         assert held_loss(at(-most - beyond), ()) == pytest.approx(both, rel=1e-9)
-    assert held_loss(at(explained.model.upper[place]), ()) == np.inf
     assert held_loss(at(most + 7.0 * sd), [member]) == 0.0
+
+
+@pytest.mark.parametrize("outwards", [True, False])
+def test_a_size_at_the_bound_costs_what_it_still_gained_there_too(outwards: bool) -> None:
+    """Against the least of the quadratic model with the sizes held, all else free."""
+    explained = discovery("named").search.with_law_discrepancy
+    (member,) = explained.model.members
+    place, most = explained.model.place(member), np.array([size.most for size in member.sizes])
+    z, slope = explained.z.copy(), np.zeros(explained.z.size)
+    z[place] = explained.model.upper[place]
+    slope[place] = [-30.0, -20.0] if outwards else [30.0, 20.0]
+    inwards, others = most - z[place], np.setdiff1d(np.arange(z.size), np.arange(z.size)[place])
+    hessian = explained.hessian
+    rest = -np.linalg.solve(hessian[np.ix_(others, others)], hessian[others, place] @ inwards)
+    step = np.zeros(z.size)
+    step[place], step[others] = inwards, rest
+    lost = 0.5 * step @ hessian @ step + (slope @ step if outwards else 0.0)  # no fit ends uphill of a bound
+    assert held_loss(replace(explained, z=z, slope=slope), ()) == pytest.approx(lost, rel=1e-6)
 
 
 @pytest.mark.parametrize(("alike", "refitted"), [(0.8, True), (0.4, False)])
