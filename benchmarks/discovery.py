@@ -59,7 +59,7 @@ def main() -> None:
         analyse_missing(chosen, folder, workers=given.workers)
         follow_up(chosen, folder, workers=given.workers)
     run = Run(" ".join(["python", *sys.argv]), given.base, given.seed, code, machine())
-    found, followed = scores(chosen, folder), followups(chosen, folder)
+    found, followed = scores(chosen, folder, workers=given.workers), followups(chosen, folder)
     print("\n".join(write(found, run, given.results, followed)))
 
 

@@ -14,18 +14,22 @@ from benchmarks.discovery.generator import RECORDS, HiddenCar
 from benchmarks.discovery.running import stored, stored_followup
 from benchmarks.discovery.scoring import Predicted, Score, score
 from benchmarks.discovery.truth import read_truth
+from doe_kc.campaign.executors import processes
 from doe_kc.correlation.likelihood import record_likelihood
 from doe_kc.measurement import reduce_measurement
 
 
-def scores(chosen: Sequence[Case], folder: Path) -> list[Score]:
+def scores(chosen: Sequence[Case], folder: Path, *, workers: int = 1) -> list[Score]:
     """Of every case, in order."""
-    out = []
-    for case in chosen:
-        car = unseal(case, folder)
-        predicted = _predicted(case, car, folder)
-        out.append(score(read_truth(car.key), read_answer(stored(folder, case)), predicted))
-    return out
+    with processes(workers) as executor:
+        scored = [executor.submit(_scored, case, folder) for case in chosen]
+        return [one.result() for one in scored]
+
+
+def _scored(case: Case, folder: Path) -> Score:
+    car = unseal(case, folder)
+    predicted = _predicted(case, car, folder)
+    return score(read_truth(car.key), read_answer(stored(folder, case)), predicted)
 
 
 def followups(chosen: Sequence[Case], folder: Path) -> list[Score]:
