@@ -96,6 +96,8 @@ def test_a_name_beside_something_unexplained_counts_whether_right_or_wrong() -> 
     assert not both.exact and not both.wrong and both.names == ()
     other = score(TRUTHS[4], read_answer(named), None)
     assert other.wrong and other.false_names == (2, 2)
+    assert [right for _, right in both.believed] == [True] * 2
+    assert [right for _, right in other.believed] == [False] * 2
 
 
 @pytest.mark.parametrize(
