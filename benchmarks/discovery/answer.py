@@ -66,9 +66,14 @@ class Answer:
         """Names, and those that are certain beside something unexplained."""
         if self.verdict != "unexplained":
             return self.names
-        return tuple(
-            dict.fromkeys(e.id for e in self.effects if e.verdict == "named" and e.probability >= SURE)
-        )
+        return tuple(dict.fromkeys(e.id for e in self.told if e.probability >= SURE))
+
+    @property
+    def told(self) -> tuple[Named, ...]:
+        """Effects that it gives as found, also beside something unexplained."""
+        if self.verdict == "unexplained":
+            return tuple(e for e in self.effects if e.verdict == "named")
+        return self.effects if self.verdict in ("named", "class") else ()
 
     @property
     def offered(self) -> frozenset[str]:

@@ -196,9 +196,7 @@ def _estimates(pairs: list[tuple[TrueEffect, Named]]) -> Iterator[Estimate]:
 
 def _believed(truth: Truth, answer: Answer) -> tuple[tuple[float, bool], ...]:
     """(probability, whether it is right) of every effect told as found, also beside something unexplained."""
-    named = answer.verdict in ("named", "class")
-    told = [e for e in answer.effects if named or (answer.verdict, e.verdict) == ("unexplained", "named")]
-    return tuple((e.probability, e.id in truth.ids) for e in told if not _traced(truth, e))
+    return tuple((e.probability, e.id in truth.ids) for e in answer.told if not _traced(truth, e))
 
 
 def held_out_closed(answer: Answer) -> float:

@@ -36,11 +36,8 @@ def differences(
     columns = {theirs: f"{own}@{side}" for theirs, own in SIDED.items()} | AXLE_WIDE
     there = {theirs: name for theirs, name in columns.items() if name in solution.output_names}
     off = ours.y[index][:, [solution.column(name) for name in there.values()]] - rows[list(there)].to_numpy()
-    largest = np.abs(off).max(axis=0).tolist()
-    return {
-        theirs: value / TOLERANCE[theirs.rsplit("_", 1)[1]]
-        for theirs, value in zip(there, largest, strict=True)
-    }
+    tolerances = np.array([TOLERANCE[theirs.rsplit("_", 1)[1]] for theirs in there])
+    return dict(zip(there, (np.abs(off).max(axis=0) / tolerances).tolist(), strict=True))
 
 
 @pytest.mark.parametrize(("axle_type", "name"), FILES, ids=[f"{t}-{name}" for t, name in FILES])
