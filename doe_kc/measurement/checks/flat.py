@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
-from doe_kc.measurement.checks._base import RecordFinding, RigTest, channel_name, rig_check
+from doe_kc.measurement.checks._base import RecordFinding, RigTest, Severity, channel_name, rig_check
 from doe_kc.measurement.noise import white_sd
 from doe_kc.measurement.records import RigRecord
 
@@ -20,36 +22,77 @@ MOVED = 0.03
 """Share of the input's range that passes meanwhile: not a dwell."""
 ALIVE, DEAD_SDS = 18.0, 8.5
 """Standard deviations of noise that the range of a channel exceeds which shows something, and of one that
-shows
-noise alone does not (6.5 expected of 512 samples)."""
+shows noise alone does not (6.5 expected of 512 samples)."""
+POWERS, FOLLOWS_CHANCE = 3, 1e-3
+"""Powers of the input that a channel which shows something follows, and the chance below which it is not
+noise that follows them. A sound wheel may move little: toe of 0.004 deg, one standard deviation of noise, in
+braking, where the other wheel on a softer bushing moved 0.06, followed its input with a chance of 1e-11."""
+
+
+@dataclass(frozen=True)
+class _Flat:
+    """kind: of fault. words: what the channel does. length: samples that it does so for."""
+
+    kind: Literal["dead", "stuck", "clipped"]
+    words: str
+    value: float
+    length: int
+
+
+CURES = {
+    "dead": "check sensor and cable and record it again, or name it in absent",
+    "stuck": "check the sensor and record it again",
+    "clipped": "raise the measuring range and record it again",
+}
 
 
 @rig_check
 def flat(test: RigTest) -> Iterator[RecordFinding]:
     """Of every channel of every record, the input's too."""
     for runs in test.runs.values():
-        for run in runs:
-            yield from _record(run.record)
+        records = [run.record for run in runs]
+        for record in records:
+            yield from _stretches(record)
+        yield from _noise(records)
 
 
-def _record(record: RigRecord) -> Iterator[RecordFinding]:
+def _stretches(record: RigRecord) -> Iterator[RecordFinding]:
     for response, sides in record.channels.items():
         for side, values in enumerate(sides):
-            fault = _fault(values, record.input) or _dead(sides, side)
-            if fault is not None and not (response == TYRE_LOAD and fault[1] == 0.0):
+            fault = _stretch(values, record.input)
+            if fault is not None and not (response == TYRE_LOAD and fault.value == 0.0):
                 yield _finding(record, channel_name(response, side), fault)
     moving = record.channels["wc_z"] if "wc_z" in record.channels else next(iter(record.channels.values()))
-    fault = _fault(record.input, np.nan_to_num(moving[0]))
-    if fault is not None and fault[0] != "clipped":
+    fault = _stretch(record.input, np.nan_to_num(moving[0]))
+    if fault is not None and fault.kind != "clipped":
         yield _finding(record, record.case.channel, fault)
 
 
-def _fault(values: FloatArray, other: FloatArray) -> tuple[str, float, int, int] | None:
-    """Kind, value, first sample and length of the longest flat stretch during which `other` moves."""
+def _noise(records: Sequence[RigRecord]) -> Iterator[RecordFinding]:
+    """Channels that show noise alone where the other wheel's moves, in records of one load case: those in
+    which one has the range of noise are taken together."""
+    for response in dict.fromkeys(name for record in records for name in record.channels):
+        for side in (0, 1):
+            silent = [r for r in records if response in r.channels and _silent(r.channels[response][side])]
+            moving = [r for r in silent if _alive(r.channels[response], side)]
+            if not moving or _follow([(r.channels[response][side], r.input) for r in silent]):
+                continue
+            for record in moving:
+                values = record.channels[response][side]
+                value = float(np.median(values))
+                words = f"shows noise alone about {value:g} in the whole record while the other wheel's moves"
+                fault = _Flat("dead", words, value, values.size)
+                yield _finding(record, channel_name(response, side), fault)
+
+
+def _stretch(values: FloatArray, other: FloatArray) -> _Flat | None:
+    """The longest stretch of one number during which `other` moves."""
     if np.isnan(values).any() or np.count_nonzero(np.diff(values) == 0.0) < LONGEST:
         return None
     if np.ptp(values) == 0.0:
-        return "dead", float(values[0]), 0, values.size
+        value = float(values[0])
+        words = f"stays at {value:g} in the whole record while the rig moves"
+        return _Flat("dead", words, value, values.size)
     changes = np.flatnonzero(np.diff(values)) + 1
     starts = np.concatenate([[0], changes])
     lengths = np.diff(np.append(starts, values.size))
@@ -60,37 +103,47 @@ def _fault(values: FloatArray, other: FloatArray) -> tuple[str, float, int, int]
         return None
     if np.ptp(other[first : first + length]) < MOVED * np.ptp(other):
         return None
-    value = float(values[first])
-    extreme = value in (float(values.max()), float(values.min()))
-    return "clipped" if extreme else "stuck", value, first, length
+    value, place = float(values[first]), f"for {length} samples from sample {first + 1}"
+    if value in (float(values.max()), float(values.min())):
+        return _Flat("clipped", f"is cut off at {value:g} {place}", value, length)
+    return _Flat("stuck", f"stays at {value:g} {place} on while all moves", value, length)
 
 
-def _dead(sides: FloatArray, side: int) -> tuple[str, float, int, int] | None:
-    """A channel that shows noise alone where the other wheel's moves."""
+def _silent(values: FloatArray) -> bool:
+    """Whether a channel has the range of noise."""
+    return not np.isnan(values).any() and bool(np.ptp(values) < DEAD_SDS * white_sd(values[None, :]))
+
+
+def _alive(sides: FloatArray, side: int) -> bool:
+    """Whether the other wheel's channel shows something, beside what is the range of one's noise."""
     own, other = sides[side], sides[1 - side]
-    if np.isnan(own).any() or np.isnan(other).any():
-        return None
-    if 2.0 * np.ptp(own) > np.ptp(other):
-        return None
-    noise = white_sd(own[None, :])
-    alive = np.ptp(other) > ALIVE * max(noise, white_sd(other[None, :]))
-    if alive and np.ptp(own) < DEAD_SDS * noise:
-        return "dead", float(np.median(own)), 0, own.size
-    return None
+    noise = max(white_sd(own[None, :]), white_sd(other[None, :]))
+    return bool(np.ptp(other) > max(2.0 * np.ptp(own), ALIVE * noise))
 
 
-def _finding(record: RigRecord, channel: str, fault: tuple[str, float, int, int]) -> RecordFinding:
-    kind, value, first, length = fault
-    words = {
-        "dead": f"{channel} stays at {value:g} in the whole record while the rig moves",
-        "stuck": f"{channel} stays at {value:g} for {length} samples from sample {first + 1} on while "
-        "all moves",
-        "clipped": f"{channel} is cut off at {value:g} for {length} samples from sample {first + 1}",
-    }
-    cures = {
-        "dead": "check sensor and cable and record it again, or name it in absent",
-        "stuck": "check the sensor and record it again",
-        "clipped": "raise the measuring range and record it again",
-    }
-    severe = "error" if kind == "dead" or length > 0.05 * record.input.size else "warning"
-    return RecordFinding(kind, severe, record.case.id, channel, record.label, words[kind], cures[kind])  # type: ignore[arg-type]
+def _follow(runs: Sequence[tuple[FloatArray, FloatArray]]) -> bool:
+    """Whether a channel moves with powers of the input beyond what noise does, by the F test over runs: its
+    values and the input of each."""
+    from scipy.special import fdtrc
+
+    columns = np.concatenate([_powers(driven) for _, driven in runs])
+    values = np.concatenate([own - own.mean() for own, _ in runs])
+    left = values - columns @ np.linalg.lstsq(columns, values, rcond=None)[0]
+    freedom = values.size - len(runs) - POWERS
+    ratio = (values @ values / (left @ left) - 1.0) * freedom / POWERS
+    return bool(fdtrc(POWERS, freedom, ratio) < FOLLOWS_CHANCE)
+
+
+def _powers(driven: FloatArray) -> FloatArray:
+    """(n, POWERS) of an input (n,), about their means."""
+    columns = np.vander(driven / np.abs(driven).max(), POWERS + 1)[:, :-1]
+    return np.asarray(columns - columns.mean(axis=0))
+
+
+def _finding(record: RigRecord, channel: str, fault: _Flat) -> RecordFinding:
+    severe = fault.kind == "dead" or fault.length > 0.05 * record.input.size
+    words = f"{channel} {fault.words}"
+    severity: Severity = "error" if severe else "warning"
+    return RecordFinding(
+        fault.kind, severity, record.case.id, channel, record.label, words, CURES[fault.kind]
+    )

@@ -111,6 +111,26 @@ def test_faults_of_one_channel_of_one_run(heading: str, change: object, ident: s
     assert ident in idents(findings(main_run(heading, change), changed=("lateral",)))
 
 
+def beside(moved: float) -> object:
+    """Noise of 0.01 about -0.03, and so many times that over the sweep with the channel."""
+
+    def change(v: np.ndarray) -> np.ndarray:
+        noise = 0.01 * np.random.default_rng(1).normal(size=v.size)
+        return -0.03 + moved * 0.01 * (v - v.mean()) / np.ptp(v) + noise
+
+    return change
+
+
+def test_a_channel_of_noise_alone_is_dead_and_one_of_a_wheel_that_moves_little_is_not() -> None:
+    def told(moved: float) -> list[str]:
+        changed = findings(main_run("wc_y_R [mm]", beside(moved)), changed=("lateral",))
+        return [f.evidence for f in changed if f.kind == "dead"]
+
+    (noise,) = told(0.0)
+    assert "wc_y_R shows noise alone about -0.03" in noise
+    assert told(1.5) == []
+
+
 def test_an_outlier_does_not_move_the_curve() -> None:
     from tests.measurement.checks.cases import runs_of
 

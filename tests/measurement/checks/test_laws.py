@@ -66,6 +66,22 @@ def test_camber_in_roll_against_the_road_is_a_technique(name: str) -> None:
     assert told(name, slope) == ""
 
 
+def test_a_wheel_centre_that_goes_against_the_lateral_force_is_no_error_if_its_contact_point_does_not() -> (
+    None
+):
+    """As with 4900 Nm/deg between hub and strut: the wheel tilts about a point above its centre."""
+    slope = expectation("mcpherson_front").model.copy()
+    for case, centre, camber in (
+        ("lateral", -1.4e-6, 5.8e-5),
+        ("lateral_opposite", -4.7e-5, 5.2e-5),
+        ("lateral_offset", -3.7e-5, 6.5e-5),
+    ):
+        mirror = -1.0 if case == "lateral_opposite" else 1.0
+        slope[row(case), column("wc_y")] = centre, mirror * centre
+        slope[row(case), column("camber")] = camber, -mirror * camber
+    assert told("mcpherson_front", slope) == ""
+
+
 def test_total_toe_and_exchanged_lateral_records_are_told() -> None:
     name = "mcpherson_front"
     slope = expectation(name).model.copy()
