@@ -111,24 +111,25 @@ def test_faults_of_one_channel_of_one_run(heading: str, change: object, ident: s
     assert ident in idents(findings(main_run(heading, change), changed=("lateral",)))
 
 
-def beside(moved: float) -> object:
-    """Noise of 0.01 about -0.03, and so many times that over the sweep with the channel."""
+def beside(slope: float, width: float) -> object:
+    """Noise of 0.01 about -0.03, and in units of it a slope over the sweep with the channel and a loop."""
 
     def change(v: np.ndarray) -> np.ndarray:
-        noise = 0.01 * np.random.default_rng(1).normal(size=v.size)
-        return -0.03 + moved * 0.01 * (v - v.mean()) / np.ptp(v) + noise
+        noise = np.random.default_rng(1).normal(size=v.size)
+        loop = np.where(np.arange(v.size) < v.size / 2, 0.5, -0.5)
+        return -0.03 + 0.01 * (slope * (v - v.mean()) / np.ptp(v) + width * loop + noise)
 
     return change
 
 
 def test_a_channel_of_noise_alone_is_dead_and_one_of_a_wheel_that_moves_little_is_not() -> None:
-    def told(moved: float) -> list[str]:
-        changed = findings(main_run("wc_y_R [mm]", beside(moved)), changed=("lateral",))
+    def told(slope: float, width: float) -> list[str]:
+        changed = findings(main_run("wc_y_R [mm]", beside(slope, width)), changed=("lateral",))
         return [f.evidence for f in changed if f.kind == "dead"]
 
-    (noise,) = told(0.0)
+    (noise,) = told(0.0, 0.0)
     assert "wc_y_R shows noise alone about -0.03" in noise
-    assert told(1.5) == []
+    assert told(1.5, 0.0) == told(0.0, 1.0) == []
 
 
 def test_an_outlier_does_not_move_the_curve() -> None:
