@@ -140,7 +140,7 @@ def _follow(runs: Sequence[tuple[FloatArray, FloatArray]]) -> bool:
 
 def _shapes(driven: FloatArray) -> FloatArray:
     """(n, POWERS + 1) powers of an input (n,) and its direction, about their means."""
-    powers = np.vander(driven / np.abs(driven).max(), POWERS + 1)[:, :-1]
+    powers = np.vander(driven / (np.abs(driven).max() or 1.0), POWERS + 1)[:, :-1]
     apart, at = max(1, round(DIRECTION_SHARE * driven.size)), np.arange(driven.size)
     ahead, behind = np.minimum(at + apart, driven.size - 1), np.maximum(at - apart, 0)
     columns = np.column_stack([powers, np.sign(driven[ahead] - driven[behind])])
