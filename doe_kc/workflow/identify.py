@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 MatrixView = Literal["measured", "identified", "difference"]
 MATRIX_VIEWS: tuple[MatrixView, ...] = ("measured", "identified", "difference")
+LEAST_DIFFERENCE = 1.0
+"""Percent of a column's largest entry that the colours of the difference reach at least."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,7 @@ def identification_lines(result: Identification) -> list[str]:
 
 def draw_identification(ax: Axes, result: Identification, view: MatrixView, *, scale: bool = True) -> None:
     """One of the three heat maps, each column in percent of the largest measured entry that was fitted; in
-    the difference cells that were not fitted are grey."""
+    the difference, on a scale of its own, cells that were not fitted are grey."""
     import numpy as np
 
     from doe_kc.reports.drawing.matrix_plot import draw_matrix_plot
@@ -156,7 +158,11 @@ def draw_identification(ax: Axes, result: Identification, view: MatrixView, *, s
         "identified": "Identified axle",
         "difference": "Identified less measured",
     }
-    draw_matrix_plot(ax, m.frame(100.0 * values / peak), titles[view], scale=scale)
+    percent, title, full = 100.0 * values / peak, titles[view], 100.0
+    if view == "difference":
+        largest = float(np.nanmax(np.abs(percent), initial=0.0))
+        title, full = f"{title}: at most {largest:.2g} percent", max(largest, LEAST_DIFFERENCE)
+    draw_matrix_plot(ax, m.frame(percent), title, scale=scale, full=full)
 
 
 def identification_figure(result: Identification) -> Figure:
@@ -171,7 +177,7 @@ def identification_figure(result: Identification) -> Figure:
     fig = Figure(figsize=(3.0 * width - 1.6, height), dpi=150, layout="constrained")
     FigureCanvasAgg(fig)
     for k, (ax, view) in enumerate(zip(fig.subplots(1, 3), MATRIX_VIEWS, strict=True)):
-        draw_identification(ax, result, view, scale=k == 2)
+        draw_identification(ax, result, view, scale=k > 0)
     return fig
 
 

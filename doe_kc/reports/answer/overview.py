@@ -158,15 +158,15 @@ def _agreement(load_case: str, gap: CaseGap) -> AgreementRow:
 
 
 def sure_changes(rows: Sequence[ParameterRow]) -> list[ParameterRow]:
-    """Variables whose change the records ask for, or that end at a bound; without standard deviations those
-    that changed at all. The largest share of the range first."""
+    """Variables whose change the records ask for, or that end at a bound and not by what is uncertain of it;
+    without standard deviations those that changed at all. The largest share of the range first."""
     shown = [r for r in rows if r.role == "variable" and r.visible is not False and _counts(r)]
     return sorted(shown, key=lambda r: -abs(r.place - r.start))
 
 
 def _counts(row: ParameterRow) -> bool:
     if row.at_bound:
-        return True
+        return not abs(row.change) < SURE_CHANGE * row.inward
     return abs(row.change) >= SURE_CHANGE * row.sd if isfinite(row.sd) else abs(row.place - row.start) > 0.01
 
 

@@ -41,8 +41,10 @@ LOOKS: tuple[tuple[str, float, Dash], ...] = (
 """Colour, width and dash of static, lowest and highest input."""
 LISTED = ("WLC", "LWB", "ROB", "RIB", "LLF", "LLR", "UPB")
 """Hardpoints of a McPherson axle whose moves are listed, left side."""
-LISTED_OF_TYPE = 7
-"""So many of another type, the first of its file."""
+LISTED_OF_TYPE = 12
+"""So many of another type at most, the first of its file."""
+LEGEND_AFTER = 10
+"""Lines of the list that the legend leaves room for at least."""
 LIST_LINE, LIST_PLACES = 10.5, (0.0, 62.0, 92.0, 122.0, 164.0, 194.0, 224.0)
 """Points."""
 
@@ -112,8 +114,9 @@ def shape_figure(shapes: CaseShapes, axle_name: str) -> Sheet:
         panel.set_labels(names[across], names[up], 7.0)
         panel.set_title(title, size=8.5)
         _draw(panel, drawn, across, up, sides=SIDES if across == 1 else SIDES[:1])
-    _list(page, shapes, second - 30.0, middle - SHAPE_GAP + 6.0)
-    page.add_legend(_handles(shapes), 1, 7.5, ("left", "top"), (second - 36.0, middle - SHAPE_GAP - 105.0))
+    lines = _list(page, shapes, second - 30.0, middle - SHAPE_GAP + 6.0)
+    below = middle - SHAPE_GAP - LIST_LINE * max(lines, LEGEND_AFTER)
+    page.add_legend(_handles(shapes), 1, 7.5, ("left", "top"), (second - 36.0, below))
     page.set_heading(f"{case_label(shapes.load_case)}, deformed shape: {axle_name}", 1 - 10.0 / page.height)
     said = "as they are" if shapes.factor == 1 else f"{shapes.factor} times as long as they are"
     page.write(
@@ -164,15 +167,19 @@ def _draw(
             panel.plot(rim[:, across], rim[:, up], dash, color=colour, lw=width, zorder=order)
 
 
-def _list(page: Sheet, shapes: CaseShapes, x: float, y: float) -> None:
-    """Moves from static of the left side's points, as they are; x, y: points of the upper left corner."""
+def _list(page: Sheet, shapes: CaseShapes, x: float, y: float) -> int:
+    """Moves from static of the left side's points, as they are, and how many lines they take; x, y: points of
+    the upper left corner."""
     static, low, high = shapes.states
     ends = [f"at {v:+g} {shapes.unit}" for v in shapes.inputs]
     head = [("left, mm", ends[0], "", "", ends[1], "", ""), ("", *"XYZ", *"XYZ")]
     rows = []
-    for name in _listed(static):
+    listed = _listed(static)
+    for name in listed:
         moves = [s.points[name] - static.points[name] for s in (low, high)]
         rows.append((name[:-2], *(f"{v + 0.0:.2f}" for v in np.concatenate(moves).round(2))))
+    if (more := sum(name.endswith("@L") for name in static.points) - len(listed)) > 0:
+        rows.append((f"and {more} more", *[""] * 6))
     for k, row in enumerate([*head, *rows]):
         height = (y - k * LIST_LINE) / page.height
         weight = "bold" if k < len(head) else "normal"
@@ -180,6 +187,7 @@ def _list(page: Sheet, shapes: CaseShapes, x: float, y: float) -> None:
             left = j == 0 or k == 0
             at = (x + place + (0.0 if left else 24.0)) / page.width
             page.write(at, height, words, 6.3, "left" if left else "right", "top", weight=weight)
+    return len(head) + len(rows)
 
 
 def _listed(static: Shape) -> list[str]:

@@ -36,7 +36,7 @@ EVIDENCE_EDGE, EVIDENCE_END = 9.0, 20.0
 """Points beside the names, and beside the panels, where half a number needs room."""
 LETTER = 6.0
 """Points of a letter of a panel's title, not less than most."""
-EVIDENCE_AXIS_START = -2.0
+EVIDENCE_AXIS_START = -6.0
 """Left end of the axis: how much worse a candidate makes it does not matter."""
 
 

@@ -62,7 +62,7 @@ def _column(panel: Panel, lines: Sequence[GapRow | str], deep: int, highest: flo
     panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
     panel.spines["left"] = panel.grid["y"] = panel.marks["y"] = False
     panel.vline(1.0, (0, (4, 2)), color="black", lw=0.9, zorder=1)
-    panel.set_labels("model − measured, times the noise of the rig", None)
+    panel.set_labels("RMS of model − measured, times the noise", None)
     places = [i + 0.5 for i in range(len(lines))]
     panel.y.set_ticks(places, [_name(line) for line in lines], [isinstance(line, str) for line in lines])
     panel.number_size["y"] = 6.5

@@ -92,7 +92,8 @@ COLUMN_WORDS = {"static": "angle"}
 DISAGREEMENT_TICKS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
 NOTE = (
     "+: the model's value is above the measured one. Grey: within the noise. L−R: the wheels disagree in "
-    "opposite ways.\nAfter re-tuning, only what no re-tuning within production scatter can absorb is shown."
+    "opposite ways.\nAfter re-tuning, only what no re-tuning within production scatter can absorb is shown, "
+    "against the smaller noise that is left of it:\nits numbers do not compare with those of the first map."
 )
 
 

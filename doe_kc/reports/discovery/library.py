@@ -14,6 +14,8 @@ from doe_kc.reports.discovery.words import STATUS_WORDS, limit_words, mistaken_w
 from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Table
 
 STATUS_ORDER = tuple(STATUS_WORDS)
+MOST_TIMES = 100.0
+"""Times its typical size beyond which how large an effect would have to be is of no use."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,10 @@ def library_rows(discovery: Discovery) -> list[LibraryRow]:
     return [LibraryRow(s, labels, mistaken[s.hypothesis.effect]) for s in statuses]
 
 
+def _times_words(times: float) -> float | str:
+    return f"> {MOST_TIMES:g}" if MOST_TIMES < times < math.inf else times
+
+
 LIBRARY_COLUMNS: tuple[Column[LibraryRow], ...] = (
     Column("effect", None, lambda r: r.effect),
     Column("label", "Effect", lambda r: effect_label(r.effect), width=36,
@@ -80,7 +86,8 @@ LIBRARY_COLUMNS: tuple[Column[LibraryRow], ...] = (
            words=lambda r: STATUS_WORDS[r.status.status], page=PageCell("Standing")),
     Column("detectable", "Detectable size", lambda r: limit_words(r.status), width=34,
            page=PageCell(style="remark", order=lambda r: _finite(r.status.detectable))),
-    Column("detectable_times_typical", "Times typical", lambda r: r.status.detectable, "0.000", 10),
+    Column("detectable_times_typical", "Times typical", lambda r: r.status.detectable, "0.000", 10,
+           words=lambda r: _times_words(r.status.detectable)),
     Column("typical", "Typical size", lambda r: typical_words(r.status.hypothesis), width=30,
            page=PageCell(text=lambda r: typical_words(r.status.hypothesis) or "–", style="remark")),
     Column("absorbed_percent", "Absorbed, %", lambda r: 100.0 * r.status.absorbed, "0.0", 11),

@@ -60,7 +60,8 @@ def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
     else:
         panel.text(0, 0.5, "no parameter is off nominal", across="center", along="center")
     page.add_legend(_handles(rows), 4)
-    page.set_heading(f"Parameters before and after: {study}", 1 - 0.12 / height)
+    count = f", the {len(rows)} of {len(parameters)} that move most" if len(rows) == PARAMETERS_SHOWN else ""
+    page.set_heading(f"Parameters before and after{count}: {study}", 1 - 0.12 / height)
     return page
 
 
@@ -101,5 +102,6 @@ def _handles(rows: Sequence[TunedParameter]) -> list[Line2D | Patch]:
         out += [
             Line2D([], [], color=RETURNS, marker=">", ms=4, lw=1.1, label="returns with the effect"),
             Line2D([], [], color=LEAVES, marker=">", ms=4, lw=1.1, label="goes further off"),
+            Line2D([], [], color=STILL_COLOUR, marker=">", ms=4, lw=1.1, label="as far off as before"),
         ]
     return [*out, Patch(color="#E4E7EA", label="production scatter, ±1 standard deviation")]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.result import Discovery
 from doe_kc.ground.numbers import at_sd
 from doe_kc.reports.table import Column, PageCell, PageLayout, SheetLayout, Table, diverging, row_digits
@@ -20,7 +21,9 @@ FULL_COLOUR_DISTANCE = 2.0
 class TunedParameter:
     """A tunable parameter, values absolute in `unit`; sd: of the final value; distances from nominal in
     standard deviations of its prior, nan with effects where there are none; beyond: whether the last value is
-    outside the study's bounds."""
+    outside the study's bounds; tuned_bound, final_bound: "lower" or "upper" where the re-tuned value and the
+    last one are at a bound of their fit, else "".
+    """
 
     path: str
     label: str
@@ -33,6 +36,18 @@ class TunedParameter:
     tuned_distance: float
     with_effect_distance: float
     beyond: bool
+    tuned_bound: str = ""
+    final_bound: str = ""
+
+    @property
+    def bound_words(self) -> str:
+        """What its bounds have to do with it, empty where nothing."""
+        words = [
+            "outside" if self.beyond else "",
+            f"re-tuned: at its {self.tuned_bound}" if self.tuned_bound else "",
+            f"last: at its {self.final_bound}" if self.final_bound else "",
+        ]
+        return "; ".join(w for w in words if w)
 
     @property
     def moved(self) -> float:
@@ -62,13 +77,25 @@ def tuned_parameters(discovery: Discovery) -> list[TunedParameter]:
                 tuned_distance=float((one - start) / model.prior_sd[i]),
                 with_effect_distance=float((two - start) / model.prior_sd[i]) if has_effect else math.nan,
                 beyond=v.path in discovery.beyond,
+                tuned_bound=_bound(tuned, i),
+                final_bound=_bound(final, i),
             )
         )
     return out
 
 
+def _bound(fit: Fit, place: int) -> str:
+    if fit.z[place] <= fit.model.lower[place]:
+        return "lower"
+    return "upper" if fit.z[place] >= fit.model.upper[place] else ""
+
+
 def _label(row: TunedParameter) -> str:
-    return Markup("{} <b>(outside its bounds)</b>").format(row.label) if row.beyond else row.label
+    if row.beyond:
+        return Markup("{} <b>(outside its bounds)</b>").format(row.label)
+    if row.final_bound:
+        return Markup("{} <b>(at its {} bound)</b>").format(row.label, row.final_bound)
+    return row.label
 
 
 def _format(row: TunedParameter) -> str:
@@ -92,13 +119,16 @@ TUNED_COLUMNS: tuple[Column[TunedParameter], ...] = (
     Column("with_effect_distance", "Distance with the effect, sd", lambda p: p.with_effect_distance, "0.00",
            14,
            page=PageCell("With the effect, times scatter", layout="+.2f")),
-    Column("beyond", "Bounds", lambda p: p.beyond, width=10, words=lambda p: "outside" if p.beyond else ""),
+    Column("beyond", "Bounds", lambda p: p.beyond, width=34, words=lambda p: p.bound_words),
 )  # fmt: skip
 
 
 def tuned_table(discovery: Discovery) -> Table[TunedParameter]:
     """One row a tunable parameter before and after, with its distance from nominal."""
-    remark = "Distances from nominal in standard deviations of the prior; sd: of the last value."
+    remark = (
+        "Distances from nominal in standard deviations of the prior; sd: of the last value, which at a bound "
+        "says nothing."
+    )
     if discovery.beyond:
         remark += " Parameters marked lie outside the study's bounds, as the records ask for."
     return Table(

@@ -19,8 +19,10 @@ def matrix_size(frame: pd.DataFrame) -> tuple[float, float]:
     return max(6.0, 2.6 + CELL_WIDTH * columns), max(3.6, 2.4 + CELL_HEIGHT * rows)
 
 
-def draw_matrix_plot(ax: Axes, frame: pd.DataFrame, title: str, *, scale: bool = True) -> None:
-    """Blue negative, orange positive, colours fixed at -100 to 100, numbers from 5 on; nan is grey.
+def draw_matrix_plot(
+    ax: Axes, frame: pd.DataFrame, title: str, *, scale: bool = True, full: float = 100.0
+) -> None:
+    """Blue negative, orange positive, colours from -full to full, numbers from 5 on; nan is grey.
 
     scale: with the colour scale beside it.
     """
@@ -30,8 +32,8 @@ def draw_matrix_plot(ax: Axes, frame: pd.DataFrame, title: str, *, scale: bool =
     mesh = ax.pcolormesh(
         np.ma.masked_invalid(values),
         cmap=diverging(),
-        vmin=-100.0,
-        vmax=100.0,
+        vmin=-full,
+        vmax=full,
         edgecolors="#E3E6E9",
         lw=0.3,
     )

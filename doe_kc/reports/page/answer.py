@@ -22,6 +22,7 @@ RESULT_FILES: Mapping[str, str] = {
     "correlate/report.html": "characteristics, curves, parameters with their uncertainty",
     "compare/report.html": "the axle to use beside the records, load case by load case",
     "influence/report.html": "which parameter moves which characteristic",
+    "tolerance/report.html": "what production makes of the axle as it was handed in",
     "reduce/report.html": "the rig records: curves, noise, targets",
     "simulate/report.html": "the axle as it was handed in",
     "discover/discovery.xlsx": "what the model lacks, as a workbook",

@@ -125,7 +125,9 @@ def _remains(discovery: Discovery) -> list[str]:
 MAPS_LEAD = (
     "The largest disagreement of each load case and response as a multiple of its noise, and its shape. +: "
     "the model's value is above the measured one; grey: within the noise; L−R: the wheels disagree in "
-    "opposite ways. After re-tuning, only what no re-tuning within production scatter can absorb counts."
+    "opposite ways. After re-tuning, only what no re-tuning within production scatter can absorb counts, as "
+    "a multiple of the smaller noise that is left of it: its numbers do not compare with those of the first "
+    "map."
 )
 DARK = 0.6
 """Place on the colour scale from which white text is read better."""

@@ -23,8 +23,8 @@ GLOSSARY: Mapping[str, str] = {
         "log10 odds: how many powers of ten likelier than its best alternative; above 6 no more is said."
     ),
     "evidence": (
-        "ln evidence: logarithm of how probable the records are under a model, all its parameters re- "
-        "tuned; it charges for added freedom. The gain is that over the model without the effect."
+        "ln evidence: logarithm of how probable the records are under a model, all its parameters "
+        "re-tuned; it charges for added freedom. The gain is that over the model without the effect."
     ),
     "best other effect": (
         "The refit of another effect in place of the one found, for comparison; in files: decoy."

@@ -6,8 +6,10 @@ import json
 from pathlib import Path
 
 import numpy as np
+from openpyxl.formatting.rule import FormulaRule
 from openpyxl.styles import PatternFill
 from openpyxl.utils import get_column_letter
+from openpyxl.worksheet.datavalidation import DataValidation
 from openpyxl.worksheet.properties import PageSetupProperties
 from openpyxl.worksheet.worksheet import Worksheet
 
@@ -20,6 +22,8 @@ from doe_kc.surrogate_models.saved import SavedSurrogate
 
 TYPED = PatternFill("solid", fgColor="FFF2CC")
 """Of cells that values are typed into."""
+BEYOND = PatternFill("solid", bgColor="E6A08F")
+"""Of one that holds no number between its bounds."""
 FIRST = 5
 """First row of inputs, outputs and numbers."""
 
@@ -210,12 +214,26 @@ def _put_inputs(ws: Worksheet, saved: SavedSurrogate) -> None:
         linear = f"=(B{r}-D{r})/(E{r}-D{r})"
         ratio = f"=LN(B{r}/D{r})/LN(E{r}/D{r})"
         _put_formula(ws, r, 6, ratio if known.logarithmic else linear, "0.0000")
+    _guard_inputs(ws, FIRST, FIRST + len(saved.inputs) - 1)
     widths(ws, (24, 14, 9, 12, 12, 10, 3, 32, 16, 10, 14, 12))
     ws.freeze_panes = f"A{FIRST}"
     ws.page_setup.orientation = "landscape"
     ws.page_setup.fitToHeight = 0
     ws.sheet_properties.pageSetUpPr = PageSetupProperties(fitToPage=True)
     ws.print_title_rows = f"{FIRST - 1}:{FIRST - 1}"
+
+
+def _guard_inputs(ws: Worksheet, first: int, last: int) -> None:
+    """Ask before a value beyond the designs is taken, and show it red: there the surrogate knows nothing."""
+    asked = DataValidation(
+        type="decimal", operator="between", formula1=f"$D{first}", formula2=f"$E{first}", allow_blank=False,
+        errorStyle="warning", showErrorMessage=True, errorTitle="Beyond the designs",
+        error="The surrogate has learnt nothing outside Lowest and Highest.",
+    )  # fmt: skip
+    asked.add(f"B{first}:B{last}")
+    ws.add_data_validation(asked)
+    beyond = f"OR(NOT(ISNUMBER($B{first})),$B{first}<$D{first},$B{first}>$E{first})"
+    ws.conditional_formatting.add(f"B{first}:B{last}", FormulaRule([beyond], fill=BEYOND))
 
 
 def _put_numbers(ws: Worksheet, j: int, name: str, formula: MeanFormula) -> None:

@@ -50,7 +50,7 @@ QUALITY_COLUMNS: tuple[Column[QualityRow], ...] = (
     Column("characteristic", "Characteristic", lambda r: r.id, width=34, words=lambda r: r.entry.label,
            terminal=TerminalCell("characteristic", "32")),
     Column("load_case", "Load case", lambda r: case_label(r.entry.load_case), width=24, csv=False),
-    Column("model", "Model", lambda r: r.model, width=22, words=lambda r: SURROGATES[r.model].label,
+    Column("model", "Model", lambda r: r.model, width=36, words=lambda r: SURROGATES[r.model].label,
            terminal=TerminalCell("model", ">10")),
     Column("chosen", None, lambda r: r.chosen),
     Column("q2", "Q2", lambda r: float(r.quality.q2[r.index]), "0.0000", 12, json="q2",

@@ -86,7 +86,7 @@ def contribution_matrix(tolerance: Tolerance, kind: str) -> Table[ParameterContr
     columns = [column(k, e) for k, e in enumerate(tolerance.characteristics)]
     heads: tuple[Column[ParameterContribution], ...] = (
         Column("path", "Path", lambda r: r.scatter.parameter.path, width=12),
-        Column("parameter", "Parameter", lambda r: r.scatter.parameter.label, width=36),
+        Column("parameter", "Parameter", lambda r: r.scatter.parameter.label, width=50),
     )
     return Table(
         words[0],
@@ -109,7 +109,7 @@ def reduction_matrix(tolerance: Tolerance) -> Table[Tightening]:
     columns = [column(k, e) for k, e in enumerate(tolerance.characteristics)]
     heads: tuple[Column[Tightening], ...] = (
         Column("path", "Path", lambda t: t.scatter.parameter.path, width=12),
-        Column("parameter", "Parameter", lambda t: t.scatter.parameter.label, width=36),
+        Column("parameter", "Parameter", lambda t: t.scatter.parameter.label, width=50),
     )
     return Table(
         "Reduction",

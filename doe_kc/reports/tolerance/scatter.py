@@ -24,7 +24,7 @@ def scatter_table(tolerance: Tolerance) -> Table[Scatter]:
 
     columns: tuple[Column[Scatter], ...] = (
         Column("path", "Path", lambda s: s.parameter.path, width=14, page=PageCell("Code", style="first")),
-        Column("parameter", "Parameter", lambda s: s.parameter.label, width=36, page=PageCell(style="wrap")),
+        Column("parameter", "Parameter", lambda s: s.parameter.label, width=50, page=PageCell(style="wrap")),
         Column("unit", "Unit", lambda s: s.parameter.unit, width=8, page=PageCell()),
         Column("nominal", "Nominal", lambda s: s.parameter.nominal, "0.000", page=PageCell()),
         Column("sd", "Standard deviation", lambda s: s.sd, lambda s: three_digits(s.sd), 12,

@@ -97,6 +97,17 @@ def test_parameters_are_absolute_with_their_distances() -> None:
     assert table_frame(tuned_table(discovery("none")))["with_effect"].isna().all()
 
 
+def test_parameters_at_a_bound_are_said_so() -> None:
+    found = discovery("named")
+    tuned, paths = found.search.tuned, list(found.fitted.model.space.paths)
+    count, z = tuned.model.parameters, tuned.z.copy()
+    z[:count] = 0.5 * (tuned.model.lower + tuned.model.upper)[:count]
+    z[0], z[1] = tuned.model.lower[0], tuned.model.upper[1]
+    moved = replace(found, search=replace(found.search, tuned=replace(tuned, z=z)))
+    said = {p.path: p.tuned_bound for p in tuned_parameters(moved) if p.tuned_bound}
+    assert said == {paths[0]: "lower", paths[1]: "upper"}
+
+
 def test_held_out_has_a_row_a_load_case() -> None:
     assert list(table_frame(held_out_table(discovery("named")))["load_case"]) == list(LOAD_CASES)
     assert table_frame(held_out_table(discovery("none"))).empty

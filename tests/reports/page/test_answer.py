@@ -145,11 +145,18 @@ def test_the_print_is_one_page_and_the_same_every_time(tmp_path: Path) -> None:
 
 def test_numbers_to_act_on_are_surely_changed() -> None:
     rows = sure_changes(parameter_rows(real()))
-    assert rows and all(r.at_bound or abs(r.change) >= 2.0 * r.sd for r in rows)
+    assert rows and all(abs(r.change) >= 2.0 * (r.inward if r.at_bound else r.sd) for r in rows)
     assert not [r for r in rows if r.visible is False]
     shares = [abs(r.place - r.start) for r in rows]
     assert shares == sorted(shares, reverse=True)
     assert f"{CHANGES_SHOWN} of {len(rows)}" in overview().changes_lead or len(rows) <= CHANGES_SHOWN
+
+
+def test_a_parameter_at_a_bound_that_may_not_have_moved_is_no_sure_change() -> None:
+    (row, *_) = sure_changes(parameter_rows(real()))
+    held = replace(row, at_bound="lower", sd=float("nan"), inward=abs(row.change))
+    assert sure_changes([held]) == []
+    assert sure_changes([replace(held, inward=0.4 * abs(row.change))]) != []
 
 
 @pytest.mark.parametrize(
