@@ -58,7 +58,9 @@ def test_its_heat_maps(result: kc.IdentificationResult) -> None:
     difference = result.plot()
     (mesh,) = [c for c in difference.collections if c.get_array() is not None]
     fitted = [k for k, c in enumerate(car_matrix()) if c != "brake.wind_up"]
-    assert np.abs(np.reshape(mesh.get_array(), car_matrix().shape)[:, fitted]).max() < 1.0
+    largest = np.abs(np.reshape(mesh.get_array(), car_matrix().shape)[:, fitted]).max()
+    assert largest < 1.0 and f"at most {largest:.2g} percent" in difference.get_title()
+    assert mesh.get_clim() == (-1.0, 1.0) and axes.collections[0].get_clim() == (-100.0, 100.0)
     with pytest.raises(kc.InputError, match="expected measured, identified, difference"):
         result.plot("both")  # type: ignore[arg-type]
 

@@ -68,7 +68,11 @@ def test_the_workbook_calculates_the_same(tmp_path: Path) -> None:
     write_evaluator(tmp_path, surrogate)
     book = load_workbook(tmp_path / "surrogate_evaluator.xlsx")
     (asked,) = book["Evaluator"].data_validations.dataValidation
-    assert (asked.formula1, asked.formula2, str(asked.sqref).split(":")[0]) == ("$D5", "$E5", f"B{FIRST}")
+    assert (asked.formula1, asked.formula2, str(asked.sqref).split(":")[0]) == (
+        f"$D{FIRST}",
+        f"$E{FIRST}",
+        f"B{FIRST}",
+    )
     for i, value in enumerate(values()[0]):
         book["Evaluator"].cell(FIRST + i, 2).value = float(value)
     book.save(tmp_path / "typed.xlsx")

@@ -11,7 +11,6 @@ import numpy as np
 from doe_kc.curves import TYRE_LOAD
 from doe_kc.ground.typing import FloatArray
 from doe_kc.measurement.checks._base import RecordFinding, RigTest, Severity, channel_name, rig_check
-from doe_kc.measurement.noise import white_sd
 from doe_kc.measurement.records import RigRecord
 
 LONGEST = 8
@@ -76,8 +75,8 @@ def _noise(records: Sequence[RigRecord]) -> Iterator[RecordFinding]:
     which one has the range of noise are taken together."""
     for response in dict.fromkeys(name for record in records for name in record.channels):
         for side in (0, 1):
-            silent = [r for r in records if response in r.channels and _silent(r.channels[response][side])]
-            moving = [r for r in silent if _alive(r.channels[response], side)]
+            silent = [r for r in records if response in r.channels and _silent(r, response, side)]
+            moving = [r for r in silent if _alive(r, response, side)]
             if not moving or _follow([(r.channels[response][side], r.input) for r in silent]):
                 continue
             for record in moving:
@@ -112,16 +111,16 @@ def _stretch(values: FloatArray, other: FloatArray) -> _Flat | None:
     return _Flat("stuck", f"stays at {value:g} {place} on while all moves", value, length)
 
 
-def _silent(values: FloatArray) -> bool:
+def _silent(record: RigRecord, response: str, side: int) -> bool:
     """Whether a channel has the range of noise."""
-    return not np.isnan(values).any() and bool(np.ptp(values) < DEAD_SDS * white_sd(values[None, :]))
+    values = record.channels[response][side]
+    return not np.isnan(values).any() and bool(np.ptp(values) < DEAD_SDS * record.white[response][side])
 
 
-def _alive(sides: FloatArray, side: int) -> bool:
+def _alive(record: RigRecord, response: str, side: int) -> bool:
     """Whether the other wheel's channel shows something, beside what is the range of one's noise."""
-    own, other = sides[side], sides[1 - side]
-    noise = max(white_sd(own[None, :]), white_sd(other[None, :]))
-    return bool(np.ptp(other) > max(2.0 * np.ptp(own), ALIVE * noise))
+    sides, noise = record.channels[response], record.white[response].max()
+    return bool(np.ptp(sides[1 - side]) > max(2.0 * np.ptp(sides[side]), ALIVE * noise))
 
 
 def _follow(runs: Sequence[tuple[FloatArray, FloatArray]]) -> bool:

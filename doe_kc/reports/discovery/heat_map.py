@@ -90,11 +90,16 @@ CELL = (0.92, 0.36)
 MAP_LEFT, MAP_RIGHT, MAP_TOP, MAP_BOTTOM, MAP_GAP = 1.75, 0.3, 0.75, 1.45, 0.62
 COLUMN_WORDS = {"static": "angle"}
 DISAGREEMENT_TICKS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
-NOTE = (
+MAP_SIGNS = (
     "+: the model's value is above the measured one. Grey: within the noise. L−R: the wheels disagree in "
-    "opposite ways.\nAfter re-tuning, only what no re-tuning within production scatter can absorb is shown, "
-    "against the smaller noise that is left of it:\nits numbers do not compare with those of the first map."
+    "opposite ways."
 )
+MAP_RETUNED = (
+    "After re-tuning, only what no re-tuning within production scatter can absorb is shown, against the "
+    "smaller noise that is left of it:",
+    "its numbers do not compare with those of the first map.",
+)
+"""What every reader of the maps must know; the second in the lines of the picture."""
 
 
 def heat_map_figure(grids: Sequence[MapGrid], study: str) -> Sheet:
@@ -183,4 +188,5 @@ def _scale(page: Sheet, norm: LogNorm) -> None:
     panel.x.set_ticks(ticks, [f"{t:g}" for t in ticks])
     panel.number_size["x"] = 6.5
     panel.set_labels("largest disagreement over shapes and wheels, times its noise", None, 7.0)
-    page.write(0.02, 0.08 * POINTS / page.height, NOTE, 6.5, along="bottom", color="#555555")
+    note = "\n".join((MAP_SIGNS, *MAP_RETUNED))
+    page.write(0.02, 0.08 * POINTS / page.height, note, 6.5, along="bottom", color="#555555")

@@ -19,6 +19,12 @@ from doe_kc.reports.drawing.sheet import Sheet, sheet
 PARAMETERS_SHOWN = 40
 BIAS_ROW = 0.17
 RETURNS, LEAVES, STILL_COLOUR = style.PALETTE["blue"], style.PALETTE["vermillion"], "#8A9199"
+ARROWS = {
+    RETURNS: "returns with the effect",
+    LEAVES: "goes further off",
+    STILL_COLOUR: "as far off as before",
+}
+"""What the colour of an arrow says."""
 NEITHER = 0.1
 """Standard deviations of the prior by which a parameter must move for its arrow to have a colour."""
 
@@ -99,9 +105,10 @@ def _handles(rows: Sequence[TunedParameter]) -> list[Line2D | Patch]:
                label="re-tuned without an effect")
     ]  # fmt: skip
     if any(np.isfinite(p.with_effect_distance) for p in rows):
+        drawn = {arrow_colour(p) for p in rows}
         out += [
-            Line2D([], [], color=RETURNS, marker=">", ms=4, lw=1.1, label="returns with the effect"),
-            Line2D([], [], color=LEAVES, marker=">", ms=4, lw=1.1, label="goes further off"),
-            Line2D([], [], color=STILL_COLOUR, marker=">", ms=4, lw=1.1, label="as far off as before"),
+            Line2D([], [], color=colour, marker=">", ms=4, lw=1.1, label=label)
+            for colour, label in ARROWS.items()
+            if colour in drawn
         ]
     return [*out, Patch(color="#E4E7EA", label="production scatter, ±1 standard deviation")]

@@ -21,8 +21,8 @@ FULL_COLOUR_DISTANCE = 2.0
 class TunedParameter:
     """A tunable parameter, values absolute in `unit`; sd: of the final value; distances from nominal in
     standard deviations of its prior, nan with effects where there are none; beyond: whether the last value is
-    outside the study's bounds; tuned_bound, final_bound: "lower" or "upper" where the re-tuned value and the
-    last one are at a bound of their fit, else "".
+    outside the study's bounds; tuned_bound, effect_bound: "lower" or "upper" where the re-tuned value and
+    that with the effect are at a bound of their fit, else "".
     """
 
     path: str
@@ -37,15 +37,15 @@ class TunedParameter:
     with_effect_distance: float
     beyond: bool
     tuned_bound: str = ""
-    final_bound: str = ""
+    effect_bound: str = ""
 
     @property
     def bound_words(self) -> str:
         """What its bounds have to do with it, empty where nothing."""
         words = [
             "outside" if self.beyond else "",
-            f"re-tuned: at its {self.tuned_bound}" if self.tuned_bound else "",
-            f"last: at its {self.final_bound}" if self.final_bound else "",
+            f"re-tuned at its {self.tuned_bound}" if self.tuned_bound else "",
+            f"with the effect at its {self.effect_bound}" if self.effect_bound else "",
         ]
         return "; ".join(w for w in words if w)
 
@@ -78,7 +78,7 @@ def tuned_parameters(discovery: Discovery) -> list[TunedParameter]:
                 with_effect_distance=float((two - start) / model.prior_sd[i]) if has_effect else math.nan,
                 beyond=v.path in discovery.beyond,
                 tuned_bound=_bound(tuned, i),
-                final_bound=_bound(final, i),
+                effect_bound=_bound(final, i) if has_effect else "",
             )
         )
     return out
@@ -93,9 +93,8 @@ def _bound(fit: Fit, place: int) -> str:
 def _label(row: TunedParameter) -> str:
     if row.beyond:
         return Markup("{} <b>(outside its bounds)</b>").format(row.label)
-    if row.final_bound:
-        return Markup("{} <b>(at its {} bound)</b>").format(row.label, row.final_bound)
-    return row.label
+    bound = row.tuned_bound if math.isnan(row.with_effect) else row.effect_bound
+    return Markup("{} <b>(at its {} bound)</b>").format(row.label, bound) if bound else row.label
 
 
 def _format(row: TunedParameter) -> str:
@@ -119,7 +118,8 @@ TUNED_COLUMNS: tuple[Column[TunedParameter], ...] = (
     Column("with_effect_distance", "Distance with the effect, sd", lambda p: p.with_effect_distance, "0.00",
            14,
            page=PageCell("With the effect, times scatter", layout="+.2f")),
-    Column("beyond", "Bounds", lambda p: p.beyond, width=34, words=lambda p: p.bound_words),
+    Column("beyond", None, lambda p: p.beyond),
+    Column("bounds", "Bounds", lambda p: p.bound_words, width=44),
 )  # fmt: skip
 
 

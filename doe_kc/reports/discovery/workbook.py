@@ -64,8 +64,9 @@ DISCOVERY_LEGEND = {
         "load only."
     ),
     "Re-tuned z": (
-        "Only what no re-tuning can absorb. With the effect: the shape of its law is left open as far as the "
-        "records ask for."
+        "Only what no re-tuning can absorb, against the smaller noise that is left of it: does not compare "
+        "with the nominal z. With the effect: the shape of its law is left open as far as the records ask "
+        "for."
     ),
     "Wheels": "Both alike: sum of both wheels; left against right: their difference.",
     "Size, sd": (

@@ -23,6 +23,8 @@ from doe_kc.reports.discovery.gap_steps import gap_steps, gap_steps_figure
 from doe_kc.reports.discovery.gaps import MODEL_COLOURS
 from doe_kc.reports.discovery.heat_map import (
     DISAGREEMENT_MAP,
+    MAP_RETUNED,
+    MAP_SIGNS,
     QUIET_COLOUR,
     GridCell,
     MapGrid,
@@ -122,12 +124,12 @@ def _remains(discovery: Discovery) -> list[str]:
     ]
 
 
-MAPS_LEAD = (
-    "The largest disagreement of each load case and response as a multiple of its noise, and its shape. +: "
-    "the model's value is above the measured one; grey: within the noise; L−R: the wheels disagree in "
-    "opposite ways. After re-tuning, only what no re-tuning within production scatter can absorb counts, as "
-    "a multiple of the smaller noise that is left of it: its numbers do not compare with those of the first "
-    "map."
+MAPS_LEAD = " ".join(
+    (
+        "The largest disagreement of each load case and response as a multiple of its noise, and its shape.",
+        MAP_SIGNS,
+        *MAP_RETUNED,
+    )
 )
 DARK = 0.6
 """Place on the colour scale from which white text is read better."""

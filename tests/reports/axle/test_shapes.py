@@ -7,8 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from doe_kc.axle_file import read_axle
 from doe_kc.effects import apply_effect
-from doe_kc.reports.axle.shapes import LISTED, LOOKS, case_shapes, shape_figure, write_shape_figures
+from doe_kc.examples import example_folder
+from doe_kc.reports.axle.shapes import (
+    LISTED,
+    LISTED_OF_TYPE,
+    LOOKS,
+    case_shapes,
+    shape_figure,
+    write_shape_figures,
+)
 from doe_kc.solver.suite import solve
 from tests.reference import nominal
 
@@ -40,3 +49,14 @@ def test_with_friction_the_last_loop_is_drawn(tmp_path: Path) -> None:
     assert shapes.inputs[0] < 0 < shapes.inputs[1]
     (path,) = write_shape_figures(axle, solution, tmp_path / "new")
     assert path.name == "shape_steer.png" and path.stat().st_size > 5000
+
+
+def test_points_that_are_not_listed_are_counted() -> None:
+    axle = read_axle(example_folder("five_link_rear") / "axle.toml")
+    shapes = case_shapes(axle, solve(axle, ["drive"], compiled=False).cases["drive"])
+    points = {name[:-2] for name in shapes.states[0].points if name.endswith("@L")}
+    page = shape_figure(shapes, "S")
+    words = [w.text for w in page.words]
+    assert sum(w in points for w in words) == LISTED_OF_TYPE
+    assert f"and {len(points) - LISTED_OF_TYPE} more" in words
+    assert page.outside == []

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.search.decision import HypothesisGain
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status
 from doe_kc.discovery.verdict.size_words import size_estimates, size_words
@@ -22,7 +23,7 @@ from doe_kc.reports.discovery.isolability import (
     isolability,
     isolability_rows,
 )
-from doe_kc.reports.discovery.library import library_table
+from doe_kc.reports.discovery.library import LIBRARY_COLUMNS, library_table
 from doe_kc.reports.discovery.parameters import tuned_parameters, tuned_table
 from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
 from doe_kc.reports.discovery.words import headline, limit_words
@@ -99,13 +100,30 @@ def test_parameters_are_absolute_with_their_distances() -> None:
 
 def test_parameters_at_a_bound_are_said_so() -> None:
     found = discovery("named")
-    tuned, paths = found.search.tuned, list(found.fitted.model.space.paths)
-    count, z = tuned.model.parameters, tuned.z.copy()
-    z[:count] = 0.5 * (tuned.model.lower + tuned.model.upper)[:count]
-    z[0], z[1] = tuned.model.lower[0], tuned.model.upper[1]
-    moved = replace(found, search=replace(found.search, tuned=replace(tuned, z=z)))
-    said = {p.path: p.tuned_bound for p in tuned_parameters(moved) if p.tuned_bound}
-    assert said == {paths[0]: "lower", paths[1]: "upper"}
+    tuned, final, paths = found.search.tuned, found.fitted, list(found.fitted.model.space.paths)
+
+    def between(fit: Fit) -> np.ndarray:
+        count, z = fit.model.parameters, fit.z.copy()
+        z[:count] = 0.5 * (fit.model.lower + fit.model.upper)[:count]
+        return z
+
+    one, two = between(tuned), between(final)
+    one[0], one[1], two[1] = tuned.model.lower[0], tuned.model.upper[1], final.model.lower[1]
+    fits = {"tuned": replace(tuned, z=one), "with_effects": replace(final, z=two)}
+    moved = replace(found, search=replace(found.search, **fits))
+    rows = {p.path: p.bound_words for p in tuned_parameters(moved) if p.bound_words}
+    assert rows == {
+        paths[0]: "re-tuned at its lower",
+        paths[1]: "re-tuned at its upper; with the effect at its lower",
+    }
+    assert not any("effect" in p.bound_words for p in tuned_parameters(discovery("none")))
+
+
+def test_sizes_that_are_of_no_use_are_not_spelled_out() -> None:
+    (column,) = (c for c in LIBRARY_COLUMNS if c.key == "detectable_times_typical")
+    row = library_table(discovery("named")).rows[0]
+    said = [column.read(replace(row, status=replace(row.status, detectable=v))) for v in (99.0, 17337.0)]
+    assert said == [99.0, "> 100"]
 
 
 def test_held_out_has_a_row_a_load_case() -> None:

@@ -44,9 +44,9 @@ Positive work is that of the contact point, where a lateral force acts. The whee
 may go the other way: with 4900 Nm/deg between hub and strut by 0.02 to 0.05 mm/kN.
 """
 CENTRE_LEAST = {"lateral": 5e-5, "lateral_opposite": 2e-5, "lateral_offset": 5e-5}
-"""Load case -> slope of a wheel centre that goes its own way, mm/N, beyond which that is `RARE`."""
-RARE = 10.0
-"""-2 ln of how often, 1 in 150: the three load cases together stay below what is told as an error."""
+"""Load case -> slope of a wheel centre that goes the other way, mm/N, from which it costs `AGAINST_FORCE`."""
+AGAINST_FORCE = 10.0
+"""-2 ln of how often a wheel centre does, 1 in 150: three load cases stay below what is told as an error."""
 CONTACT_HEIGHT = 300.0
 """Of the wheel centre above the road, mm; 270 to 370 of passenger cars."""
 OBEYED = 2.0
@@ -193,7 +193,7 @@ def _against_force(mean: FloatArray, model: FloatArray, least: FloatArray) -> Fl
     """Of wheel centres that go against a lateral force, which is rare, unless the model's hardly moves."""
     at = column("wc_y")
     back = np.where(model[..., at] < OBEYED * least, 0.0, -mean[..., at] / least)
-    return _total(RARE * np.clip(back, 0.0, 1.0))
+    return _total(AGAINST_FORCE * np.clip(back, 0.0, 1.0))
 
 
 def _model_misfit(mean: FloatArray, model: FloatArray, sd: FloatArray, of_force: np.ndarray) -> FloatArray:
