@@ -30,11 +30,12 @@ NEITHER = 0.1
 
 
 def moved_parameters(parameters: Sequence[TunedParameter]) -> list[TunedParameter]:
-    """Those that are off nominal in one of the two fits, the ones that return furthest first."""
-    off = [p for p in parameters if p.moved >= RETURNS_FROM]
-    return sorted(off, key=lambda p: _away(p) if np.isfinite(p.with_effect_distance) else -p.moved)[
-        :PARAMETERS_SHOWN
-    ]
+    """Those that are furthest off nominal in one of the two fits, the ones that return furthest first."""
+    off = sorted((p for p in parameters if p.moved >= RETURNS_FROM), key=lambda p: -p.moved)
+    return sorted(
+        off[:PARAMETERS_SHOWN],
+        key=lambda p: _away(p) if np.isfinite(p.with_effect_distance) else -p.moved,
+    )
 
 
 def _away(p: TunedParameter) -> float:
@@ -66,7 +67,7 @@ def parameter_figure(parameters: Sequence[TunedParameter], study: str) -> Sheet:
     else:
         panel.text(0, 0.5, "no parameter is off nominal", across="center", along="center")
     page.add_legend(_handles(rows), 4)
-    count = f", the {len(rows)} of {len(parameters)} that move most" if len(rows) == PARAMETERS_SHOWN else ""
+    count = f", the {len(rows)} of {len(parameters)} furthest off" if len(rows) == PARAMETERS_SHOWN else ""
     page.set_heading(f"Parameters before and after{count}: {study}", 1 - 0.12 / height)
     return page
 

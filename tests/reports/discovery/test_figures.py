@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from doe_kc.reports.discovery.gaps import gap_figure
 from doe_kc.reports.discovery.heat_map import discovery_grids, heat_map_figure, signed
 from doe_kc.reports.discovery.isolability import isolability
 from doe_kc.reports.discovery.isolability_figure import isolability_figure
-from doe_kc.reports.discovery.parameter_figure import moved_parameters, parameter_figure
+from doe_kc.reports.discovery.parameter_figure import PARAMETERS_SHOWN, moved_parameters, parameter_figure
 from doe_kc.reports.discovery.parameters import tuned_parameters
 from doe_kc.reports.discovery.tables import gap_rows
 from doe_kc.reports.drawing.sheet import Sheet
@@ -141,6 +142,14 @@ def test_parameters_that_return_come_first() -> None:
     assert change == sorted(change)
     (panel,) = parameter_figure(tuned_parameters(discovery("named")), "S").panels
     assert panel.y.ticks(9).words == tuple(p.path for p in rows)
+
+
+def test_no_parameter_far_off_is_left_out_for_one_that_returns() -> None:
+    one = tuned_parameters(discovery("named"))[0]
+    back = replace(one, tuned_distance=1.2, with_effect_distance=0.1)
+    away = replace(one, path="away", tuned_distance=-1.4, with_effect_distance=-1.7)
+    rows = moved_parameters([*[back] * PARAMETERS_SHOWN, away])
+    assert len(rows) == PARAMETERS_SHOWN and rows[-1].path == "away"
 
 
 def test_unwritable_folder_is_one_sentence(tmp_path: Path) -> None:
