@@ -12,7 +12,7 @@ typedef struct {
     int inputs, runs, results;
     const int *size;                    /* (inputs) numbers of each argument */
     const int *run;                     /* (runs, 2) operation, and how often */
-    const int *operand;                 /* (., 3) places of value and operands */
+    const int *operand;                 /* (., 4) places of value and operands */
     const int *result;                  /* (results, 3) result, which number of it, its place */
     const integer *pattern;             /* of the results, compressed, one after the other */
     const int *pattern_start;
@@ -23,12 +23,13 @@ enum { RESIDUAL, JACOBIAN, OUTPUTS, STATE_UPDATE };
 
 static _Thread_local const program *programs;
 
-/* CasADi's number of an operation, and its value from a and b. */
+/* CasADi's number of an operation, or one beyond those, and its value from a, b and c. */
 #define OPERATION(code, value)                                          \
     case code:                                                          \
-        for (int i = 0; i < count; i++, q += 3) {                       \
-            const NUMBER a = place[q[1]], b = place[q[2]];              \
+        for (int i = 0; i < count; i++, q += 4) {                       \
+            const NUMBER a = place[q[1]], b = place[q[2]], c = place[q[3]]; \
             (void)b;                                                    \
+            (void)c;                                                    \
             place[q[0]] = value;                                        \
         }                                                               \
         break;

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -74,6 +75,32 @@ def test_no_value_is_computed_twice_and_places_are_shared() -> None:
     assert len(rows) == own.length > 20 * len(own.runs)
     assert own.places[0] < own.length / 4
     assert own.pattern(0) == function.sparsity_out(0)
+
+
+@pytest.mark.parametrize(
+    ("expression", "operations"),
+    [
+        (lambda a, b, c: [a * b + c], 1),
+        (lambda a, b, c: [c + a * b], 1),
+        (lambda a, b, c: [a * b - c], 1),
+        (lambda a, b, c: [c - a * b], 1),
+        (lambda a, b, c: [a * b + b * c], 2),
+        (lambda a, b, c: [a * b - b * c], 2),
+        (lambda a, b, c: [(a * b + c) * c - b], 2),
+        (lambda a, b, c: [a * b + c, a * b - c], 3),
+        (lambda a, b, c: [a * b + c, a * b], 2),
+    ],
+)
+def test_a_product_that_one_sum_alone_reads_is_computed_with_it(
+    expression: Callable[..., list[ca.SX]], operations: int
+) -> None:
+    """With the digits of both: each is rounded."""
+    symbols = tuple(ca.SX.sym(name) for name in "abc")
+    program = program_of(of_expressions(ca.vertcat(*expression(*symbols)), symbols=symbols))
+    assert program.length == operations
+    for point in np.random.default_rng(2).uniform(-1.0, 1.0, (50, 3)):
+        expected = expression(*point)
+        np.testing.assert_array_equal(ProgramFunction(program)(*point[:, None]), expected)
 
 
 @pytest.mark.parametrize("name", ["residual", "jacobian", "outputs", "state_update"])

@@ -16,7 +16,12 @@ from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.final_laws import with_final_laws
 from doe_kc.discovery.search.free_shapes import with_free_shapes
 from doe_kc.discovery.search.law_variants import frictions
-from doe_kc.discovery.search.laws import may_open, with_free_laws, with_friction_laws
+from doe_kc.discovery.search.laws import (
+    may_open,
+    with_explaining_law,
+    with_free_laws,
+    with_friction_laws,
+)
 from doe_kc.discovery.search.laws_first import laws_instead, laws_of, needless_beside_laws
 from doe_kc.discovery.search.member_state import MemberState
 from doe_kc.discovery.search.nominal_refits import refit_anew
@@ -196,17 +201,21 @@ class _SetSearch:
         """The set that a step ends with, driven by the loops that the records ask for."""
         self._last_laws, self._laws_asked = False, self._at_end
         self._compared = self._compared if self._at_end else frozenset()
-        added, known = self._steps[-1].added, self._loops_known
-        fit, self._loops_known = with_loops(taken, added, self._tuned.model.axle, self._workers, known=known)
+        added, known, own = self._steps[-1].added, self._loops_known, self._tuned.model
+        fit, self._loops_known = with_loops(taken, added, own.axle, self._workers, known=known)
+        fit, explaining = with_explaining_law(fit, own.likelihood, self._workers)
+        self._compared = self._compared | explaining
         return fit
 
     def _other_laws(self) -> Fit | None:
         """The set by other laws, where nothing else comes in."""
         current, own, opened = self._current, self._tuned.model.likelihood, self._current
+        compared = self._compared
         if self._laws_open:
-            opened, self._compared = with_free_laws(current, own, self._workers)
+            opened, compared = with_free_laws(current, own, self._workers)
         elif not self._laws_asked:
-            opened, self._compared = with_friction_laws(current, own, self._known.shares, self._workers)
+            opened, compared = with_friction_laws(current, own, self._known.shares, self._workers)
+        self._compared = self._compared | compared if opened is current else compared
         self._laws_asked = True
         if opened is not current:
             return opened

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar
 
@@ -18,10 +18,11 @@ from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.search.laws import (
     with_best_closed_laws,
     with_best_law,
+    with_explaining_law,
     with_free_laws,
     with_friction_laws,
 )
-from doe_kc.discovery.thresholds import BEYOND_DOUBT, FREE_TRAVELS
+from doe_kc.discovery.thresholds import BEYOND_DOUBT, FEW_CONTRASTS, FREE_TRAVELS
 from doe_kc.effects._backbone import nearest_backbone
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.ground.typing import FloatArray
@@ -100,17 +101,58 @@ def test_bushings_that_are_unlike_come_before_the_laws_of_other_frictions() -> N
     assert asked[0] == "rubber_hysteresis" and set(asked[1:]) == {"steering_friction"}
 
 
+class Right(Answers):
+    """The best law leaves nothing that noise does not explain; noted are the ceilings of fits."""
+
+    def __init__(self, cost: float, best: str) -> None:
+        super().__init__(cost, best)
+        self.most: list[float] = []
+
+    def _answers(self, starts: Sequence[FitStart]) -> list[Fit | None]:
+        self.most += [start.ceiling for start in starts]
+        return super()._answers(starts)
+
+    def _fit(self, model: EffectModel, z: FloatArray, near: Fit, cost: float) -> Fit:
+        fit = super()._fit(model, z, near, cost)
+        (law,) = [h.law for h in model.members]
+        return replace(fit, residual=agreeing().residual) if law == self.best else fit
+
+
+def test_a_friction_whose_law_explains_all_gets_it_at_once() -> None:
+    """A strut friction of nearly one breakaway, 94.9 N, was given an offset of camber and a bushing's
+    progression before its law was asked for: 42 s in place of 13."""
+    current, asked = disagreeing(), Right(10.0, best="duhem")
+    found, compared = with_explaining_law(current, records(), asked)
+    (friction,) = found.model.members
+    assert friction.law == "duhem" and compared == {friction.name} and asked.laws == CLOSED
+    assert set(asked.most) == {FEW_CONTRASTS * current.residual.size}
+
+
+def test_a_law_that_does_not_explain_all_waits_for_further_effects() -> None:
+    """489 N beside a mount of the rack of 3675 N/mm were 234 N by Duhem's law without a mount."""
+    current, asked = disagreeing(), Answers(10.0, best="duhem")
+    assert with_explaining_law(current, records(), asked) == (current, frozenset())
+    assert asked.laws == CLOSED
+
+
+@pytest.mark.parametrize(
+    "current",
+    [
+        agreeing,
+        lambda: with_rubber(disagreeing()),
+        lambda: replace(beside_a_hub(), residual=disagreeing().residual),
+    ],
+    ids=["all is explained", "beside rubber", "beside a hub"],
+)
+def test_no_law_is_asked_for_where_more_than_a_friction_s_law_counts(current: Callable[[], Fit]) -> None:
+    taken, asked = current(), Answers(-50.0)
+    assert with_explaining_law(taken, records(), asked)[0] is taken
+    assert asked.laws == []
+
+
 def test_a_closed_law_that_explains_comes_before_a_free_one() -> None:
     """A free shape of a strut friction by Prandtl-Iwan's law had 26 to 81 of ln evidence less than that law,
     and kept other effects out."""
-    explained = agreeing()
-
-    class Right(Answers):
-        def _fit(self, model: EffectModel, z: FloatArray, near: Fit, cost: float) -> Fit:
-            fit = super()._fit(model, z, near, cost)
-            (law,) = [h.law for h in model.members]
-            return replace(fit, residual=explained.residual) if law == self.best else fit
-
     asked = Right(10.0, best="iwan")
     found, _ = with_free_laws(disagreeing(), records(), asked)
     assert asked.laws == CLOSED and found.model.members[0].law == "iwan"

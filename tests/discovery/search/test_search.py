@@ -74,6 +74,25 @@ def test_an_effect_comes_in_with_the_best_laws_beside_it(monkeypatch: pytest.Mon
     assert len(taken) == len(given) == 2 and all(a is b for a, b in zip(taken, given, strict=True))
 
 
+def test_a_law_that_explains_a_friction_comes_in_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And is not compared again at the end."""
+    explaining, compared = search_module.with_explaining_law, []
+
+    def noted(fit: Fit, *given: Any) -> tuple[Fit, frozenset[str]]:
+        taken, _ = explaining(fit, *given)
+        return taken, frozenset(h.name for h in taken.model.members)
+
+    final = search_module.with_final_laws
+    monkeypatch.setattr(search_module, "with_explaining_law", noted)
+    monkeypatch.setattr(
+        search_module,
+        "with_final_laws",
+        lambda fit, own, *given: compared.append(own) or final(fit, own, *given),
+    )
+    search(model("friction"), library("steering_friction"), DiscoveryWorkers())
+    assert compared and all(own == {"steering_friction"} for own in compared)
+
+
 @pytest.mark.parametrize("changes", [0, 9])
 def test_effects_are_asked_for_once_more_beside_the_laws_that_a_set_ends_with(
     changes: int, monkeypatch: pytest.MonkeyPatch
