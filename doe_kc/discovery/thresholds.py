@@ -235,6 +235,9 @@ mount of the rack that is there, limits were told that are 0.48, 0.50 and 0.57 o
 COMPLIANT_TRAVEL = 0.25
 """times the travel of a friction, from which such fits begin too. In the first of those cars it was 0.2 of
 the one that was told, which held the mount's."""
+LARGER_SET_ODDS = 3.0
+"""ln posterior odds, that the set with such a compliance may be behind for its sizes to count. One in twenty:
+the usual level."""
 EFFECTS_MOST = 10
 """-, effects, named ones and traces, after which the search ends. Real cars lack three to six; rubber in two
 groups of bushings and a roll technique make them eight, and beside them come traces. With 6, two of 18 cars

@@ -3,7 +3,7 @@
 A friction on a mount that yields makes nearly the loops of half the friction on a rigid one: the mount takes
 up the motion that the friction has before it slides. Beside a law that fits without it, such a compliance
 promises nothing to first order, and by another law it would be in the set. So compliances of the same part
-are fitted at their typical size.
+are fitted at their typical size, and what is less probable with them counts for the friction's size.
 """
 
 from __future__ import annotations
@@ -19,19 +19,18 @@ from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.free_shapes import within_trace
 from doe_kc.discovery.search.law_variants import default_law, frictions, other_laws, with_law
+from doe_kc.discovery.search.other_optima import yielding_start
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import search_from
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
     BEYOND_DOUBT,
-    COMPLIANT_LIMIT,
-    COMPLIANT_TRAVEL,
     FREE_SHAPE_LOSS,
+    LARGER_SET_ODDS,
     NOISE_CHANCE,
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
-from doe_kc.effects._friction import LIMIT, TRAVEL
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -39,19 +38,16 @@ def with_series_compliances(
     search: EffectSearch, library: Sequence[Hypothesis], workers: DiscoveryWorkers
 ) -> EffectSearch:
     """The search, gone on from its last set with a compliance in series with one of its frictions, where that
-    leads to a better one; with sets that are the more probable ones but by less than it takes, as `larger`.
+    leads to a better one; with those sets that it does not go on from, as `larger`.
 
-    Only of sets that explain the records: what others leave asks for anything. Closed laws are asked where by
-    its own law that set is the more probable one: with a mount of the rack that is not there it was 2.5 to
-    5.2 of ln posterior odds behind on five cars. A steering friction of 190 N on a mount of 4130 N/mm had
-    become 95.2 +- 1.2 N by Duhem's law, by which a mount brought 2; Prandtl-Iwan's brings 7, and 190.5 +-
-    11.5 N on 3960 +- 300 N/mm. And they are asked where a closed law of more numbers than the default one was
-    the best, whether a free shape stands for it or not: one of 236 N on a mount of 7600 N/mm had become 155.1
-    +- 4.0 N by Duhem's law, by which a mount brought nothing; by Prandtl-Iwan's the set with it is 9 of ln
-    posterior odds better. One of 271 N on a mount of 7060 N/mm had become 217.7 +- 1.9 N by Duhem's law, and
-    no free shape came near it; by Prandtl-Iwan's the set with the mount is 26 better, 264 N on 7580 N/mm.
-    Then it must fit better than any free shape could: a friction of two stages, 276 N, became 397 +- 33 N on
-    a mount that is not there. Not of a trace: half of it is one too.
+    Only of sets that explain the records: what others leave asks for anything. A set by the friction's own
+    law is the better one where it is the more probable one; by another law it must fit better than any free
+    shape could: a friction of two stages, 276 N, became 397 +- 33 N on a mount that is not there. Every
+    closed law is asked, and the own one from another travel: a steering friction of 190 N on a mount of 4130
+    N/mm had become 95.2 +- 1.2 N by Duhem's law, one of 236 N on 7600 N/mm 155.1 +- 4.0 N by a free shape,
+    one of 332 N by a law of other yield distances on 4250 N/mm 201.0 +- 2.3 N by Prandtl-Iwan's, by which a
+    mount brings nothing, and one of two stages, 240 N on 3040 N/mm, 133 +- 1 N by a free shape that did not
+    find it. Not of a trace: half of it is one too.
     """
     if search.with_law_discrepancy.residual_map.chance < NOISE_CHANCE:
         return search
@@ -61,25 +57,24 @@ def with_series_compliances(
     for (member, compliance), start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):
         odds = search.prior.log_odds(last.model.members, compliance)
         probable = fit is not None and fit.evidence - last.evidence + odds > 0.0
-        if not probable and not _has_more_numbers(search, member):
-            continue
-        laws = [] if within_trace(last, member) else _closed_laws(member)
-        starts = [s for law in laws for s in _starts(last, member, compliance, law)]
+        starts = _other_starts(search, member, compliance, both=probable)
         reached = [(start, fit), *zip(starts, _fits(starts, workers), strict=True)]
         there = [(f.evidence, k, f) for k, (_, f) in enumerate(reached) if f is not None]
         if not there:
             continue
         evidence, k, best = max(there)
-        if not probable and best.cost + 2.0 * FREE_SHAPE_LOSS >= last.cost:
-            continue
         gain = evidence - search.evidence + odds
-        if gain > ACCEPTED_ODDS:
+        own = reached[k][0].model.members[: len(last.model.members)] == last.model.members
+        if not (probable or own) and best.cost + 2.0 * FREE_SHAPE_LOSS >= last.cost:
+            gain = min(gain, 0.5 * (last.cost - best.cost) + odds)
+        elif gain > ACCEPTED_ODDS:
             following = FitStart(reached[k][0].model, best.z, last)
             other = search_from(search, following, compliance, gain, library, workers)
             if other.log_posterior > search.log_posterior:
                 return other
             gain = min(gain, other.log_posterior - search.log_posterior)
-        larger.append(HypothesisFit(compliance, best, gain, odds))
+        if gain > -LARGER_SET_ODDS:
+            larger.append(HypothesisFit(compliance, best, gain, odds))
     return replace(search, larger=tuple(larger)) if larger else search
 
 
@@ -115,15 +110,28 @@ def _closed_laws(member: Hypothesis) -> list[Hypothesis]:
     return [default, *other_laws(default)]
 
 
-def _starts(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothesis) -> list[FitStart]:
-    """By another law of a friction: from its own limit and travel, and from those that it may have there."""
-    near = _start(last, member, compliance, law)
-    far, place = near.z.copy(), near.model.place(law)
-    for i, size in enumerate(law.sizes):
-        factor = {LIMIT: COMPLIANT_LIMIT, TRAVEL: COMPLIANT_TRAVEL}.get(size.key, 1.0)
-        at = place.start + i
-        far[at] = size.amplitude(factor * size.value(far[at]))
-    return [near, replace(near, z=far)]
+def _other_starts(
+    search: EffectSearch, member: Hypothesis, compliance: Hypothesis, *, both: bool
+) -> list[FitStart]:
+    """By every closed law of a friction that is no trace, and by its own one: from the limit and travel that
+    it may have there.
+
+    From its own limit and travel too with `both`, and where a closed law of more numbers than the default one
+    was the best.
+    """
+    last = search.with_effects
+    if within_trace(last, member):
+        return []
+    closed = _closed_laws(member)
+    near = [_start(last, member, compliance, law) for law in closed]
+    laws = closed if member.law in {h.law for h in closed} else [*closed, member]
+    far = [_far(_start(last, member, compliance, law), law) for law in laws]
+    return [*near, *far] if both or _has_more_numbers(search, member) else far
+
+
+def _far(near: FitStart, friction: Hypothesis) -> FitStart:
+    """From the limit and travel that a friction may have beside the compliance."""
+    return replace(near, z=yielding_start(near.model, near.z, friction))
 
 
 def _start(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothesis) -> FitStart:

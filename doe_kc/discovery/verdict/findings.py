@@ -75,11 +75,12 @@ def _finding(
     sd = np.hypot(sd_of_one_number(hypothesis, most_probable, sd), sized.law_sd(hypothesis))
     sd = np.hypot(sd, spread_between_sets(hypothesis, assumed, compared))
     sd = np.hypot(sd, spread_between_laws(hypothesis, assumed, last, other))
+    present = amounts_of(sizes, sd)  # beside one effect more its size is another one, not none
     sd = np.hypot(sd, spread_in_larger_sets(hypothesis, assumed, search.larger))
     detectability = own.screened[0].detectability
     if sizes:
         detectability = member_detectability(search.with_effects, hypothesis)
-    counted = [(s, abs(a), float(e)) for (s, a), e in zip(sizes, sd, strict=True) if not s.shape]
+    counted = amounts_of(sizes, sd)
     chances = _wrong_name_chances(own, detectability)
     for effect, chance in _confusion_chances(own).items():
         chances[effect] = max(chances.get(effect, 0.0), chance)
@@ -101,10 +102,15 @@ def _finding(
         alike=_alike(own, chances),
         largest=max((a for _, a, _ in counted), default=1.0),
         believed=believable(counted),
-        seen=more_than_none(counted),
-        relevant=more_than_trace(counted) and not _trace_would_do(own) and _stands_out(own),
+        seen=more_than_none(present),
+        relevant=more_than_trace(present) and not _trace_would_do(own) and _stands_out(own),
         elsewhere=_elsewhere(own),
     )
+
+
+def amounts_of(amplitudes: Sequence[tuple[Size, float]], sd: FloatArray) -> list[tuple[Size, float, float]]:
+    """Sizes that say how much, in typical ones, with their standard deviations (m,)."""
+    return [(s, abs(a), float(e)) for (s, a), e in zip(amplitudes, sd, strict=True) if not s.shape]
 
 
 def sd_of_one_number(hypothesis: Hypothesis, most_probable: FloatArray, sd: FloatArray) -> FloatArray:

@@ -82,15 +82,16 @@ def disagreeing() -> Fit:
 def beside_a_hub() -> Fit:
     """The friction by its default law, and a hub of no size, which moves nothing."""
     (hub,) = library("hub_compliance")
-    return _beside(agreeing(), hub)
+    return with_member(agreeing(), hub)
 
 
 def with_rubber(found: Fit) -> Fit:
     """A fit and rubber of no size in all bushings, which moves nothing."""
-    return _beside(found, EFFECTS["rubber_hysteresis"].hypotheses()[0])
+    return with_member(found, EFFECTS["rubber_hysteresis"].hypotheses()[0])
 
 
-def _beside(found: Fit, further: Hypothesis) -> Fit:
+def with_member(found: Fit, further: Hypothesis) -> Fit:
+    """A fit and a further effect of no size."""
     none = np.zeros(len(further.sizes))
     model, z = found.model.extended(further), np.append(found.z, none)
     own = np.hstack([found.jacobian.own, np.zeros((found.residual.size, none.size))])
