@@ -8,7 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.discovery.catalogue import PROGRESSION, hub, steering_friction, strut_bending, strut_friction
+from benchmarks.discovery.catalogue import (
+    PROGRESSION,
+    hub,
+    rack_mount,
+    steering_friction,
+    strut_bending,
+    strut_friction,
+)
 from benchmarks.discovery.chance import log_uniform, sign, spread
 from benchmarks.discovery.hidden import Hidden
 from benchmarks.discovery.laws import Shape, table
@@ -71,6 +78,24 @@ def _progression(shape: Shape) -> OtherLaw:
         )
 
     return draw
+
+
+STEERING_LAWS: tuple[dict[str, Any], ...] = (
+    {"law": "iwan"},
+    {"law": "lognormal", "spread": 1.0},
+    {"law": "lognormal", "spread": 0.4},
+    {"law": "backbone", "shares": list(TWO_STAGE)},
+)
+"""Laws of a steering friction on a mount that yields: none is the analyser's default one, the last none of
+its closed ones."""
+
+
+def friction_on_mount(law: int, rng: np.random.Generator, axle: Axle) -> tuple[Hidden, Hidden]:
+    """A steering friction by one of `STEERING_LAWS`, and a mount of the rack that yields: by some laws they
+    make nearly the loops of a smaller friction on a rigid one."""
+    friction = steering_friction(rng, log_uniform(rng, 0.7, 2.0), axle)
+    friction = replace(friction, options={**friction.options, **STEERING_LAWS[law]})
+    return friction, rack_mount(rng, log_uniform(rng, 0.7, 2.0), axle)
 
 
 OTHER_LAWS: dict[str, OtherLaw] = {

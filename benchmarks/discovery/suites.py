@@ -11,7 +11,7 @@ from benchmarks.discovery.catalogue import CATALOGUE, REFERENCE
 from benchmarks.discovery.chance import log_uniform, stream
 from benchmarks.discovery.further import FURTHER
 from benchmarks.discovery.hidden import Hidden
-from benchmarks.discovery.other_laws import OTHER_LAWS, rubber
+from benchmarks.discovery.other_laws import OTHER_LAWS, STEERING_LAWS, friction_on_mount, rubber
 from benchmarks.discovery.outside import OUTSIDE, Outside
 from benchmarks.discovery.scatter import Spread
 from doe_kc.axle import Axle
@@ -148,6 +148,12 @@ def other_law(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
     return Content((draw(rng, log_uniform(rng, *BOTH), axle),))
 
 
+def on_mount(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
+    """A steering friction by any of several laws on a mount of the rack that yields."""
+    law = int(_pick([str(i) for i in range(len(STEERING_LAWS))], seed, "friction_on_mount"))
+    return Content(friction_on_mount(law, rng, axle))
+
+
 def of_type(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
     """One effect in every other car, two in the rest, of those that have no place on the axle to choose."""
     possible = [e for e in WITHOUT_PLACE if EFFECTS[e].possible(places_of(axle))]
@@ -173,6 +179,7 @@ SUITES: dict[str, Fill] = {
     "many_rubber": many_rubber,
     "rubber": rubber_alone,
     "other_law": other_law,
+    "friction_on_mount": on_mount,
 }
 TYPE_SUITES: dict[str, Fill] = {"null": null, "type": of_type}
 """Suites of the bases that are other axle types."""

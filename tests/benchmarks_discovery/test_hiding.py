@@ -128,6 +128,15 @@ def test_suites_of_real_cars_hide_several_effects_rubber_and_other_laws(plain: H
     assert {h.id for (h,) in drawn["other_law"]} >= {"bushing_progression", "strut_friction"}
 
 
+def test_frictions_on_a_mount_follow_every_law_alike_often(plain: HiddenCar) -> None:
+    fill = SUITES["friction_on_mount"]
+    drawn = [fill(i, stream(i, "friction_on_mount"), plain.nominal).hidden for i in range(24)]
+    assert all([h.id for h in hidden] == ["steering_friction", "rack_mount_compliance"] for hidden in drawn)
+    laws = [(f.options["law"], f.options.get("spread")) for f, _ in drawn]
+    assert set(laws) == {("iwan", None), ("lognormal", 1.0), ("lognormal", 0.4), ("backbone", None)}
+    assert all(laws.count(law) == 6 for law in set(laws))
+
+
 @pytest.mark.parametrize("law", ["rubber", *OTHER_LAWS])
 def test_an_effect_by_another_law_changes_the_records(law: str, plain: HiddenCar) -> None:
     draw = {"rubber": rubber, **OTHER_LAWS}[law]

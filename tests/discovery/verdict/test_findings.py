@@ -259,3 +259,14 @@ def test_a_shape_with_several_optima_is_told_to_a_quarter_at_best() -> None:
     assert size.key == "spread" and (share, travel) == (0.01, 0.01)
     assert size.value(1.3 + spread) / value - 1.0 == pytest.approx(0.25, abs=0.04)
     assert 1.0 - size.value(1.3 - spread) / value == pytest.approx(0.25, abs=0.04)
+
+
+def test_an_effect_whose_size_hangs_on_one_that_it_may_hide_is_no_trace(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A steering friction of 126 +- 56 N, 193 N on a mount, was "too small to matter"."""
+    wide = "spread_in_larger_sets"
+    monkeypatch.setattr(findings_module, wide, lambda _, amplitudes, __: np.abs(amplitudes))
+    (found,) = findings(search(), [place(trial("hub_compliance", HUB, 400.0))], DiscoveryWorkers())
+    assert found.relevant and found.seen
+    assert all(e.sd > 0.5 * abs(e.value) for e in found.estimates)
