@@ -45,8 +45,8 @@ class EffectSearch:
     where those fit as well but leave what closed laws explain; None where there is none."""
 
     larger: tuple[HypothesisFit, ...] = ()
-    """Sets with one effect more, which one of its members may hide, as probable as the last one, or more so
-    by less than an effect needs. To the records' own errors, without derivatives; see
+    """Sets with one effect more, which one of its members may hide, up to 20 to 1 less probable than the last
+    one, or more so by less than an effect needs. To the records' own errors, without derivatives; see
     `with_series_compliances`."""
 
     @property
