@@ -90,12 +90,14 @@ STEERING_LAWS: tuple[dict[str, Any], ...] = (
 its closed ones."""
 
 
-def friction_on_mount(law: int, rng: np.random.Generator, axle: Axle) -> tuple[Hidden, Hidden]:
+def friction_on_mount(
+    law: int, sizes: tuple[float, float], rng: np.random.Generator, axle: Axle
+) -> tuple[Hidden, Hidden]:
     """A steering friction by one of `STEERING_LAWS`, and a mount of the rack that yields: by some laws they
     make nearly the loops of a smaller friction on a rigid one."""
-    friction = steering_friction(rng, log_uniform(rng, 0.7, 2.0), axle)
+    friction = steering_friction(rng, log_uniform(rng, *sizes), axle)
     friction = replace(friction, options={**friction.options, **STEERING_LAWS[law]})
-    return friction, rack_mount(rng, log_uniform(rng, 0.7, 2.0), axle)
+    return friction, rack_mount(rng, log_uniform(rng, *sizes), axle)
 
 
 OTHER_LAWS: dict[str, OtherLaw] = {

@@ -151,7 +151,7 @@ def other_law(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
 def on_mount(seed: int, rng: np.random.Generator, axle: Axle) -> Content:
     """A steering friction by any of several laws on a mount of the rack that yields."""
     law = int(_pick([str(i) for i in range(len(STEERING_LAWS))], seed, "friction_on_mount"))
-    return Content(friction_on_mount(law, rng, axle))
+    return Content(friction_on_mount(law, BOTH, rng, axle))
 
 
 def of_type(seed: int, rng: np.random.Generator, axle: Axle) -> Content:

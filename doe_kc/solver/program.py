@@ -68,7 +68,7 @@ def program_of(function: ca.Function) -> Program:
 
 def program_from(operations: Operations) -> Program:
     """The program of a list of operations."""
-    rows, results = with_products(operations)
+    rows, results = _with_products(operations)
     fixed = sum(operations.sizes) + len(operations.constants)
     order, starts = _runs(rows[:, 0], _levels(rows, fixed))
     place, places = _places(rows, results, order, starts, fixed)
@@ -93,7 +93,7 @@ def program_from(operations: Operations) -> Program:
     )
 
 
-def with_products(operations: Operations) -> tuple[IntArray, IntArray]:
+def _with_products(operations: Operations) -> tuple[IntArray, IntArray]:
     """(n', 4) operations and operands a, b, c, every product that only one sum or difference reads within
     that, and (m,) operands of the results. c: a where there are but two operands.
 

@@ -64,13 +64,7 @@ def with_explaining_law(taken: Fit, own: Likelihood, workers: DiscoveryWorkers) 
     exact = refit_to_errors(taken, own)
     most = FEW_CONTRASTS * exact.residual.size
     for member in members:
-        starts = [
-            FitStart(*with_law(exact.model, exact.z, member, law), exact, most) for law in other_laws(member)
-        ]
-        refits = [f for f in workers.fits(starts, "exchanging laws") if f is not None]
-        best = max(refits, key=lambda f: f.evidence, default=None)
-        if best is not None and best.evidence > exact.evidence:
-            exact = best
+        exact = _with_closed_law(exact, member, other_laws(member), workers, most)
     if exact.residual_map.chance < NOISE_CHANCE:
         return taken, frozenset()
     return exact, {h.name for h in members}

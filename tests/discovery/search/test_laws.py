@@ -121,7 +121,8 @@ class Right(Answers):
 def test_a_friction_whose_law_explains_all_gets_it_at_once() -> None:
     """A strut friction of nearly one breakaway, 94.9 N, was given an offset of camber and a bushing's
     progression before its law was asked for: 42 s in place of 13."""
-    current, asked = disagreeing(), Right(10.0, best="duhem")
+    far = disagreeing()
+    current, asked = replace(far, cost=far.cost + 1e4), Right(10.0, best="duhem")
     found, compared = with_explaining_law(current, records(), asked)
     (friction,) = found.model.members
     assert friction.law == "duhem" and compared == {friction.name} and asked.laws == CLOSED

@@ -146,25 +146,41 @@ def test_a_mount_beside_which_the_friction_would_be_larger_counts_for_its_size(
     """467 N on a mount of 6680 N/mm were 351.7 +- 3.4 N without, 1.3 of ln posterior odds ahead. One in
     twenty is behind by 3.0, of which the mount's own odds are 2.5 here."""
     before = freed("friction", "duhem")
-    last, odds = before.with_effects, before.prior.log_odds([FRICTION], MOUNT)
-    rival = replace(last, cost=last.cost + ahead)
-
-    class AsProbable(NoPromise):
-        def fits(self, starts: list[FitStart], *args: object, **kwargs: object) -> list[Fit | None]:  # type: ignore[override]
-            first = [None] * len(starts)
-            if len(starts) == 1:
-                return first
-            model = starts[0].model
-            none = np.zeros((last.residual.size, len(MOUNT.sizes)))
-            own = last.jacobian.own[:, : model.calibrations.stop + len(model.sizes) - len(MOUNT.sizes)]
-            jacobian = model.jacobian(np.hstack([own, none]))
-            return [replace(rival, model=model, z=starts[0].z, jacobian=jacobian), *first[1:]]
-
+    odds = before.prior.log_odds([FRICTION], MOUNT)
     monkeypatch.setattr(series_compliance, "ACCEPTED_ODDS", np.inf)
-    kept = with_series_compliances(before, EVERY, AsProbable())
+    kept = with_series_compliances(before, EVERY, ByOneLaw(before.with_effects, ahead, at=0))
     assert bool(kept.larger) is counts and not taken
     for one in kept.larger:
         assert one.gain == pytest.approx(odds - 0.5 * ahead)
+
+
+class ByOneLaw(DiscoveryWorkers):
+    """By one start alone there is a fit with a mount that moves nothing, behind the one without by a cost."""
+
+    def __init__(self, last: Fit, cost: float, at: int) -> None:
+        super().__init__()
+        self.last, self.cost, self.at = last, cost, at
+
+    def fits(self, starts: list[FitStart], *_: object, **__: object) -> list[Fit | None]:  # type: ignore[override]
+        out: list[Fit | None] = [None] * len(starts)
+        if len(starts) > 1:
+            model, last = starts[self.at].model, self.last
+            none = np.zeros((last.residual.size, len(MOUNT.sizes)))
+            own = last.jacobian.own[:, : model.calibrations.stop + len(model.sizes) - len(MOUNT.sizes)]
+            jacobian, z = model.jacobian(np.hstack([own, none])), starts[self.at].z
+            out[self.at] = replace(last, model=model, z=z, jacobian=jacobian, cost=last.cost + self.cost)
+        return out
+
+
+@pytest.mark.parametrize(("at", "counts"), [(0, False), (-1, True)], ids=["a closed law", "the free shape"])
+def test_a_mount_by_the_own_law_need_not_fit_better_than_any_free_shape(
+    at: int, counts: bool, taken: list[FitStart], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """240 N of two stages on a mount of 3040 N/mm were 133 +- 1 N by a free shape without it."""
+    before = freed("friction", "iwan")
+    monkeypatch.setattr(series_compliance, "ACCEPTED_ODDS", -np.inf)
+    with_series_compliances(before, EVERY, ByOneLaw(before.with_effects, 0.5, at))
+    assert bool(taken) is counts
 
 
 def test_a_mount_with_which_there_is_no_equilibrium_is_left_out(taken: list[FitStart]) -> None:
