@@ -28,6 +28,7 @@ from doe_kc.discovery.verdict.exchange import exchanged
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, hypothesis_statuses
 from doe_kc.discovery.verdict.extra_test import ExtraTest, extra_tests
 from doe_kc.discovery.verdict.findings import findings
+from doe_kc.discovery.verdict.other_sizes import other_sizes
 from doe_kc.discovery.verdict.sentences import next_tests, sentences
 from doe_kc.discovery.verdict.verdict import Verdict, ambiguous, class_of, classes, verdict
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -64,13 +65,21 @@ def discover(
     traces = shown_traces(members, set_adequacy)
     limits_hold = resolved(search, set_adequacy)
     statuses = _statuses(search, (*relevant, *traces), len(library), resolved=limits_hold)
-    outside = beyond(model.space, with_effects)
+    outside, others = beyond(model.space, with_effects), other_sizes(search, compared, relevant)
     groups = classes(relevant) if outcome.kind == "class" else ()
     separating = _separating(compared, relevant) if groups else {}
     return Discovery(
         verdict=outcome.kind,
         sentences=sentences(
-            outcome, relevant, set_adequacy, gap, residual_map, interface_scan, outside, tuned.model.widened
+            outcome,
+            relevant,
+            set_adequacy,
+            gap,
+            residual_map,
+            interface_scan,
+            outside,
+            tuned.model.widened,
+            others,
         ),
         findings=relevant,
         traces=traces,
@@ -158,8 +167,8 @@ def resolved(search: EffectSearch, adequacy: Adequacy) -> bool:
 
 
 def shown_traces(members: Sequence[Finding], adequacy: Adequacy) -> tuple[Finding, ...]:
-    """Effects that are there and too small to matter; of the rig only where the set holds: else they stand
-    for anything.
+    """Effects that are there and too small to matter, or too weak to be named; of the rig only where the set
+    holds: else they stand for anything.
 
     What came in beside other laws of the set can be none beside the last ones: a gain of the tyre load was
     told as 1.0004 +- 0.0004.

@@ -89,6 +89,8 @@ class Finding:
     """Whether the records tell one of its sizes from none."""
     relevant: bool
     """Whether it is worth naming; a trace otherwise."""
+    small: bool = True
+    """Whether it is surely no more than every car has, or not surely more."""
     elsewhere: tuple[str, ...] = ()
     """Other places of the same effect that explain the records about as well."""
     verdict: FindingVerdict = "lead"
@@ -135,7 +137,8 @@ class Discovery:
     findings: tuple[Finding, ...]
     """Effects worth naming, the most detectable first; leads where the verdict is unexplained."""
     traces: tuple[Finding, ...]
-    """Effects that the data show but too small to matter; of the rig only where the set is adequate."""
+    """Effects that the data show but too small to matter, or too weakly to be named; of the rig only where
+    the set is adequate."""
     classes: tuple[tuple[str, ...], ...]
     """Ids of effects that the records do not tell apart, one group for each ambiguous finding."""
     statuses: tuple[HypothesisStatus, ...]

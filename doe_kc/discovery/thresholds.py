@@ -229,12 +229,12 @@ sliders stand in ratios of 1.4 to 2.3, so that shares and travel move from one o
 NEAR_START = 0.5
 """prior standard deviations, within which a number is where another start would begin. Half of the distance
 between two starts of rubber's spread."""
-COMPLIANT_LIMIT = 2.0
-"""times the limit of a friction, from which fits with a compliance in series with it begin too. Without a
-mount of the rack that is there, limits were told that are 0.48, 0.50 and 0.57 of the car's."""
-COMPLIANT_TRAVEL = 0.25
-"""times the travel of a friction, from which such fits begin too. In the first of those cars it was 0.2 of
-the one that was told, which held the mount's."""
+SERIES_RATIOS = (1.3, 1.7)
+"""times the limit of a friction and the spring beside it on a rigid mount, those on a compliance of the same
+loops from which fits begin. A steering column of 2000 N/mm on mounts of the rack of 8700 and 4900 N/mm."""
+NEAR_RATIO = 1.1
+"""-, change of that ratio below which a fit is there already. From ratios of 1.3 to 2 fits of a friction of
+two stages ended at the same 1.5."""
 LARGER_SET_ODDS = 3.0
 """ln posterior odds, that the set with such a compliance may be behind for its sizes to count. One in twenty:
 the usual level."""
@@ -311,6 +311,9 @@ WRONG_NAME_CHANCE = 0.05
 """-, chance of a wrong name, from which two effects are alike to the records. The usual level."""
 DECISIVE_EVIDENCE = 4.6
 """ln evidence, that settles even between effects that are alike. A hundred to one."""
+SIZE_APART = 0.1
+"""-, of a size, from which a sentence says what it would be in another set. A tenth: a friction is one
+number to less."""
 RIVAL_LISTED = 0.01
 """-, probability from which a rival is listed. A hundred to one."""
 CERTAIN = 6.0

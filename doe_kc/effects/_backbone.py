@@ -1,4 +1,4 @@
-"""The free backbone that does nearly what a dry friction does by a closed law.
+"""Virgin curves of dry frictions, and the free backbone that comes near to one.
 
 A law of sliders obeys Masing's rule: a branch after a reversal is its virgin curve twice as large. Dahl's and
 Duhem's do not; of theirs the branch from one limit to the other counts, half as large, as a rig runs over
@@ -17,53 +17,75 @@ from doe_kc.axle.topology import NEARLY_DAHL, FrictionLaw
 from doe_kc.ground.typing import FloatArray
 
 DISTANCES = np.geomspace(0.05, 20.0, 80)
-"""Over the typical yield displacement of the closed law, at which the curves are compared."""
+"""Over the typical yield displacement of the law, at which the curves are compared."""
 TRAVEL_FACTORS = np.geomspace(0.25, 4.0, 33)
 """Travels of the backbone that are tried, over that yield displacement."""
 UNUSED_SHARE = 0.005
-"""-, of a slider that the closed law has no use for: none would hold the fit that begins there."""
+"""-, of a slider that the curve has no use for: none would hold the fit that begins there."""
 PULL = 0.05
 """-, of a share to the usual one, where the curve says little: over the weight of one point of the curve."""
 
 
 @dataclass(frozen=True)
+class VirginCurve:
+    """Of a friction: how much of its limit it has at some distances from where it has none."""
+
+    distances: FloatArray
+    """(n,) rising, in any unit."""
+    shares: FloatArray
+    """(n,) force over the limit, rising."""
+    typical: float
+    """Yield displacement, about which those of its sliders lie."""
+
+    def distance(self, share: float) -> float:
+        """At which the friction has a share of its limit; where it never has, the last one."""
+        return float(np.interp(share, self.shares, self.distances))
+
+
+@dataclass(frozen=True)
 class Backbone:
-    """A free backbone over the numbers of a closed law."""
+    """A free backbone near the virgin curve of a friction."""
 
     limit: float
-    """Over that of the law: less where the law reaches its own farther away than the curves go."""
+    """Over that of the friction: less where that reaches its own farther away than the curve goes."""
     travel: float
-    """Over that of the law."""
+    """In the unit of the curve's distances."""
     shares: tuple[float, ...]
     """Of the sliders in the limit, of sum 1."""
 
 
-def nearest_backbone(law: FrictionLaw, exponent: float, spread: float, usual: Sequence[float]) -> Backbone:
-    """The backbone of least squares from the curve of a closed law.
+def virgin_curve(law: FrictionLaw, exponent: float, spread: float, shares: Sequence[float]) -> VirginCurve:
+    """Of a law, its distances over its travel.
 
-    exponent: of duhem only; spread: of lognormal only. usual: shares where the curve says nothing.
+    exponent: of duhem only; spread: of lognormal only; shares: of backbone only, in proportion.
     """
     typical = _typical_yield(law, spread)
-    curve, share = _loading(law, exponent, spread, typical * DISTANCES), np.array(usual)
-    trials = [(_shares(curve, factor, share), factor) for factor in TRAVEL_FACTORS.tolist()]
-    (shares, _), factor = min(trials, key=lambda trial: trial[0][1])
+    distances = typical * DISTANCES
+    return VirginCurve(distances, _loading(law, exponent, spread, shares, distances), typical)
+
+
+def nearest_backbone(curve: VirginCurve, usual: Sequence[float]) -> Backbone:
+    """The backbone of least squares from a curve. usual: shares where the curve says nothing."""
+    share, travels = np.array(usual), curve.typical * TRAVEL_FACTORS
+    trials = [(_shares(curve, travel, share), travel) for travel in travels.tolist()]
+    (shares, _), travel = min(trials, key=lambda trial: trial[0][1])
     shares = np.maximum(shares, UNUSED_SHARE)
-    return Backbone(float(shares.sum()), typical * factor, tuple((shares / shares.sum()).tolist()))
+    return Backbone(float(shares.sum()), travel, tuple((shares / shares.sum()).tolist()))
 
 
-def _shares(curve: FloatArray, factor: float, usual: FloatArray) -> tuple[FloatArray, float]:
+def _shares(curve: VirginCurve, travel: float, usual: FloatArray) -> tuple[FloatArray, float]:
     """Shares of least squares, none below 0, and the norm of what they leave."""
     from scipy.optimize import nnls  # a quarter of a second, which no other command has a use for
 
-    virgin = _virgin(factor * np.array(BACKBONE_YIELDS))
+    virgin = _virgin(travel * np.array(BACKBONE_YIELDS), curve.distances)
     shares, misfit = nnls(
-        np.vstack([virgin, PULL * np.eye(usual.size)]), np.concatenate([curve, PULL * usual])
+        np.vstack([virgin, PULL * np.eye(usual.size)]), np.concatenate([curve.shares, PULL * usual])
     )
     return shares, float(misfit)
 
 
 def _typical_yield(law: FrictionLaw, spread: float) -> float:
-    """Yield displacement about which those of the closed law lie, over its travel.
+    """Yield displacement about which those of the law lie, over its travel.
 
     The travel is limit over initial stiffness, which the first of its sliders make: of those of a wide spread
     it is far below the median. A friction of two stages, 282 N over 0.034 mm, was nearly one of 310 N over
@@ -72,13 +94,17 @@ def _typical_yield(law: FrictionLaw, spread: float) -> float:
     return float(np.median(yield_ratios(spread, IWAN_ELEMENTS))) if law == "lognormal" else 1.0
 
 
-def _virgin(yields: FloatArray, distances: FloatArray = DISTANCES) -> FloatArray:
-    """(80, n) of sliders that yield at some distances, over the limit of each."""
+def _virgin(yields: FloatArray, distances: FloatArray) -> FloatArray:
+    """(m, n) of sliders that yield at some distances, over the limit of each."""
     return np.asarray(np.minimum(distances[:, None] / yields, 1.0))
 
 
-def _loading(law: FrictionLaw, exponent: float, spread: float, distances: FloatArray) -> FloatArray:
-    """(80,) force over the limit at distances over the travel."""
+def _loading(
+    law: FrictionLaw, exponent: float, spread: float, shares: Sequence[float], distances: FloatArray
+) -> FloatArray:
+    """(n,) force over the limit at distances over the travel."""
+    if law == "backbone":
+        return np.asarray(_virgin(np.array(BACKBONE_YIELDS), distances) @ np.array(shares) / np.sum(shares))
     if law == "iwan":
         return np.asarray(_virgin(iwan_yields(), distances).mean(axis=1))
     if law == "lognormal":

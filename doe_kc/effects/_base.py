@@ -62,6 +62,9 @@ class Effect(ABC):
     """What an axle must have for the effect to be possible."""
     odds: ClassVar[float] = 1.0
     """How much likelier than other effects it is before any measurement."""
+    spring: ClassVar[tuple[str, ...]] = ()
+    """Paths of parameters whose product, N/mm, is the stiffness of a spring that stands, with the frictions
+    of the part, on the compliance that the effect is; the last one is tuned. Empty where none does."""
     on_rig: ClassVar[bool] = False
     """True for a fault of the measurement: the axle stays as it is, `observe` changes what is read (and
     `extend` at most how a load case is run). Axle files do not hold such effects."""

@@ -10,9 +10,10 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.places import Places
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.axle.topology import FrictionLaw
-from doe_kc.effects._backbone import nearest_backbone
+from doe_kc.effects._backbone import VirginCurve, nearest_backbone, virgin_curve
 from doe_kc.effects._base import Effect, Option
 from doe_kc.effects._places import DEFAULT_PLACES
+from doe_kc.effects._series import on_compliance
 from doe_kc.effects._tables import checked_number
 from doe_kc.effects.hypothesis import Size
 from doe_kc.ground.errors import InputError
@@ -65,9 +66,25 @@ class DryFriction(Effect):
         own = self.read(options, self.label)
         if law != FREE_LAW or own["law"] == FREE_LAW:
             return {}
-        free = nearest_backbone(own["law"], own["exponent"], own["spread"], BACKBONE_SHARES)
-        limit, travel = free.limit * own[LIMIT], free.travel * own[TRAVEL]
-        return {LIMIT: limit, TRAVEL: travel, SHARES: list(free.shares)}
+        return _free_numbers(_curve(own), own[LIMIT], own[TRAVEL])
+
+    def on_compliance(
+        self, law: str, options: Mapping[str, Any], spring: float, ratio: float
+    ) -> Mapping[str, Any]:
+        """Options by a law with which the friction, on a compliance in series with it and a spring, makes
+        nearly the loops that it makes at some options without.
+
+        spring: N/mm, of that beside it without the compliance. ratio: of the limits, and of the springs;
+        below 1 the compliance is taken away. See `_series`. Numbers of the law's shape that are not given
+        stay what they are.
+        """
+        own = self.read(options, self.label)
+        limit, travel = ratio * own[LIMIT], own[TRAVEL]
+        curve = on_compliance(_curve(own), own[LIMIT] / (spring * travel), ratio)
+        if law == FREE_LAW:
+            return _free_numbers(curve, limit, travel)
+        half = _curve(own | {"law": law}).distance(0.5)
+        return {LIMIT: limit, TRAVEL: travel * curve.distance(0.5) / half}
 
     def read(
         self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
@@ -83,6 +100,18 @@ class DryFriction(Effect):
         numbers |= {f"share{i}": share for i, share in enumerate(options["shares"])}
         values = {k: v for name, number in numbers.items() for k, v in self.law_values(name, number).items()}
         return self.with_law(axle.changed(values), options["law"])
+
+
+def _curve(options: Mapping[str, Any]) -> VirginCurve:
+    """Of checked options."""
+    return virgin_curve(options["law"], options["exponent"], options["spread"], options["shares"])
+
+
+def _free_numbers(curve: VirginCurve, limit: float, travel: float) -> Mapping[str, Any]:
+    """Options of the free backbone nearest to a curve whose force and distances are over a limit, N, and a
+    travel, mm."""
+    free = nearest_backbone(curve, BACKBONE_SHARES)
+    return {LIMIT: free.limit * limit, TRAVEL: free.travel * travel, SHARES: list(free.shares)}
 
 
 def friction_options(force: float, presliding: float) -> dict[str, Option]:

@@ -27,6 +27,7 @@ class RackMountCompliance(Effect):
     id: ClassVar[str] = "rack_mount_compliance"
     label: ClassVar[str] = "Rack-mount compliance"
     part: ClassVar[Part] = "rack"
+    spring: ClassVar[tuple[str, ...]] = ("steering.column", "scb.Tz")
     table: ClassVar[str] = "rack_mount"
     options: ClassVar[Mapping[str, Option]] = {
         "k_N_mm": Option(6000.0, "N/mm"),

@@ -11,7 +11,8 @@ from doe_kc.discovery.result import Discovery, Finding, ParameterEstimate
 from doe_kc.discovery.thresholds import CERTAIN
 from doe_kc.discovery.verdict.adequacy import Adequacy
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, exclusion_limit
-from doe_kc.discovery.verdict.sentences import OBJECTION, adequacy_words, odds_words
+from doe_kc.discovery.verdict.other_sizes import OTHER_SIZE
+from doe_kc.discovery.verdict.sentences import OBJECTION, adequacy_words, odds_words, trace_words
 from doe_kc.discovery.verdict.size_words import size_words
 from doe_kc.effects.hypothesis import Size
 from doe_kc.effects.words import effect_label, hypothesis_label
@@ -25,9 +26,9 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
 
     effects: those that are named, or the most probable of a class, each with its own verdict: where the
     verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces:
-    seen, too small to matter. parameters: value, sd, unit of each option, lists for a list option; limit:
-    null, or what a number that the records do not tell from none is at most (a stiffness: at least), at 95 %;
-    shown: whether the records say more of it than was known before.
+    seen, too small to matter or too weakly to name them. parameters: value, sd, unit of each option, lists
+    for a list option; limit: null, or what a number that the records do not tell from none is at most (a
+    stiffness: at least), at 95 %; shown: whether the records say more of it than was known before.
     log10_odds: of each effect against the best alternative, its removal or a rival in its place, all others
     in the model; 6 says 6 or more; against: id of that rival, null for the removal.
     adequacy: how often noise alone leaves as large a disagreement as remains (map_chance), and as large an
@@ -203,7 +204,9 @@ def discovery_lines(discovery: Discovery) -> list[str]:
     lines += [
         f"{'lead' if f.verdict == 'lead' else 'effect'}: {_line(discovery, f)}" for f in discovery.findings
     ]
-    lines += [f"trace: {_line(discovery, f)}; too small to matter" for f in discovery.traces]
+    lines += [f"trace: {_line(discovery, f)}; {trace_words(f)}" for f in discovery.traces]
+    others = (s.removeprefix(OTHER_SIZE) for s in discovery.sentences if s.startswith(OTHER_SIZE))
+    lines += [f"{OTHER_SIZE.lower()}{clause.rstrip('.')}" for clause in others]
     for group in discovery.classes:
         lines.append(f"cannot be told apart: {' or '.join(effect_label(e) for e in group)}")
     against = (s.removeprefix(OBJECTION) for s in discovery.sentences if s.startswith(OBJECTION))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS, IWAN_ELEMENTS, yield_ratios
-from doe_kc.effects._backbone import nearest_backbone
+from doe_kc.effects._backbone import nearest_backbone, virgin_curve
 from doe_kc.effects._friction import BACKBONE_SHARES
 from tests.solver.elements.test_friction import LEVEL, PRE, Law
 
@@ -31,12 +31,13 @@ def loop(law: Law) -> np.ndarray:
 
 @pytest.mark.parametrize(("law", "shape"), CLOSED)
 def test_it_makes_the_loop_of_the_law(law: str, shape: dict[str, float]) -> None:
-    free = nearest_backbone(
+    curve = virgin_curve(
         law,  # type: ignore[arg-type]
         shape.get("f.exponent", 1.0),
         shape.get("f.spread", 0.8),
         BACKBONE_SHARES,
     )
+    free = nearest_backbone(curve, BACKBONE_SHARES)
     backbone = Law("backbone", shape={f"f.share{i}": share for i, share in enumerate(free.shares)})
     backbone.numbers = (free.limit * LEVEL, free.travel * PRE, *backbone.numbers[2:])
     left = loop(backbone) - loop(Law(law, shape=shape))
@@ -47,7 +48,7 @@ def test_it_makes_the_loop_of_the_law(law: str, shape: dict[str, float]) -> None
 
 
 def test_a_law_that_reaches_its_limit_far_away_has_less_of_it() -> None:
-    far = nearest_backbone("lognormal", 1.0, 1.5, BACKBONE_SHARES)
+    far = nearest_backbone(virgin_curve("lognormal", 1.0, 1.5, BACKBONE_SHARES), BACKBONE_SHARES)
     assert 0.85 < far.limit < 0.98 and far.travel > 1.0
 
 
@@ -57,7 +58,26 @@ def test_a_law_of_wide_spread_is_met_about_its_median(spread: float, near: float
     left 14 % of the limit, and a friction of two stages that began there ended 3600 of cost too high."""
     yields = yield_ratios(spread, IWAN_ELEMENTS)
     distances = float(np.median(yields)) * np.geomspace(0.05, 20.0, 50)[:, None]
-    free = nearest_backbone("lognormal", 1.0, spread, BACKBONE_SHARES)
+    free = nearest_backbone(virgin_curve("lognormal", 1.0, spread, BACKBONE_SHARES), BACKBONE_SHARES)
     own = np.minimum(distances / (free.travel * np.array(BACKBONE_YIELDS)), 1.0) @ np.array(free.shares)
     left = free.limit * own - np.minimum(distances / yields, 1.0).mean(axis=1)
     assert np.sqrt(np.mean(left**2)) < near
+
+
+@pytest.mark.parametrize(("law", "shape"), [*CLOSED, ("backbone", {})])
+def test_the_virgin_curve_is_half_a_branch_of_the_loop(law: str, shape: dict[str, float]) -> None:
+    """From one limit to the other, at twice the distances and the forces."""
+    shares = [0.35, 0.10, 0.03, 0.04, 0.03, 0.05, 0.40]
+    curve = virgin_curve(law, shape.get("f.exponent", 1.0), shape.get("f.spread", 0.8), shares)  # type: ignore[arg-type]
+    numbers = {f"f.share{i}": share for i, share in enumerate(shares)} if law == "backbone" else {}
+    solved = Law(law, shape=shape | numbers)
+    solved.along(np.linspace(0.0, 200.0 * PRE, 2001))
+    here, start = 200.0 * PRE, solved.to(200.0 * PRE)
+    branch = start - solved.along(here - 2.0 * PRE * curve.distances)
+    np.testing.assert_allclose(curve.shares, branch / (2.0 * LEVEL), atol=0.004)
+
+
+def test_the_distance_of_a_share_is_where_the_curve_has_it() -> None:
+    curve = virgin_curve("dahl", 1.0, 1.0, BACKBONE_SHARES)
+    assert curve.distance(0.5) == pytest.approx(0.5 * np.log(2.0), rel=0.01)
+    assert curve.distance(2.0) == curve.distances[-1]

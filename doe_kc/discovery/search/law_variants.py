@@ -51,11 +51,12 @@ def with_law(
     one does at a point, as far as the effect can tell; other new numbers are at typical."""
     known = model.sizes_at(z, member)
     alike = EFFECTS[law.effect].numbers_by(law.law, member.options(known))
-    own = [_amplitude(s, alike) if s.key in alike else known.get(s.name, 0.0) for s in law.sizes]
+    own = [amplitude_by(s, alike) if s.key in alike else known.get(s.name, 0.0) for s in law.sizes]
     place = model.place(member)
     return model.with_member(member, law), np.concatenate([z[: place.start], own, z[place.stop :]])
 
 
-def _amplitude(size: Size, options: Mapping[str, Any]) -> float:
+def amplitude_by(size: Size, options: Mapping[str, Any]) -> float:
+    """Amplitude of a size at options that have its key."""
     value = options[size.key]
     return size.amplitude(value if size.index is None else value[size.index])

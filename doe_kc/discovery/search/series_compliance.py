@@ -9,7 +9,7 @@ are fitted at their typical size, and what is less probable with them counts for
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -19,9 +19,9 @@ from doe_kc.discovery.search.compatibility import compatible
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.free_shapes import within_trace
 from doe_kc.discovery.search.law_variants import default_law, frictions, other_laws, with_law
-from doe_kc.discovery.search.other_optima import yielding_start
 from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.search.search import search_from
+from doe_kc.discovery.search.series_start import in_series, series_starts
 from doe_kc.discovery.thresholds import (
     ACCEPTED_ODDS,
     BEYOND_DOUBT,
@@ -40,42 +40,89 @@ def with_series_compliances(
     """The search, gone on from its last set with a compliance in series with one of its frictions, where that
     leads to a better one; with those sets that it does not go on from, as `larger`.
 
-    Only of sets that explain the records: what others leave asks for anything. A set by the friction's own
-    law is the better one where it is the more probable one; by another law it must fit better than any free
-    shape could: a friction of two stages, 276 N, became 397 +- 33 N on a mount that is not there. Every
-    closed law is asked, and the own one from another travel: a steering friction of 190 N on a mount of 4130
+    A set that leaves something unexplained is left only for one that noise explains: else what is missing
+    asks for anything. A set by the friction's own law is the better one where it is the more probable one; by
+    another law it must fit better than any free shape could: a friction of two stages, 276 N, became 397 +-
+    33 N on a mount that is not there. Every closed law is asked, and the own one from where it makes the same
+    loops: a steering friction of 190 N on a mount of 4130
     N/mm had become 95.2 +- 1.2 N by Duhem's law, one of 236 N on 7600 N/mm 155.1 +- 4.0 N by a free shape,
     one of 332 N by a law of other yield distances on 4250 N/mm 201.0 +- 2.3 N by Prandtl-Iwan's, by which a
     mount brings nothing, and one of two stages, 240 N on 3040 N/mm, 133 +- 1 N by a free shape that did not
     find it. Not of a trace: half of it is one too.
     """
-    if search.with_law_discrepancy.residual_map.chance < NOISE_CHANCE:
-        return search
+    explained = search.with_law_discrepancy.residual_map.chance >= NOISE_CHANCE
     last, pairs = search.with_effects, _pairs(search, library)
+    if not explained:
+        pairs = [(member, h) for member, h in pairs if in_series(member, h)]
     firsts = [_start(last, member, compliance, member) for member, compliance in pairs]
     larger: list[HypothesisFit] = []
-    for (member, compliance), start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):
-        odds = search.prior.log_odds(last.model.members, compliance)
-        probable = fit is not None and fit.evidence - last.evidence + odds > 0.0
-        starts = _other_starts(search, member, compliance, both=probable)
-        reached = [(start, fit), *zip(starts, _fits(starts, workers), strict=True)]
-        there = [(f.evidence, k, f) for k, (_, f) in enumerate(reached) if f is not None]
-        if not there:
+    for pair, start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):
+        best = _best(search, pair, start, fit, workers)
+        if best is None:
             continue
-        evidence, k, best = max(there)
-        gain = evidence - search.evidence + odds
-        own = reached[k][0].model.members[: len(last.model.members)] == last.model.members
-        if not (probable or own) and best.cost + 2.0 * FREE_SHAPE_LOSS >= last.cost:
-            gain = min(gain, 0.5 * (last.cost - best.cost) + odds)
-        elif gain > ACCEPTED_ODDS:
-            following = FitStart(reached[k][0].model, best.z, last)
+        compliance, gain, following = pair[1], best.gain, best.start
+        if best.allowed and gain > ACCEPTED_ODDS and (explained or _explains(following, workers)):
             other = search_from(search, following, compliance, gain, library, workers)
             if other.log_posterior > search.log_posterior:
                 return other
             gain = min(gain, other.log_posterior - search.log_posterior)
-        if gain > -LARGER_SET_ODDS:
-            larger.append(HypothesisFit(compliance, best, gain, odds))
+        if explained:
+            sets = [HypothesisFit(compliance, best.fit, gain, best.odds), *best.alike]
+            larger += [one for one in sets if one.gain > -LARGER_SET_ODDS]
     return replace(search, larger=tuple(larger)) if larger else search
+
+
+@dataclass(frozen=True)
+class _Reached:
+    """The most probable set that the last one makes with a compliance."""
+
+    start: FitStart
+    """At its fit."""
+    fit: Fit
+    """Without derivatives."""
+    gain: float
+    """ln of its posterior odds against the last set, for the friction's size at least."""
+    odds: float
+    """ln of those before the records."""
+    allowed: bool
+    """Whether the search may go on from it."""
+    alike: tuple[HypothesisFit, ...]
+    """Sets by the friction's own law, where it has more numbers than the default one, by what the records
+    alone say of them."""
+
+
+def _best(
+    search: EffectSearch,
+    pair: tuple[Hypothesis, Hypothesis],
+    first: FitStart,
+    fit: Fit | None,
+    workers: DiscoveryWorkers,
+) -> _Reached | None:
+    """Of the fits from every start. first: that by the friction's own law, and where it ends."""
+    last, (_, compliance) = search.with_effects, pair
+    odds = search.prior.log_odds(last.model.members, compliance)
+    probable = fit is not None and fit.evidence - last.evidence + odds > 0.0
+    starts = _other_starts(search, *pair, both=probable)
+    reached = [(first, fit), *zip(starts, _fits(starts, workers), strict=True)]
+    there = [(f.evidence, k, f) for k, (_, f) in enumerate(reached) if f is not None]
+    if not there:
+        return None
+    evidence, k, best = max(there)
+    gain, model = evidence - search.evidence + odds, reached[k][0].model
+    own = model.members[: len(last.model.members)] == last.model.members
+    allowed = probable or own or best.cost + 2.0 * FREE_SHAPE_LOSS < last.cost
+    if not allowed:
+        gain = min(gain, 0.5 * (last.cost - best.cost) + odds)
+    ends = (f for start, f in reached if f is not None and start.model.members[:-1] == last.model.members)
+    alike = tuple(HypothesisFit(compliance, f, 0.5 * (last.cost - f.cost)) for f in ends)
+    flexible = _has_more_numbers(search, pair[0]) and in_series(*pair)
+    return _Reached(FitStart(model, best.z, last), best, gain, odds, allowed, alike if flexible else ())
+
+
+def _explains(start: FitStart, workers: DiscoveryWorkers) -> bool:
+    """Whether noise explains what the fit from a start leaves."""
+    (refit,) = workers.fits([start], "adding compliances")
+    return refit is not None and refit.residual_map.chance >= NOISE_CHANCE
 
 
 def _fits(starts: Sequence[FitStart], workers: DiscoveryWorkers) -> list[Fit | None]:
@@ -125,18 +172,18 @@ def _other_starts(
     closed = _closed_laws(member)
     near = [_start(last, member, compliance, law) for law in closed]
     laws = closed if member.law in {h.law for h in closed} else [*closed, member]
-    far = [_far(_start(last, member, compliance, law), law) for law in laws]
+    most = _most(last)
+    far = [start for law in laws for start in series_starts(last, member, law, compliance, most)]
     return [*near, *far] if both or _has_more_numbers(search, member) else far
-
-
-def _far(near: FitStart, friction: Hypothesis) -> FitStart:
-    """From the limit and travel that a friction may have beside the compliance."""
-    return replace(near, z=yielding_start(near.model, near.z, friction))
 
 
 def _start(last: Fit, member: Hypothesis, compliance: Hypothesis, law: Hypothesis) -> FitStart:
     """The last set with a typical compliance, a friction by its own law or another one."""
     model, z = with_law(last.model, last.z, member, law)
     typical = [0.0 if size.shape else 1.0 for size in compliance.sizes]
-    most = last.cost + 2.0 * BEYOND_DOUBT
-    return FitStart(model.extended(compliance), np.append(z, typical), last, most)
+    return FitStart(model.extended(compliance), np.append(z, typical), last, _most(last))
+
+
+def _most(last: Fit) -> float:
+    """Cost above which a fit beside the last one is given up."""
+    return last.cost + 2.0 * BEYOND_DOUBT

@@ -37,16 +37,31 @@ def spread_between_sets(
 
 
 def spread_in_larger_sets(
-    member: Hypothesis, amplitudes: FloatArray, larger: Sequence[HypothesisFit]
+    member: Hypothesis, amplitudes: FloatArray, sd: FloatArray, larger: Sequence[HypothesisFit]
 ) -> FloatArray:
     """(m,) root of the mean square by which a member's amplitudes differ in sets with one effect more, which
-    it may hide; those of its law only where it has the same. amplitudes: (m,) in the last set."""
+    it may hide, and are less sure there; those of its law only where it has the same.
+
+    amplitudes, sd: (m,) in the last set, with their standard deviations. 215 N on a mount of 6720 N/mm were
+    159 N without it, and 160 to 195 N with it.
+    """
     weights, squares = 1.0, np.zeros(amplitudes.size)
     for other in larger:
         weight = float(np.exp(min(other.gain, LAW_WINDOW)))
         weights += weight
-        squares += weight * _apart(member, amplitudes, other.fit) ** 2
+        apart, own = _apart(member, amplitudes, other.fit), _sd_there(member, sd, other.fit)
+        squares += weight * (apart**2 + np.maximum(own**2 - sd**2, 0.0))
     return np.asarray(np.sqrt(squares / weights))
+
+
+def spread_between_optima(member: Hypothesis, amplitudes: FloatArray, optima: Sequence[Fit]) -> FloatArray:
+    """(m,) root of the mean square by which a member's amplitudes differ at other optima that fit as well.
+
+    amplitudes: (m,) at the one that is told. optima: see `EffectSearch.optima`; none is more probable than
+    another by more than the sliders of a free shape can tell, so that all count alike.
+    """
+    squares = [_apart(member, amplitudes, other) ** 2 for other in optima]
+    return np.asarray(np.sqrt(np.sum([np.zeros(amplitudes.size), *squares], axis=0) / (1 + len(optima))))
 
 
 def spread_between_laws(
@@ -68,13 +83,32 @@ def spread_between_laws(
 def _apart(member: Hypothesis, amplitudes: FloatArray, other: Fit) -> FloatArray:
     """(m,) by which a member's amplitudes differ in a fit that has it by any law; 0 for those of its law
     where that is another one."""
-    there = next(h for h in other.model.members if h.name == member.name)
-    known = dict(zip((s.name for s in there.sizes), amplitude_estimates(other, there)[0], strict=True))
+    there, _ = amplitude_estimates(other, _named(member, other))
+    return _by_name(member, there, other, amplitudes) - amplitudes
+
+
+def _sd_there(member: Hypothesis, sd: FloatArray, other: Fit) -> FloatArray:
+    """(m,) standard deviations of a member's amplitudes in such a fit; sd for those of its law where that is
+    another one."""
+    _, there = amplitude_estimates(other, _named(member, other))
+    return _by_name(member, there, other, sd)
+
+
+def _named(member: Hypothesis, fit: Fit) -> Hypothesis:
+    """A member as it is in a fit."""
+    return next(h for h in fit.model.members if h.name == member.name)
+
+
+def _by_name(member: Hypothesis, numbers: FloatArray, other: Fit, own: FloatArray) -> FloatArray:
+    """(m,) numbers (k,) of a member's sizes in another fit, in the order of its own; `own` for those that the
+    other law does not have, or in another sense."""
+    there = _named(member, other)
+    known = dict(zip((s.name for s in there.sizes), numbers.tolist(), strict=True))
     same = [there.law == member.law or not s.shape for s in member.sizes]
     return np.array(
         [
-            known.get(s.name, a) - a if counts else 0.0
-            for s, a, counts in zip(member.sizes, amplitudes, same, strict=True)
+            known.get(s.name, a) if counts else a
+            for s, a, counts in zip(member.sizes, own.tolist(), same, strict=True)
         ]
     )
 

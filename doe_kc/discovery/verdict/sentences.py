@@ -30,13 +30,15 @@ def sentences(
     scan: Scan | None,
     beyond: Sequence[str],
     widened: float,
+    others: Sequence[str],
 ) -> tuple[str, ...]:
     """Verdict first, then each effect, whether the set holds, and how far the gap shrank.
 
-    beyond: paths of parameters outside their bounds. widened: by how much wider ranges were allowed.
+    beyond: paths of parameters outside their bounds. widened: by how much wider ranges were allowed. others:
+    sentences on what sizes would be in other sets.
     """
     out = [_opening(verdict, findings, beyond)]
-    out += [_one(f) for f in findings]
+    out += [*map(_one, findings), *others]
     if verdict.kind == "unexplained":
         out += [f"{OBJECTION}{o}." for o in verdict.objections]
         out += [
@@ -108,6 +110,11 @@ def _one(finding: Finding) -> str:
     places = " or ".join(map(place_words, finding.elsewhere))
     text += f"; at {places} it would do as well" if places else ""
     return text + (f"; else {rivals}." if rivals else ".")
+
+
+def trace_words(finding: Finding) -> str:
+    """Why an effect that the records show is not named."""
+    return "too small to matter" if finding.small else "too weakly to be named"
 
 
 def odds_words(finding: Finding) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from doe_kc.correlation.answer_record import EffectWords
 from doe_kc.discovery.result import Discovery, Finding
+from doe_kc.discovery.verdict.sentences import trace_words
 from doe_kc.discovery.verdict.size_words import told_sizes
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Size
@@ -72,7 +73,7 @@ def sure_words(discovery: Discovery, finding: Finding) -> str:
     """How sure it is that the car has the effect, see `Finding.probability`."""
     kind = kind_of(discovery, finding)
     if kind == "trace":
-        return "seen, too small to matter"
+        return f"seen, {trace_words(finding)}"
     if kind == "lead only":
         return "a lead: it explains part of the records, something else is at work beside it"
     chance = _percent(finding.probability)

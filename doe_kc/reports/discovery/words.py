@@ -27,7 +27,7 @@ _HEADLINES: dict[VerdictKind, str] = {
 }
 STATUS_WORDS: dict[Status, str] = {
     "found": "found",
-    "trace": "seen, too small to matter",
+    "trace": "seen, not named",
     "excluded": "would have shown",
     "unresolved": "not resolved",
     "not testable": "not testable",

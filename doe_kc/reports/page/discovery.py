@@ -13,6 +13,7 @@ from matplotlib.colors import LogNorm, to_hex
 
 from doe_kc.curves import response_name
 from doe_kc.discovery.result import Discovery, VerdictKind
+from doe_kc.discovery.verdict.other_sizes import OTHER_SIZE
 from doe_kc.discovery.verdict.sentences import OBJECTION
 from doe_kc.effects.words import effect_label
 from doe_kc.ground.numbers import with_sd
@@ -117,11 +118,13 @@ def _remains(discovery: Discovery) -> list[str]:
     ]
     if discovery.beyond:
         out.append(f"Outside their bounds: {', '.join(discovery.beyond)}; check the nominal axle.")
-    if discovery.verdict == "unexplained":
-        return out or [s for s in discovery.sentences if s.startswith(OBJECTION)]
-    return out or [
-        f"Nothing: {discovery.gap.with_effect:.2f} times the noise of the rig are left, which is noise."
-    ]
+    if not out and discovery.verdict == "unexplained":
+        out = [s for s in discovery.sentences if s.startswith(OBJECTION)]
+    elif not out:
+        left = discovery.gap.with_effect
+        out = [f"Nothing: {left:.2f} times the noise of the rig are left, which is noise."]
+    others = [s.removeprefix(OTHER_SIZE) for s in discovery.sentences if s.startswith(OTHER_SIZE)]
+    return [*out, *(sentence[0].upper() + sentence[1:] for sentence in others)]
 
 
 MAPS_LEAD = " ".join(

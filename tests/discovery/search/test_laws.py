@@ -23,7 +23,7 @@ from doe_kc.discovery.search.laws import (
     with_friction_laws,
 )
 from doe_kc.discovery.thresholds import BEYOND_DOUBT, FEW_CONTRASTS, FREE_TRAVELS
-from doe_kc.effects._backbone import nearest_backbone
+from doe_kc.effects._backbone import nearest_backbone, virgin_curve
 from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery, library
@@ -206,7 +206,7 @@ def test_the_law_of_a_compliance_is_taken_only_where_it_explains(explains: bool)
 def test_a_free_backbone_that_leaves_something_begins_from_other_travels(best: float) -> None:
     """A friction of two stages, 225 N, stayed 160 of ln evidence behind by the travel of the closed law."""
     (friction,) = agreeing().model.members
-    nearest = nearest_backbone("dahl", 1.0, 1.0, BACKBONE_SHARES).travel
+    nearest = nearest_backbone(virgin_curve("dahl", 1.0, 1.0, BACKBONE_SHARES), BACKBONE_SHARES).travel
     size = next(i for i, s in enumerate(friction.sizes) if s.key == "presliding_mm")
 
     class Travels(Answers):

@@ -215,7 +215,7 @@ def test_a_friction_s_force_is_one_number_to_a_share_at_best(monkeypatch: pytest
 def test_a_size_that_the_records_do_not_tell_from_none_has_a_limit() -> None:
     """By the records alone: information of 3 at 0.99 / (1 - 0.25), its share above the limit 5 %."""
     force = Size("force_N", 100.0, "N")
-    below, above = estimate(force, 0.99, 0.5), estimate(force, 1.01, 0.5)
+    below, above = estimate(force, 0.99, 0.99, 0.5, 0.5), estimate(force, 1.01, 1.01, 0.5, 0.5)
     alone, sd = 0.99 / 0.75, 3.0**-0.5
     assert below.limit is not None and above.limit is None
     share = norm.sf(below.limit / 100.0, alone, sd) / norm.sf(0.0, alone, sd)
@@ -225,14 +225,14 @@ def test_a_size_that_the_records_do_not_tell_from_none_has_a_limit() -> None:
 
 def test_a_size_that_is_as_open_as_before_the_records_is_not_shown() -> None:
     stiffness = Size("k_N_mm", 100.0, "N/mm", "compliance")
-    unseen, hardly = estimate(stiffness, 0.0, 1.0), estimate(stiffness, 0.0, 0.85)
+    unseen, hardly = estimate(stiffness, 0.0, 0.0, 1.0, 1.0), estimate(stiffness, 0.0, 0.0, 0.85, 0.85)
     assert (unseen.shown, unseen.limit) == (False, None)
     assert unseen.value == pytest.approx(100.0 / 0.798, rel=1e-3)
     assert unseen.sd == pytest.approx(100.0 * 0.603 / 0.798**2, rel=2e-2)
     assert hardly.shown
     assert hardly.limit == pytest.approx(100.0 / (1.96 * (0.85**-2 - 1.0) ** -0.5), rel=1e-3)
-    assert not estimate(Size("offset_mm", 7.0, "mm", signed=True), 0.1, 0.95).shown
-    assert estimate(Size("presliding_mm", 0.1, "mm", "shape"), 0.1, 0.95).shown
+    assert not estimate(Size("offset_mm", 7.0, "mm", signed=True), 0.1, 0.1, 0.95, 0.95).shown
+    assert estimate(Size("presliding_mm", 0.1, "mm", "shape"), 0.1, 0.1, 0.95, 0.95).shown
 
 
 @pytest.mark.parametrize(
@@ -245,7 +245,7 @@ def test_a_size_that_is_as_open_as_before_the_records_is_not_shown() -> None:
     ids=lambda size: size.key,
 )
 def test_a_size_of_either_sign_has_no_limit(size: Size) -> None:
-    own = estimate(size, 0.1, 0.5)
+    own = estimate(size, 0.1, 0.1, 0.5, 0.5)
     assert own.limit is None
     assert own.value == size.value(0.1)
 
@@ -261,12 +261,34 @@ def test_a_shape_with_several_optima_is_told_to_a_quarter_at_best() -> None:
     assert 1.0 - size.value(1.3 - spread) / value == pytest.approx(0.25, abs=0.04)
 
 
+@pytest.mark.parametrize("spread", ["sets", "laws", "optima"])
+def test_an_effect_that_is_another_size_elsewhere_is_no_trace(
+    spread: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A friction of 338 N on a mount, certain and told as 447 +- 240 N, was neither an effect nor a trace."""
+    function = f"spread_between_{spread}"
+    monkeypatch.setattr(findings_module, function, lambda _, amplitudes, *__: 0.6 * np.abs(amplitudes))
+    (found,) = findings(search(), [place(trial("hub_compliance", HUB, 400.0))], DiscoveryWorkers())
+    assert found.relevant and found.seen and not found.small
+    camber, _ = found.estimates
+    assert camber.sd > 0.3 * camber.value and camber.limit is None and camber.shown
+
+
+def test_what_other_sets_leave_of_a_size_counts() -> None:
+    """It is told from none by what it is at least; a limit holds what all sets make of it."""
+    force = Size("force_N", 100.0, "N")
+    assert estimate(force, 1.0, 0.4, 0.1, 0.6).limit is None
+    surely_less, wide = estimate(force, 1.0, 0.1, 0.1, 0.6), estimate(force, 1.0, 0.1, 0.1, 2.0)
+    assert surely_less.limit is not None and surely_less.limit > 200.0
+    assert wide.limit is not None and np.isfinite(wide.limit) and wide.shown
+
+
 def test_an_effect_whose_size_hangs_on_one_that_it_may_hide_is_no_trace(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A steering friction of 126 +- 56 N, 193 N on a mount, was "too small to matter"."""
     wide = "spread_in_larger_sets"
-    monkeypatch.setattr(findings_module, wide, lambda _, amplitudes, __: np.abs(amplitudes))
+    monkeypatch.setattr(findings_module, wide, lambda _, amplitudes, *__: np.abs(amplitudes))
     (found,) = findings(search(), [place(trial("hub_compliance", HUB, 400.0))], DiscoveryWorkers())
     assert found.relevant and found.seen
     assert all(e.sd > 0.5 * abs(e.value) for e in found.estimates)

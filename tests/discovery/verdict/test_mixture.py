@@ -10,7 +10,11 @@ import pytest
 from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.search.law_variants import open_laws
 from doe_kc.discovery.search.refits import HypothesisFit
-from doe_kc.discovery.verdict.mixture import spread_between_laws, spread_in_larger_sets
+from doe_kc.discovery.verdict.mixture import (
+    spread_between_laws,
+    spread_between_optima,
+    spread_in_larger_sets,
+)
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import discovery
 
@@ -61,14 +65,34 @@ def test_without_other_laws_there_is_no_spread(closed: Fit) -> None:
 
 def test_a_larger_set_counts_by_its_odds_and_not_for_its_law(closed: Fit) -> None:
     friction = next(h for h in closed.model.members if open_laws(h) or h.law)
-    own = amplitude_estimates(closed, friction)[0]
+    own, sd = amplitude_estimates(closed, friction)
     moved = np.ones(closed.amplitudes.size)
     hub = closed.model.members[0]
     even = HypothesisFit(hub, other(closed, moved, 0.0), 0.0)
-    np.testing.assert_allclose(spread_in_larger_sets(friction, own, [even]), np.sqrt(0.5))
+    np.testing.assert_allclose(spread_in_larger_sets(friction, own, sd, [even]), np.sqrt(0.5))
     likelier = replace(even, gain=2.0)
-    np.testing.assert_allclose(spread_in_larger_sets(friction, own, [likelier]) ** 2, 0.880797, atol=1e-6)
-    assert not spread_in_larger_sets(friction, own, []).any()
+    np.testing.assert_allclose(spread_in_larger_sets(friction, own, sd, [likelier]) ** 2, 0.880797, atol=1e-6)
+    assert not spread_in_larger_sets(friction, own, sd, []).any()
     law = replace(friction, law="another")
-    numbers = spread_in_larger_sets(law, own, [even])
+    numbers = spread_in_larger_sets(law, own, sd, [even])
     np.testing.assert_array_equal(numbers > 0.0, [not size.shape for size in law.sizes])
+
+
+def test_what_is_less_sure_in_a_larger_set_is_less_sure(closed: Fit) -> None:
+    """215 N were 159 N without a mount, 160 to 195 N with one."""
+    member = closed.model.members[0]
+    own, sd = amplitude_estimates(closed, member)
+    same = HypothesisFit(member, closed, 0.0)
+    assert not spread_in_larger_sets(member, own, sd, [same]).any()
+    surer = spread_in_larger_sets(member, own, 0.5 * sd, [same])
+    np.testing.assert_allclose(surer, np.sqrt(0.5 * 0.75) * sd)
+    assert not spread_in_larger_sets(member, own, 2.0 * sd, [same]).any()
+
+
+def test_optima_that_fit_as_well_count_alike(closed: Fit) -> None:
+    member = closed.model.members[0]
+    own, _ = amplitude_estimates(closed, member)
+    moved = np.ones(closed.amplitudes.size)
+    optima = [other(closed, moved, 8.0), other(closed, 2.0 * moved, 0.0)]
+    np.testing.assert_allclose(spread_between_optima(member, own, optima), np.sqrt(5.0 / 3.0))
+    assert not spread_between_optima(member, own, []).any()

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import pytest
+
 from doe_kc.discovery.result import Finding, VerdictKind
 from doe_kc.discovery.verdict.component_test import ComponentTest
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus
-from doe_kc.discovery.verdict.sentences import next_tests, sentences
+from doe_kc.discovery.verdict.sentences import next_tests, sentences, trace_words
 from doe_kc.discovery.verdict.verdict import Verdict
 from doe_kc.effects import EFFECTS
 from tests.discovery.cases import discovery, library
@@ -40,7 +42,9 @@ def test_a_trace_is_not_called_untestable() -> None:
 
 def opening(kind: VerdictKind, findings: Sequence[Finding]) -> str:
     found = discovery("named")
-    return sentences(Verdict(kind), findings, found.adequacy, found.gap, found.residual_map, None, (), 1.0)[0]
+    return sentences(
+        Verdict(kind), findings, found.adequacy, found.gap, found.residual_map, None, (), 1.0, ()
+    )[0]
 
 
 def test_a_sure_effect_beside_a_class_is_told_as_sure() -> None:
@@ -78,8 +82,16 @@ def test_a_size_that_is_not_told_from_none_is_its_limit_in_a_sentence() -> None:
     (camber, toe), one = found.findings[0].estimates, found.findings[0]
     limit = replace(toe, limit=20000.0, shown=True)
     told = replace(one, estimates=(camber, limit), elsewhere=("LLR_R",))
-    _, line, *_ = sentences(
-        Verdict("named"), [told], found.adequacy, found.gap, found.residual_map, None, (), 1.0
+    _, line, other, *_ = sentences(
+        Verdict("named"), [told], found.adequacy, found.gap, found.residual_map, None, (), 1.0, ["Other."]
     )
     assert "toe_Nm_deg not told from rigid (above 20000 Nm/deg, 95 %)" in line
-    assert "; at LLR right it would do as well" in line
+    assert "; at LLR right it would do as well" in line and other == "Other."
+
+
+@pytest.mark.parametrize(
+    ("small", "words"), [(True, "too small to matter"), (False, "too weakly to be named")]
+)
+def test_what_is_seen_and_not_named_is_said_why(small: bool, words: str) -> None:
+    """A mount of 2900 N/mm with even odds was "too small to matter"."""
+    assert trace_words(replace(discovery("named").findings[0], small=small)) == words

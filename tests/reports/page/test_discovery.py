@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from doe_kc.discovery.verdict.other_sizes import OTHER_SIZE
 from doe_kc.reports.discovery.effect_words import effect_words
 from doe_kc.reports.page.correlation import correlation_sections
 from doe_kc.reports.page.discovery import discovery_sections, write_discovery_page
@@ -214,3 +215,16 @@ def test_an_unexplained_set_does_not_leave_nothing(tmp_path: Path) -> None:
         tmp_path / "r.html", quiet, records("unexplained"), study="S", date="D", notes={}
     ).read_text()
     assert "which is noise." not in html and f"<li>{against}</li>" in html
+
+
+@pytest.mark.parametrize("verdict", ["named", "unexplained"])
+def test_another_size_that_fits_as_well_remains(tmp_path: Path, verdict: str) -> None:
+    """Beside what else remains, or that nothing does."""
+    one = discovery(verdict)
+    other = f"{OTHER_SIZE}steering friction would be 240 N with rack-mount compliance of 3070 N/mm."
+    told = replace(one, sentences=(*one.sentences, other))
+    html = write_discovery_page(
+        tmp_path / "r.html", told, records(verdict), study="S", date="D", notes={}
+    ).read_text()
+    assert "<li>Steering friction would be 240 N with rack-mount compliance of 3070 N/mm.</li>" in html
+    assert ("which is noise." in html) is (verdict == "named")
