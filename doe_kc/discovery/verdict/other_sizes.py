@@ -16,6 +16,10 @@ from doe_kc.ground.numbers import number, unit_words
 
 OTHER_SIZE = "Another size: "
 """Begins such a sentence."""
+HARDLY_TOLD = (
+    "the records hardly tell a friction on a mount that yields from a smaller one on a stiffer mount, so "
+    "that its size is told as wide as both."
+)
 
 
 def other_sizes(
@@ -35,11 +39,8 @@ def _sentence(search: EffectSearch, compared: Sequence[Alternatives], finding: F
     others = [*_beside(search, own), *_without(compared, own)]
     value, beside = max(others, key=lambda one: abs(one[0] - told), default=(told, ""))
     if abs(value - told) > SIZE_APART * told:
-        yield (
-            f"{OTHER_SIZE}{effect_label(own.effect).lower()} would be {_words(_size(own), value)} {beside}; "
-            "the records hardly tell a friction on a mount that yields from a smaller one on a stiffer mount, "
-            "so that its size is told as wide as both."
-        )
+        size = _words(_size(own), value)
+        yield f"{OTHER_SIZE}{effect_label(own.effect).lower()} would be {size} {beside}; {HARDLY_TOLD}"
 
 
 def _beside(search: EffectSearch, own: Hypothesis) -> Iterator[tuple[float, str]]:
