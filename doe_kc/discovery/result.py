@@ -90,7 +90,7 @@ class Finding:
     relevant: bool
     """Whether it is worth naming; a trace otherwise."""
     small: bool = True
-    """Whether it is surely no more than every car has, or not surely more."""
+    """Whether it is not surely more than a trace, as every car has."""
     elsewhere: tuple[str, ...] = ()
     """Other places of the same effect that explain the records about as well."""
     verdict: FindingVerdict = "lead"

@@ -65,7 +65,8 @@ def at_best_stiffness(current: Fit, workers: DiscoveryWorkers) -> tuple[Fit, tup
             break
         current, starts = best, other_stiffnesses(best, free=True)
     most = min(f.cost for f in reached) + 2.0 * FREE_SHAPE_LOSS
-    return current, tuple(f.without_derivatives for f in reached if f.z is not current.z and f.cost <= most)
+    others = (f for f in reached if f.z is not current.z)  # copies without derivatives keep their point
+    return current, tuple(f.without_derivatives for f in others if f.cost <= most)
 
 
 def other_stiffnesses(current: Fit, *, free: bool = False) -> list[FitStart]:
