@@ -49,8 +49,8 @@ class EffectSearch:
     larger: tuple[HypothesisFit, ...] = ()
     """Sets with one effect more, which one of its members may hide, up to 20 to 1 less probable than the last
     one, or more so by less than an effect needs; of a friction's own law of more numbers than the default
-    one, those that fit as well, whatever their probability. To the records' own errors, without derivatives; see
-    `with_series_compliances`."""
+    one, those that fit as well, whatever their probability. To the records' own errors, without derivatives;
+    see `with_series_compliances`."""
 
     @property
     def evidence(self) -> float:
