@@ -38,7 +38,7 @@ def _sentence(search: EffectSearch, compared: Sequence[Alternatives], finding: F
     told = finding.estimates[0].value if finding.estimates else 0.0
     others = [*_beside(search, own), *_without(compared, own)]
     value, beside = max(others, key=lambda one: abs(one[0] - told), default=(told, ""))
-    if abs(value - told) > SIZE_APART * told:
+    if abs(value - told) > SIZE_APART * abs(told):
         size = _words(_size(own), value)
         yield f"{OTHER_SIZE}{effect_label(own.effect).lower()} would be {size} {beside}; {HARDLY_TOLD}"
 
