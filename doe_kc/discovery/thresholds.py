@@ -226,6 +226,12 @@ that a member lacks. Noise alone, with the discrepancy of laws among the errors,
 FREE_TRAVELS = (0.7, 1.4)
 """times the travel of the backbone nearest to the law before, other starts of a friction of free shape. Its
 sliders stand in ratios of 1.4 to 2.3, so that shares and travel move from one of them to the next."""
+GRID_FACTORS = (0.55, 1.8)
+"""times the travel of a free backbone, those of the same virgin curve by sliders elsewhere from which fits
+begin. Three of four steps between its sliders, in ratios of 1.4 to 2.3, are shorter."""
+SAME_OPTIMUM = 0.01
+"""-, by which all sizes of two fits of a set differ at most that are at one optimum. A hundredth: shapes
+apart, fits that end there agree to a thousandth."""
 NEAR_START = 0.5
 """prior standard deviations, within which a number is where another start would begin. Half of the distance
 between two starts of rubber's spread."""

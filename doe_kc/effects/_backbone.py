@@ -64,10 +64,17 @@ def virgin_curve(law: FrictionLaw, exponent: float, spread: float, shares: Seque
     return VirginCurve(distances, _loading(law, exponent, spread, shares, distances), typical)
 
 
-def nearest_backbone(curve: VirginCurve, usual: Sequence[float]) -> Backbone:
-    """The backbone of least squares from a curve. usual: shares where the curve says nothing."""
-    share, travels = np.array(usual), curve.typical * TRAVEL_FACTORS
-    trials = [(_shares(curve, travel, share), travel) for travel in travels.tolist()]
+def nearest_backbone(
+    curve: VirginCurve, usual: Sequence[float], travels: FloatArray | None = None
+) -> Backbone:
+    """The backbone of least squares from a curve.
+
+    usual: shares where the curve says nothing. travels: (n,) that it may have, in the unit of the curve's
+    distances; None for those about the typical yield displacement.
+    """
+    share = np.array(usual)
+    among = curve.typical * TRAVEL_FACTORS if travels is None else travels
+    trials = [(_shares(curve, travel, share), travel) for travel in among.tolist()]
     (shares, _), travel = min(trials, key=lambda trial: trial[0][1])
     shares = np.maximum(shares, UNUSED_SHARE)
     return Backbone(float(shares.sum()), travel, tuple((shares / shares.sum()).tolist()))

@@ -6,6 +6,8 @@ from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
+import numpy as np
+
 from doe_kc.axle.model import Axle
 from doe_kc.axle.places import Places
 from doe_kc.axle.sliders import BACKBONE_YIELDS
@@ -86,6 +88,12 @@ class DryFriction(Effect):
         half = _curve(own | {"law": law}).distance(0.5)
         return {LIMIT: limit, TRAVEL: travel * curve.distance(0.5) / half}
 
+    def with_travel(self, options: Mapping[str, Any], factor: float) -> Mapping[str, Any]:
+        """Options of the free backbone of another travel that does nearly what one does at some options: its
+        sliders yield elsewhere. factor: of the travel."""
+        own = self.read(options, self.label)
+        return _free_numbers(_curve(own), own[LIMIT], own[TRAVEL], factor)
+
     def read(
         self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES
     ) -> dict[str, Any]:
@@ -107,10 +115,12 @@ def _curve(options: Mapping[str, Any]) -> VirginCurve:
     return virgin_curve(options["law"], options["exponent"], options["spread"], options["shares"])
 
 
-def _free_numbers(curve: VirginCurve, limit: float, travel: float) -> Mapping[str, Any]:
+def _free_numbers(
+    curve: VirginCurve, limit: float, travel: float, factor: float | None = None
+) -> Mapping[str, Any]:
     """Options of the free backbone nearest to a curve whose force and distances are over a limit, N, and a
-    travel, mm."""
-    free = nearest_backbone(curve, BACKBONE_SHARES)
+    travel, mm. factor: of that travel, None for the best."""
+    free = nearest_backbone(curve, BACKBONE_SHARES, None if factor is None else np.array([factor]))
     return {LIMIT: free.limit * limit, TRAVEL: free.travel * travel, SHARES: list(free.shares)}
 
 

@@ -120,3 +120,20 @@ def test_a_compliance_with_a_spring_is_one_of_a_part_with_a_friction(effect: obj
     own = next(e for e in EFFECTS.values() if e is effect)
     assert [size.growth for size in own.sizes if not size.shape] == ["compliance"]
     assert any(isinstance(e, DryFriction) and e.part == own.part for e in EFFECTS.values())
+
+
+@pytest.mark.parametrize("factor", [0.55, 1.8])
+def test_other_sliders_make_nearly_the_same_curve(factor: float) -> None:
+    """As far as they reach: the last one of two stages yields at five travels."""
+    effect = EFFECTS["steering_friction"]
+    assert isinstance(effect, DryFriction)
+    known = {"force_N": LIMIT, "presliding_mm": TRAVEL, "law": "backbone", "shares": TWO_STAGES.tolist()}
+    there = effect.with_travel(known, factor)
+    assert there["presliding_mm"] == pytest.approx(factor * TRAVEL)
+    own, other = (virgin_curve("backbone", 1.0, 1.0, n["shares"]) for n in (known, there))
+    at = np.geomspace(0.1, 10.0, 40) * TRAVEL
+    here = np.interp(at, TRAVEL * own.distances, LIMIT * own.shares)
+    moved = np.interp(at, there["presliding_mm"] * other.distances, there["force_N"] * other.shares)
+    alone = np.interp(at, factor * TRAVEL * own.distances, LIMIT * own.shares)
+    left, travel = (np.sqrt(np.mean((curve - here) ** 2)) for curve in (moved, alone))
+    assert left < 0.05 * LIMIT and left < 0.5 * travel

@@ -44,8 +44,8 @@ class EffectSearch:
     """`with_law_discrepancy` by closed laws of its frictions where those have free shapes, or by free shapes
     where those fit as well but leave what closed laws explain; None where there is none."""
     optima: tuple[Fit, ...]
-    """`with_law_discrepancy` at other stiffnesses in series with a friction of free shape, where they fit as
-    well; see `at_best_stiffness`."""
+    """`with_law_discrepancy` at other optima of its frictions of free shape, where they fit as well; see
+    `at_best_free_shape`."""
     larger: tuple[HypothesisFit, ...] = ()
     """Sets with one effect more, which one of its members may hide, up to 20 to 1 less probable than the last
     one, or more so by less than an effect needs; of a friction's own law of more numbers than the default

@@ -25,12 +25,13 @@ from doe_kc.discovery.search.laws import (
 from doe_kc.discovery.search.laws_first import laws_instead, laws_of, needless_beside_laws
 from doe_kc.discovery.search.member_state import MemberState
 from doe_kc.discovery.search.nominal_refits import refit_anew
-from doe_kc.discovery.search.other_optima import at_best_stiffness
+from doe_kc.discovery.search.other_optima import at_best_free_shape
 from doe_kc.discovery.search.refits import temper
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.search.settling import settled, with_loops
 from doe_kc.discovery.thresholds import EFFECTS_MOST, MOST_STEPS
 from doe_kc.discovery.workers import DiscoveryWorkers
+from doe_kc.effects._friction import FREE_LAW
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -259,7 +260,8 @@ class _SetSearch:
         self._let_go()
         before = self._current.evidence
         current, other = with_free_shapes(self._current, self._workers)
-        current, optima = at_best_stiffness(current, self._workers)
+        own = {h.name for h in self._current.model.members if h.law == FREE_LAW}
+        current, optima = at_best_free_shape(current, own, self._workers)
         self._shape_loss += max(0.0, before - current.evidence)
         last = tuple(_latest(self._screened, decision, current))
         current, with_effects = both_optima(current, self._tuned.model.likelihood, self._workers)

@@ -172,8 +172,11 @@ def _other_starts(
     closed = _closed_laws(member)
     near = [_start(last, member, compliance, law) for law in closed]
     laws = closed if member.law in {h.law for h in closed} else [*closed, member]
-    most = _most(last)
-    far = [start for law in laws for start in series_starts(last, member, law, compliance, most)]
+    far = [
+        start
+        for law in laws
+        for start in series_starts(last, member, law, compliance, np.inf if law == member else _most(last))
+    ]
     return [*near, *far] if both or _has_more_numbers(search, member) else far
 
 
