@@ -82,7 +82,7 @@ def at_best_free_shape(current: Fit, own: Set[str], workers: DiscoveryWorkers) -
 
 def _distinct(current: Fit, fits: Sequence[Fit]) -> list[Fit]:
     """Those, without derivatives, that are at optima of their own, and not at that of the current one."""
-    known, amount = [current], [size.growth not in ("shape", "bend") for size in current.model.sizes]
+    known, amount = [current], [not size.shape for size in current.model.sizes]
     for fit in sorted(fits, key=lambda f: f.cost):
         apart = [np.abs(fit.amplitudes - other.amplitudes)[amount] for other in known]
         scale = np.abs(fit.amplitudes)[amount]
