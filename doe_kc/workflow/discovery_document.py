@@ -26,7 +26,7 @@ def discovery_document(discovery: Discovery, axle_path: Path | None) -> dict[str
 
     effects: those that are named, or the most probable of a class, each with its own verdict: where the
     verdict of the whole is unexplained some may be certain all the same; leads: the others there; traces:
-    seen, too small to matter or too weakly to name them. parameters: value, sd, unit of each option, lists
+    seen, too small to matter or too weakly to be named. parameters: value, sd, unit of each option, lists
     for a list option; limit: null, or what a number that the records do not tell from none is at most (a
     stiffness: at least), at 95 %; shown: whether the records say more of it than was known before.
     log10_odds: of each effect against the best alternative, its removal or a rival in its place, all others

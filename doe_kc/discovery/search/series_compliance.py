@@ -44,11 +44,10 @@ def with_series_compliances(
     asks for anything. A set by the friction's own law is the better one where it is the more probable one; by
     another law it must fit better than any free shape could: a friction of two stages, 276 N, became 397 +-
     33 N on a mount that is not there. Every closed law is asked, and the own one from where it makes the same
-    loops: a steering friction of 190 N on a mount of 4130
-    N/mm had become 95.2 +- 1.2 N by Duhem's law, one of 236 N on 7600 N/mm 155.1 +- 4.0 N by a free shape,
-    one of 332 N by a law of other yield distances on 4250 N/mm 201.0 +- 2.3 N by Prandtl-Iwan's, by which a
-    mount brings nothing, and one of two stages, 240 N on 3040 N/mm, 133 +- 1 N by a free shape that did not
-    find it. Not of a trace: half of it is one too.
+    loops: a steering friction of 190 N on a mount of 4130 N/mm had become 95.2 +- 1.2 N by Duhem's law, one
+    of 236 N on 7600 N/mm 155.1 +- 4.0 N by a free shape, one of 332 N by a law of other yield distances on
+    4250 N/mm 201.0 +- 2.3 N by Prandtl-Iwan's, by which a mount brings nothing, and one of two stages, 240 N
+    on 3040 N/mm, 133 +- 1 N by a free shape that did not find it. Not of a trace: half of it is one too.
     """
     explained = search.with_law_discrepancy.residual_map.chance >= NOISE_CHANCE
     last, pairs = search.with_effects, _pairs(search, library)
@@ -109,14 +108,18 @@ def _best(
         return None
     evidence, k, best = max(there)
     gain, model = evidence - search.evidence + odds, reached[k][0].model
-    own = model.members[: len(last.model.members)] == last.model.members
-    allowed = probable or own or best.cost + 2.0 * FREE_SHAPE_LOSS < last.cost
+    allowed = probable or _by_own_law(reached[k][0], last) or best.cost + 2.0 * FREE_SHAPE_LOSS < last.cost
     if not allowed:
         gain = min(gain, 0.5 * (last.cost - best.cost) + odds)
-    ends = (f for start, f in reached if f is not None and start.model.members[:-1] == last.model.members)
-    alike = tuple(HypothesisFit(compliance, f, 0.5 * (last.cost - f.cost)) for f in ends)
     flexible = _has_more_numbers(search, pair[0]) and in_series(*pair)
-    return _Reached(FitStart(model, best.z, last), best, gain, odds, allowed, alike if flexible else ())
+    ends = [f for start, f in reached if f is not None and flexible and _by_own_law(start, last)]
+    alike = tuple(HypothesisFit(compliance, f, 0.5 * (last.cost - f.cost)) for f in ends)
+    return _Reached(FitStart(model, best.z, last), best, gain, odds, allowed, alike)
+
+
+def _by_own_law(start: FitStart, last: Fit) -> bool:
+    """Whether a start is of the last set itself, with a compliance beside it."""
+    return start.model.members[:-1] == last.model.members
 
 
 def _explains(start: FitStart, workers: DiscoveryWorkers) -> bool:

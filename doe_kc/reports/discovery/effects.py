@@ -79,7 +79,7 @@ def effect_rows(discovery: Discovery) -> list[EffectRow]:
 
 def kind_of(discovery: Discovery, finding: Finding) -> str:
     """found; most likely, of several that cannot be told apart; lead only, where something else remains;
-    trace, seen but too small to matter or too weak to name."""
+    trace, seen but too small to matter or too weakly to be named."""
     if finding not in discovery.findings:
         return "trace"
     return {"lead": "lead only", "named": "found", "class": "most likely"}[finding.verdict]

@@ -11,9 +11,11 @@ import pytest
 
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
-from doe_kc.discovery.search.law_variants import open_laws, with_law
+from doe_kc.discovery.search.law_variants import open_laws, other_laws, with_law
 from doe_kc.discovery.search.series_start import in_series, series_starts
 from doe_kc.discovery.thresholds import SERIES_RATIOS
+from doe_kc.effects._backbone import virgin_curve
+from doe_kc.effects._friction import BACKBONE_SHARES, EXPONENT, SPREAD
 from doe_kc.variables import VariableOptions, build_space
 from tests.discovery.cases import TUNABLE, library, nominal
 from tests.discovery.search.law_answers import agreeing, beside_a_hub, with_member
@@ -100,13 +102,24 @@ def test_a_spring_that_is_not_tuned_stays() -> None:
         assert mount == pytest.approx(column * ratio / (ratio - 1.0))
 
 
-def test_by_another_law_half_of_the_limit_is_where_it_was() -> None:
-    fit = agreeing()
-    laws = [h for h in open_laws(FRICTION) if h.law in ("duhem", "lognormal")]
-    for law in laws:
-        for start in series_starts(fit, FRICTION, law, MOUNT):
-            assert law in start.model.members and FRICTION not in start.model.members
-            assert math.isfinite(float(np.abs(start.z).max()))
+@pytest.mark.parametrize("name", ["iwan", "duhem", "lognormal"])
+def test_by_another_law_half_of_the_limit_is_where_the_mount_leaves_it(name: str) -> None:
+    """At (y - (r - 1) f R / k) / r, f = 1/2; Dahl's law over a travel d has half of it at y = d ln(2) / 2."""
+    current, travel = agreeing(), 0.25
+    z = current.z.copy()
+    z[-1] = FRICTION.sizes[1].amplitude(travel)
+    fit = replace(current, z=z)
+    rigid = fit.model.axle_at(z).values
+    spring = rigid["steering.column"] * rigid["scb.Tz"]
+    law = next(h for h in other_laws(FRICTION) if h.law == name)
+    starts = list(series_starts(fit, FRICTION, law, MOUNT))
+    for start, ratio in zip(starts, SERIES_RATIOS, strict=True):
+        y, taken = 0.5 * math.log(2.0) * travel, 0.5 * rigid["steering_friction.force"] / spring
+        values = start.model.axle_at(start.z).values
+        curve = virgin_curve(name, EXPONENT, SPREAD, BACKBONE_SHARES)  # type: ignore[arg-type]
+        half = values["steering_friction.presliding"] * curve.distance(0.5)
+        assert half == pytest.approx((y - (ratio - 1.0) * taken) / ratio, rel=0.01)
+        assert law in start.model.members and FRICTION not in start.model.members
 
 
 def test_only_a_friction_beside_a_spring_stands_on_a_compliance() -> None:
