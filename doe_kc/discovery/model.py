@@ -177,6 +177,10 @@ class EffectModel(FieldsOnly):
             yield h, slice(at, at + len(h.sizes))
             at += len(h.sizes)
 
+    def member(self, name: str) -> Hypothesis:
+        """The member of a name, by the law that the model has. KeyError for none."""
+        return {h.name: h for h in self.members}[name]
+
     def place(self, member: Hypothesis) -> slice:
         """Where the amplitudes of a member are in z."""
         return next(place for h, place in self.places() if h == member)

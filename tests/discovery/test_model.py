@@ -7,6 +7,7 @@ import pytest
 
 from doe_kc.axle import with_values
 from doe_kc.axle.parameters import names_touched
+from doe_kc.discovery.search.law_variants import other_laws
 from doe_kc.discovery.thresholds import DIRECTION_STEP
 from doe_kc.effects import EFFECTS
 from tests.discovery.cases import LOAD_CASES, library, model, nominal, space
@@ -44,6 +45,15 @@ def test_an_unequal_bushing_is_so_many_times_what_both_are_tuned_to(side: str, t
     for path in stiffnesses:
         assert axle.values[f"{path}@{twin}"] == pytest.approx(tuned[path], rel=1e-12)
         assert axle.values[f"{path}@{side}"] == pytest.approx(tuned[path] * 1.25**1.5, rel=1e-12)
+
+
+def test_a_member_is_the_one_of_its_name_by_the_law_that_the_model_has() -> None:
+    friction, mount = library("steering_friction", "rack_mount_compliance")
+    other = other_laws(friction)[0]
+    both = model("friction").extended(mount).extended(other)
+    assert both.member(friction.name) is other and both.member(mount.name) is mount
+    with pytest.raises(KeyError, match="strut_friction"):
+        both.member("strut_friction")
 
 
 def test_what_tuning_touches_are_all_values_that_it_changes() -> None:

@@ -151,7 +151,7 @@ def with_best_law(current: Fit, member: Hypothesis, workers: DiscoveryWorkers, u
     best = _with_closed_law(current, member, laws, workers, useful)
     if trace or best.residual_map.chance >= NOISE_CHANCE:
         return best
-    closed = next(h for h in best.model.members if h.name == member.name)
+    closed = best.model.member(member.name)
     free = best_fit(replace(with_most_numbers(best, [closed]), ceiling=useful), workers)
     return best if free is None or free.evidence <= best.evidence else free
 

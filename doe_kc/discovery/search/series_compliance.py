@@ -2,8 +2,8 @@
 
 A friction on a mount that yields makes nearly the loops of half the friction on a rigid one: the mount takes
 up the motion that the friction has before it slides. Beside a law that fits without it, such a compliance
-promises nothing to first order, and by another law it would be in the set. So compliances of the same part
-are fitted at their typical size, and what is less probable with them counts for the friction's size.
+promises nothing to first order, and by another law it would be in the set. So compliances in series with a
+friction are fitted at their typical size, and what is less probable with them counts for the friction's size.
 """
 
 from __future__ import annotations
@@ -30,7 +30,6 @@ from doe_kc.discovery.thresholds import (
     NOISE_CHANCE,
 )
 from doe_kc.discovery.workers import DiscoveryWorkers
-from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis
 
 
@@ -51,8 +50,6 @@ def with_series_compliances(
     """
     explained = search.with_law_discrepancy.residual_map.chance >= NOISE_CHANCE
     last, pairs = search.with_effects, _pairs(search, library)
-    if not explained:
-        pairs = [(member, h) for member, h in pairs if in_series(member, h)]
     firsts = [_start(last, member, compliance, member) for member, compliance in pairs]
     larger: list[HypothesisFit] = []
     for pair, start, fit in zip(pairs, firsts, _fits(firsts, workers), strict=True):
@@ -111,7 +108,7 @@ def _best(
     allowed = probable or _by_own_law(reached[k][0], last) or best.cost + 2.0 * FREE_SHAPE_LOSS < last.cost
     if not allowed:
         gain = min(gain, 0.5 * (last.cost - best.cost) + odds)
-    flexible = _has_more_numbers(search, pair[0]) and in_series(*pair)
+    flexible = _has_more_numbers(search, pair[0])
     ends = [f for start, f in reached if f is not None and flexible and _by_own_law(start, last)]
     alike = tuple(HypothesisFit(compliance, f, 0.5 * (last.cost - f.cost)) for f in ends)
     return _Reached(FitStart(model, best.z, last), best, gain, odds, allowed, alike)
@@ -134,15 +131,13 @@ def _fits(starts: Sequence[FitStart], workers: DiscoveryWorkers) -> list[Fit | N
 
 
 def _pairs(search: EffectSearch, library: Sequence[Hypothesis]) -> list[tuple[Hypothesis, Hypothesis]]:
-    """Each friction of the last set with each absent compliance of its part."""
+    """Each friction of the last set with each absent compliance in series with it."""
     last = search.with_effects
     return [
         (member, h)
         for member in frictions(last)
         for h in library
-        if EFFECTS[h.effect].part == EFFECTS[member.effect].part != "axle"
-        and any(size.growth == "compliance" for size in h.sizes)
-        and compatible(last.model, h)
+        if in_series(member, h) and compatible(last.model, h)
     ]
 
 

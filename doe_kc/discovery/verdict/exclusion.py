@@ -130,7 +130,7 @@ def _member_limits(fit: Fit, hypothesis: Hypothesis, critical: float) -> FloatAr
     friction that was not yet in the model. Nor does this say more of every effect: rubber is there for sure
     where only its mean over unlike bushings is open.
     """
-    member = next(h for h in fit.model.members if h.name == hypothesis.name)
+    member = fit.model.member(hypothesis.name)
     _, posterior = amplitude_estimates(fit, member)
     seen = {
         size.name: math.sqrt(max(0.0, sd**-2.0 - 1.0))

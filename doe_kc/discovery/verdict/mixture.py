@@ -83,26 +83,21 @@ def spread_between_laws(
 def _apart(member: Hypothesis, amplitudes: FloatArray, other: Fit) -> FloatArray:
     """(m,) by which a member's amplitudes differ in a fit that has it by any law; 0 for those of its law
     where that is another one."""
-    there, _ = amplitude_estimates(other, _named(member, other))
+    there, _ = amplitude_estimates(other, other.model.member(member.name))
     return _by_name(member, there, other, amplitudes) - amplitudes
 
 
 def _sd_there(member: Hypothesis, sd: FloatArray, other: Fit) -> FloatArray:
     """(m,) standard deviations of a member's amplitudes in such a fit; sd for those of its law where that is
     another one."""
-    _, there = amplitude_estimates(other, _named(member, other))
+    _, there = amplitude_estimates(other, other.model.member(member.name))
     return _by_name(member, there, other, sd)
-
-
-def _named(member: Hypothesis, fit: Fit) -> Hypothesis:
-    """A member as it is in a fit."""
-    return next(h for h in fit.model.members if h.name == member.name)
 
 
 def _by_name(member: Hypothesis, numbers: FloatArray, other: Fit, own: FloatArray) -> FloatArray:
     """(m,) numbers (k,) of a member's sizes in another fit, in the order of its own; `own` for those that the
     other law does not have, or in another sense."""
-    there = _named(member, other)
+    there = other.model.member(member.name)
     known = dict(zip((s.name for s in there.sizes), numbers.tolist(), strict=True))
     same = [there.law == member.law or not s.shape for s in member.sizes]
     return np.array(

@@ -1,4 +1,4 @@
-"""Why the size of a friction is told so widely: what it would be beside a compliance of its part."""
+"""Why the size of a friction is told so widely: what it would be beside a compliance in series with it."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from doe_kc.discovery.fit import Fit, amplitude_estimates
 from doe_kc.discovery.result import Finding
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.series_start import in_series
-from doe_kc.discovery.thresholds import LARGER_SET_ODDS, SIZE_APART
+from doe_kc.discovery.thresholds import LARGER_SET_ODDS, RELEVANT, SIZE_APART
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.effects.hypothesis import Hypothesis, Size
 from doe_kc.effects.words import effect_label
@@ -44,11 +44,15 @@ def _sentence(search: EffectSearch, compared: Sequence[Alternatives], finding: F
 
 
 def _beside(search: EffectSearch, own: Hypothesis) -> Iterator[tuple[float, str]]:
-    """What a friction is with a compliance, and which."""
+    """What a friction is with a compliance, and which; without it where it is a trace."""
     for fit in (*(one.fit for one in search.larger), *search.optima):
         for compliance in (h for h in fit.model.members if in_series(own, h)):
-            stiffness = _words(_size(compliance), _value(compliance, fit))
-            yield _value(own, fit), f"with {effect_label(compliance.effect).lower()} of {stiffness}"
+            label, amplitude = effect_label(compliance.effect).lower(), _amplitude(compliance, fit)
+            stiffness = _words(_size(compliance), _size(compliance).value(amplitude))
+            yield (
+                _value(own, fit),
+                f"without {label}" if amplitude < RELEVANT else f"with {label} of {stiffness}",
+            )
 
 
 def _without(compared: Sequence[Alternatives], own: Hypothesis) -> Iterator[tuple[float, str]]:
@@ -60,9 +64,14 @@ def _without(compared: Sequence[Alternatives], own: Hypothesis) -> Iterator[tupl
 
 def _value(member: Hypothesis, fit: Fit) -> float:
     """Of the size that says how much, in a fit that has the member by any law."""
-    there = next(h for h in fit.model.members if h.name == member.name)
+    return _size(member).value(_amplitude(member, fit))
+
+
+def _amplitude(member: Hypothesis, fit: Fit) -> float:
+    """Of that size, in typical ones."""
+    there = fit.model.member(member.name)
     amplitudes, _ = amplitude_estimates(fit, there)
-    return _size(there).value(float(amplitudes[there.sizes.index(_size(there))]))
+    return float(amplitudes[there.sizes.index(_size(there))])
 
 
 def _size(member: Hypothesis) -> Size:

@@ -127,6 +127,18 @@ def test_a_trace_is_asked_for_by_its_own_law_alone(taken: list[FitStart]) -> Non
     assert asked.count == 1 and not taken
 
 
+@pytest.mark.usefixtures("explained")
+def test_a_compliance_across_the_motion_of_a_friction_is_not_in_series_with_it() -> None:
+    """A strut's bending beside the friction along the strut: five fits of it took a second and changed none
+    of the sizes."""
+    (friction,) = library("strut_friction")
+    before = alone("friction")
+    last = replace(before.with_effects, model=model("friction").extended(friction))
+    asked = Counted()
+    assert with_series_compliances(replace(before, with_effects=last), EVERY, asked).with_effects is last
+    assert asked.count == 0
+
+
 @pytest.mark.parametrize(("worse", "counts"), [(1e9, True), (0.0, False)])
 def test_a_mount_must_fit_better_than_the_free_shape_without_it(
     worse: float, counts: bool, taken: list[FitStart], monkeypatch: pytest.MonkeyPatch

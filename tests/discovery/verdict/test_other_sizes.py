@@ -46,6 +46,14 @@ def test_the_one_furthest_off_is_told() -> None:
     )
 
 
+def test_beside_a_mount_that_hardly_yields_it_is_the_one_without() -> None:
+    """The typical one of 6000 N/mm is a trace from 60 000 on."""
+    for mount, words in ((58e3, "with rack-mount compliance of 58000 N/mm"), (62e3, "without rack-mount")):
+        search = replace(found().search, optima=(on_a_mount(310.0, mount),))
+        (sentence,) = other_sizes(search, [], found().findings)
+        assert sentence.startswith(f"{OTHER_SIZE}steering friction would be 310 N {words}")
+
+
 @pytest.mark.parametrize(("gain", "told"), [(1.0, True), (LARGER_SET_ODDS + 1.0, False)])
 def test_without_a_mount_that_may_not_be_there_it_is_another_one(gain: float, told: bool) -> None:
     """184 +- 52 N on a mount with odds of 1 to 2, 120 N without."""
