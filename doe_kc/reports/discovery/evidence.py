@@ -13,7 +13,9 @@ from matplotlib.patches import Patch
 from doe_kc.discovery.result import Discovery
 from doe_kc.discovery.search.decision import HypothesisGain, Step
 from doe_kc.discovery.thresholds import ACCEPTED_ODDS
+from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.effects.words import hypothesis_label, hypothesis_words
+from doe_kc.reports.discovery.words import other_laws_words
 from doe_kc.reports.drawing import style
 from doe_kc.reports.drawing.panel import PageBox, Panel
 from doe_kc.reports.drawing.panel_axis import PanelAxis
@@ -61,14 +63,19 @@ class EvidenceStep:
 
 
 def evidence_steps(discovery: Discovery) -> list[EvidenceStep]:
-    """Every step, the last one with nothing to add; candidates best first."""
+    """Every step, the last one with nothing to add; candidates best first. A title says which members have
+    another law than in the step before."""
     last = len(discovery.search.steps) - 1
-    out = []
+    out: list[EvidenceStep] = []
+    before: Sequence[Hypothesis] = ()
     for i, step in enumerate(discovery.search.steps):
         names = ", ".join(hypothesis_words(h) for h in step.members)
         title = f"Step {i + 1}: re-tuned {f'with {names}' if names else 'without an effect'}"
+        changed = other_laws_words(before, step.members)
+        law = f"; {changed}" if changed else ""
         end = "" if step.accepted or i < last else "; nothing more is asked for"
-        out.append(EvidenceStep(title + end, _candidates(step), ACCEPTED_ODDS * step.temper))
+        out.append(EvidenceStep(title + law + end, _candidates(step), ACCEPTED_ODDS * step.temper))
+        before = step.members
     return out
 
 

@@ -9,13 +9,13 @@ from textwrap import fill
 
 from doe_kc.discovery.result import Discovery
 from doe_kc.effects.hypothesis import Hypothesis
-from doe_kc.effects.words import hypothesis_label
+from doe_kc.effects.words import hypothesis_words
 from doe_kc.reports.discovery.gaps import MODEL_COLOURS
+from doe_kc.reports.discovery.words import other_laws_words
 from doe_kc.reports.drawing import style
 from doe_kc.reports.drawing.panel import PageBox
 from doe_kc.reports.drawing.sheet import Sheet
 from doe_kc.reports.drawing.words import POINTS, text_width
-from doe_kc.reports.names import within_sentence
 
 
 @dataclass(frozen=True)
@@ -45,16 +45,11 @@ def gap_steps(discovery: Discovery) -> list[GapStep]:
 
 def _changed(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> str:
     """`+ steering friction`, `− strut bending`, `other law of strut friction`."""
-    laws = {h.name: h.law for h in before}
-    new = [f"+ {_name(h)}" for h in after if h.name not in laws]
-    gone = [f"− {_name(h)}" for h in before if h.name not in {a.name for a in after}]
-    bent = [_name(h) for h in after if h.law != laws.get(h.name, h.law)]
-    changed = [f"other law of {' and '.join(bent)}"] if bent else []
-    return ", ".join([*new, *gone, *changed]) or "refitted"
-
-
-def _name(hypothesis: Hypothesis) -> str:
-    return within_sentence(hypothesis_label(hypothesis))
+    known, left = ({h.name for h in members} for members in (before, after))
+    new = [f"+ {hypothesis_words(h)}" for h in after if h.name not in known]
+    gone = [f"− {hypothesis_words(h)}" for h in before if h.name not in left]
+    changed = other_laws_words(before, after)
+    return ", ".join([*new, *gone, *([changed] if changed else [])]) or "refitted"
 
 
 STEPS_WIDTH, STEPS_ROW, STEPS_TOP, STEPS_FOOT = 8.0, 0.34, 0.22, 0.55

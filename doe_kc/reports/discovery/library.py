@@ -38,8 +38,9 @@ class LibraryRow:
 
     @property
     def hidden_by(self) -> str:
-        """Parameters that take the effect's place, with their move in standard deviations of the prior."""
-        return ", ".join(f"{path} ({move:+.1f} sd)" for path, move in self.status.hidden_by)
+        """Parameters that take the effect's place, with their move in standard deviations of the prior, those
+        that round to none left out."""
+        return ", ".join(f"{path} ({move:+.1f} sd)" for path, move in self.status.hidden_by if round(move, 1))
 
     @property
     def parts_to_measure(self) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from doe_kc.axle.design_parameters import design_parameters
-from doe_kc.axle.model import Axle
+from doe_kc.axle.model import FORCE_AXES, Axle
 from doe_kc.axle.places import places_of
 from doe_kc.curves import response_name
 from doe_kc.discovery.result import Discovery, Finding, VerdictKind
@@ -15,7 +15,7 @@ from doe_kc.discovery.screening.contrasts import Contrast
 from doe_kc.discovery.verdict.exclusion import HypothesisStatus, Status, exclusion_limit
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.effects.words import effect_label
+from doe_kc.effects.words import effect_label, hypothesis_words
 from doe_kc.ground.numbers import number, unit_words
 from doe_kc.load_cases import case_label
 
@@ -58,6 +58,14 @@ def own_sentences(discovery: Discovery) -> list[str]:
     return [s for s in discovery.sentences if not (discovery.unexplained and s.startswith("Unexplained:"))]
 
 
+def other_laws_words(before: Sequence[Hypothesis], after: Sequence[Hypothesis]) -> str:
+    """Which members of a set have another law than in the one before: `other law of strut friction`; "" for
+    none."""
+    laws = {h.name: h.law for h in before}
+    names = [hypothesis_words(h) for h in after if h.law != laws.get(h.name, h.law)]
+    return f"other law of {' and '.join(names)}" if names else ""
+
+
 def physics_words(finding: Finding) -> str:
     """What happens in the car, and what it means at the sizes that were estimated."""
     options: dict[str, Any] = dict(finding.hypothesis.fixed)
@@ -90,7 +98,7 @@ def wheels(contrast: Contrast) -> str:
 def limit_words(standing: HypothesisStatus) -> str:
     """From which size on the effect would have been seen, e.g. `k_N_mm below 9000 N/mm`.
 
-    Of a list all components: `|LLR| above 370, 910, – N`.
+    Of a list the components that have a limit: `|LLR| above 370 (x), 910 (y) N`.
     """
     if not math.isfinite(standing.detectable) or not standing.hypothesis.sizes:
         return "–"
@@ -113,17 +121,20 @@ def _limit(size: Size, amplitudes: Sequence[float]) -> str:
         return ""
     if all(map(math.isnan, said)):
         return f"{size.key} not shown"
-    value = f"{', '.join(_number_at(size, a) for a in said)}{unit_words(size.unit)}"
+    value = f"{_numbers(size, said)}{unit_words(size.unit)}"
     if size.growth == "compliance":
         return f"{size.key} below {value}"
     if size.growth == "factor":
-        low = ", ".join(_number_at(size, -a, 4) for a in said)
-        return f"{size.key} below {low} or above {', '.join(_number_at(size, a, 4) for a in said)}"
+        low = _numbers(size, [-a for a in said], 4)
+        return f"{size.key} below {low} or above {_numbers(size, said, 4)}"
     return f"{'|' + size.key + '|' if size.signed else size.key} above {value}"
 
 
-def _number_at(size: Size, amplitude: float, digits: int = 3) -> str:
-    return number(size.value(amplitude), digits) if math.isfinite(amplitude) else "–"
+def _numbers(size: Size, amplitudes: Sequence[float], digits: int = 3) -> str:
+    """At the amplitudes that are known; those of a list with their axes."""
+    axes = [f" ({axis[-1]})" for axis in FORCE_AXES] if len(amplitudes) > 1 else [""]
+    known = ((a, axis) for a, axis in zip(amplitudes, axes, strict=True) if math.isfinite(a))
+    return ", ".join(f"{number(size.value(a), digits)}{axis}" for a, axis in known)
 
 
 def typical_words(hypothesis: Hypothesis) -> str:

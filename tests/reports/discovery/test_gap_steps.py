@@ -8,6 +8,7 @@ from itertools import pairwise
 import pytest
 
 from doe_kc.reports.discovery.effect_words import effect_words, effect_words_table, size_name
+from doe_kc.reports.discovery.evidence import evidence_steps
 from doe_kc.reports.discovery.gap_steps import GapStep, gap_steps, gap_steps_figure
 from doe_kc.reports.drawing.words import extent
 from tests.discovery.cases import discovery
@@ -42,6 +43,9 @@ def test_a_law_that_changed_is_a_step_of_its_own() -> None:
     search = replace(found.search, steps=(found.search.steps[0], before, after))
     labels = [s.label for s in gap_steps(replace(found, search=search))]
     assert labels[2:4] == ["+ steering friction", "other law of steering friction"]
+    titles = [s.title for s in evidence_steps(replace(found, search=search))]
+    assert titles[1] == "Step 2: re-tuned with steering friction"
+    assert titles[2].startswith("Step 3: re-tuned with steering friction; other law of steering friction")
 
 
 @pytest.mark.parametrize("car", ["none", "two"])

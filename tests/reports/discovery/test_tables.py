@@ -23,7 +23,7 @@ from doe_kc.reports.discovery.isolability import (
     isolability,
     isolability_rows,
 )
-from doe_kc.reports.discovery.library import LIBRARY_COLUMNS, library_table
+from doe_kc.reports.discovery.library import LIBRARY_COLUMNS, LibraryRow, library_table
 from doe_kc.reports.discovery.parameters import tuned_parameters, tuned_table
 from doe_kc.reports.discovery.tables import disagreement_table, gap_table, held_out_table
 from doe_kc.reports.discovery.words import headline, limit_words
@@ -260,11 +260,18 @@ def test_a_component_that_the_records_do_not_show_has_no_limit() -> None:
     sizes = tuple(Size("LLR", 600.0, "N", index=i, signed=True) for i in range(3))
     preload = Hypothesis("bushing_preload", "LLR", sizes)
     standing = HypothesisStatus(preload, "excluded", 0.5, 0.0, (), (), (0.5, 1.5, 40.0))
-    assert limit_words(standing) == "|LLR| above 300, 900, – N"
+    assert limit_words(standing) == "|LLR| above 300 (x), 900 (y) N"
     hub = Hypothesis("hub_compliance", None, tuple(Size(k, 6000.0, "Nm/deg", "compliance") for k in "ab"))
     assert limit_words(HypothesisStatus(hub, "excluded", 0.5, 0.0, (), (), (0.5, 4.0))) == (
         "a below 12000 Nm/deg; b not shown"
     )
+
+
+def test_a_parameter_that_hardly_moves_hides_nothing() -> None:
+    """`sff.Fy (−0.0 sd)` stood beside a bushing that the records do not show."""
+    moves = (("LLR.x", 0.4), ("sff.Fy", -0.06), ("sfr.Fy", -0.04), ("RIB.z", 0.0))
+    standing = HypothesisStatus(Hypothesis("hub_compliance", None, ()), "excluded", 0.5, 0.0, moves, (), ())
+    assert LibraryRow(standing, {}, "").hidden_by == "LLR.x (+0.4 sd), sff.Fy (-0.1 sd)"
 
 
 def test_places_read_well() -> None:
