@@ -107,6 +107,11 @@ class Study:
         return self.source.parent
 
     @property
+    def axle_words(self) -> str:
+        """Name of the axle and of its file, `Front axle, McPherson (axle.toml)`."""
+        return f"{self.axle.name} ({self.axle_path.name})"
+
+    @property
     def twin_path(self) -> Path:
         """The axle file of the twin: the study's own unless it names another."""
         named = self.solver.twin

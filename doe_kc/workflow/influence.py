@@ -159,7 +159,7 @@ def write_influence(
         date=date.today().isoformat(),
         selection=study_influence.selection,
         notes={
-            "Axle": f"{study.axle.name} ({study.axle_path.name})",
+            "Axle": study.axle_words,
             "Selection": "sd of a difference: standard error of the target and 3 % of it, combined",
             "Effects": ", ".join(study.axle.effects) or "none",
         },
@@ -181,6 +181,7 @@ def write_influence(
         folder / "report.html",
         matrix,
         study=study.name,
+        axle=study.axle_words,
         date=date.today().isoformat(),
         labels=study.axle.labels,
         overall=study_influence.overall,

@@ -116,7 +116,12 @@ def write_tolerance(
     )
     written.append(
         write_tolerance_page(
-            folder / "report.html", tolerance, study=study.name, date=today, labels=study.axle.labels
+            folder / "report.html",
+            tolerance,
+            study=study.name,
+            axle=study.axle_words,
+            date=today,
+            labels=study.axle.labels,
         )
     )
     link_pages(folder.parent)

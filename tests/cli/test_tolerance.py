@@ -53,6 +53,7 @@ def test_tolerance(study: Path) -> None:
         "tolerance.xlsx", "report.html", "characteristics.csv", "contributions.csv", "tightening.csv",
         "scatter.csv", "bands.csv", "cars.csv",
     }  # fmt: skip
+    assert "(axle.toml);" in (study / "out" / "tolerance" / "report.html").read_text("utf-8")
     again = succeeds("tolerance", study, "--workers", "1", "--json", file)
     assert "0 solved now" in again.out
     repeated = json.loads(file.read_text("utf-8"))
@@ -68,6 +69,7 @@ def test_global_sensitivities(study: Path) -> None:
     assert document["morris"]["mu_star"]["value"]["vertical.bump_steer"]["ROB.z"] > 1.0
     assert "Morris: 12 designs" in outcome.out and "PAWN: 50 designs" in outcome.out
     folder = study / "out" / "influence"
+    assert "(axle.toml);" in (folder / "report.html").read_text("utf-8")
     assert (folder / "influence_global.csv").read_text("utf-8").startswith("name,load_case")
     from openpyxl import load_workbook
 

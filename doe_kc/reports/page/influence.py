@@ -121,10 +121,12 @@ def write_influence_page(
     influence: Influence,
     *,
     study: str,
+    axle: str,
     date: str,
     labels: Mapping[str, str] | None = None,
     overall: GlobalSensitivity | None = None,
 ) -> Path:
-    """Write the page; RunError when it cannot be written. labels: of the axle's points and elements."""
+    """Write the page; RunError when it cannot be written. axle: which one it is of. labels: of its points and
+    elements."""
     sections = influence_sections(influence, overall, study)
-    return write_page(path, f"Influence: {study}", sections, subtitle=date, labels=labels)
+    return write_page(path, f"Influence: {study}", sections, subtitle=f"{axle}; {date}", labels=labels)

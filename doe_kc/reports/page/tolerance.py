@@ -81,8 +81,15 @@ def _picture(page: Sheet, words: str, *, folded: bool = False) -> Markup:
 
 
 def write_tolerance_page(
-    path: Path, tolerance: Tolerance, *, study: str, date: str, labels: Mapping[str, str] | None = None
+    path: Path,
+    tolerance: Tolerance,
+    *,
+    study: str,
+    axle: str,
+    date: str,
+    labels: Mapping[str, str] | None = None,
 ) -> Path:
-    """Write the page; RunError when it cannot be written. labels: of the axle's points and elements."""
+    """Write the page; RunError when it cannot be written. axle: which one it is of. labels: of its points and
+    elements."""
     sections = tolerance_sections(tolerance, study=study)
-    return write_page(path, f"Tolerance: {study}", sections, subtitle=date, labels=labels)
+    return write_page(path, f"Tolerance: {study}", sections, subtitle=f"{axle}; {date}", labels=labels)
