@@ -238,7 +238,7 @@ between two starts of rubber's spread."""
 SERIES_RATIOS = (1.3, 1.7, 2.2)
 """times the limit of a friction and the spring beside it on a rigid mount, those on a compliance of the same
 loops from which fits begin. A steering column of 2000 N/mm on mounts of the rack of 8700, 4900 and 3700 N/mm;
-374 N of two stages on a ratio of 1.8 were 262 +- 6 N, as well as 389 N, which fits from 2.2 found alone."""
+374 N of two stages on a ratio of 1.8 were 262 +- 6 N, where 389 N fit as well: found from 2.2 alone."""
 NEAR_RATIO = 1.1
 """-, change of that ratio below which a fit is there already. From ratios of 1.3 to 2 fits of a friction of
 two stages ended at the same 1.5."""

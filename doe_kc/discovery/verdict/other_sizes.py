@@ -11,7 +11,7 @@ from doe_kc.discovery.search.series_start import in_series
 from doe_kc.discovery.thresholds import LARGER_SET_ODDS, RELEVANT, SIZE_APART
 from doe_kc.discovery.verdict.alternatives import Alternatives
 from doe_kc.effects.hypothesis import Hypothesis, Size
-from doe_kc.effects.words import effect_label
+from doe_kc.effects.words import hypothesis_words
 from doe_kc.ground.numbers import number, unit_words
 
 OTHER_SIZE = "Another size: "
@@ -40,26 +40,26 @@ def _sentence(search: EffectSearch, compared: Sequence[Alternatives], finding: F
     value, beside = max(others, key=lambda one: abs(one[0] - told), default=(told, ""))
     if abs(value - told) > SIZE_APART * abs(told):
         size = _words(_size(own), value)
-        yield f"{OTHER_SIZE}{effect_label(own.effect).lower()} would be {size} {beside}; {HARDLY_TOLD}"
+        yield f"{OTHER_SIZE}{hypothesis_words(own)} would be {size} {beside}; {HARDLY_TOLD}"
 
 
 def _beside(search: EffectSearch, own: Hypothesis) -> Iterator[tuple[float, str]]:
     """What a friction is with a compliance, and which; without it where it is a trace."""
     for fit in (*(one.fit for one in search.larger), *search.optima):
         for compliance in (h for h in fit.model.members if in_series(own, h)):
-            label, amplitude = effect_label(compliance.effect).lower(), _amplitude(compliance, fit)
-            stiffness = _words(_size(compliance), _size(compliance).value(amplitude))
-            yield (
-                _value(own, fit),
-                f"without {label}" if amplitude < RELEVANT else f"with {label} of {stiffness}",
-            )
+            if _amplitude(compliance, fit) < RELEVANT:
+                beside = f"without {hypothesis_words(compliance)}"
+            else:
+                stiffness = _words(_size(compliance), _value(compliance, fit))
+                beside = f"with {hypothesis_words(compliance)} of {stiffness}"
+            yield _value(own, fit), beside
 
 
 def _without(compared: Sequence[Alternatives], own: Hypothesis) -> Iterator[tuple[float, str]]:
     """What it is without one of the last set, where that is no less probable than such sets may be."""
     for one in compared:
         if in_series(own, one.hypothesis) and one.trials[0].gain / one.temper < LARGER_SET_ODDS:
-            yield _value(own, one.without), f"without {effect_label(one.hypothesis.effect).lower()}"
+            yield _value(own, one.without), f"without {hypothesis_words(one.hypothesis)}"
 
 
 def _value(member: Hypothesis, fit: Fit) -> float:

@@ -78,6 +78,7 @@ def test_from_one_stiffness_to_another() -> None:
     first, *others = series_starts(fit, FREE, FREE, MOUNT)
     there = replace(fit, model=first.model, z=first.z)
     starts = list(series_starts(there, FREE, FREE, MOUNT))
+    assert len(others) == len(SERIES_RATIOS) - 1
     for start, other in zip(starts, others, strict=True):
         np.testing.assert_allclose(numbers(start), numbers(other), rtol=0.03)
         assert start.model == there.model and start.near is there

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from doe_kc.discovery.fit import Fit
@@ -47,8 +48,13 @@ def test_the_one_furthest_off_is_told() -> None:
 
 
 def test_beside_a_mount_that_hardly_yields_it_is_the_one_without() -> None:
-    """The typical one of 6000 N/mm is a trace from 60 000 on."""
-    for mount, words in ((58e3, "with rack-mount compliance of 58000 N/mm"), (62e3, "without rack-mount")):
+    """The typical one of 6000 N/mm is a trace from 60 000 on; none at all has no stiffness to tell."""
+    cases = {
+        58e3: "with rack-mount compliance of 58000 N/mm",
+        62e3: "without rack-mount",
+        np.inf: "without rack",
+    }
+    for mount, words in cases.items():
         search = replace(found().search, optima=(on_a_mount(310.0, mount),))
         (sentence,) = other_sizes(search, [], found().findings)
         assert sentence.startswith(f"{OTHER_SIZE}steering friction would be 310 N {words}")
