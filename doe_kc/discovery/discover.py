@@ -13,6 +13,7 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result import CurveGap, Discovery, Finding, FindingVerdict, Gap
 from doe_kc.discovery.screening.disagreement import raw_map
+from doe_kc.discovery.screening.scan import Scan
 from doe_kc.discovery.screening.screen import Screened
 from doe_kc.discovery.search.bound_check import beyond, search_within_bounds
 from doe_kc.discovery.search.compatibility import compatible
@@ -51,7 +52,7 @@ def discover(
     nominal = model.residual(model.centre)
     tuned, with_effects = search.tuned, search.with_effects
     tuned_map, residual_map = tuned.residual_map, search.with_law_discrepancy.residual_map
-    pending_scan = None if tuned_map.agrees else workers.scan(tuned, temper(search.with_law_discrepancy))
+    pending_scan = None if tuned_map.agrees else workers.scan(tuned)
     pending = workers.held_out(tuned, with_effects, search.with_law_discrepancy) if compared else None
     members = findings(search, compared, workers)
     relevant = tuple(sorted((f for f in members if f.relevant), key=lambda f: -f.detectability))
@@ -59,7 +60,8 @@ def discover(
     outcome = verdict(relevant, residual_map, predictions, tuned, with_effects)
     set_adequacy = adequacy(residual_map, predictions)
     relevant = with_verdicts(relevant, compared, outcome, search.with_law_discrepancy, set_adequacy)
-    interface_scan = None if pending_scan is None else pending_scan()
+    scanned = None if pending_scan is None else pending_scan()
+    interface_scan = None if scanned is None else Scan.of(scanned, temper(search.with_law_discrepancy))
     decoy = best_decoy(compared, relevant)
     gap, curve_gaps = gaps(model.likelihood, nominal, tuned, with_effects, decoy.fit if decoy else None)
     traces = shown_traces(members, set_adequacy)

@@ -11,15 +11,17 @@ from typing import Any, TypeVar
 import numpy as np
 
 from doe_kc.campaign.executors import InProcess
+from doe_kc.discovery.deferred_tasks import begin_some, under_way
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_arrays import fit_arrays, fit_of_arrays, screening_arrays, screening_of_arrays
 from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_of
-from doe_kc.discovery.screening.scan import Scan, scan
+from doe_kc.discovery.screening.scan import Place
 from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS, FREE_SHAPE_LOSS
-from doe_kc.discovery.verdict.held_out import HeldOut, held_out
+from doe_kc.discovery.verdict.held_out import HeldOut, HeldOutScore, held_out_scores
+from doe_kc.discovery.without_effects import WithoutEffects, load_cases
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
@@ -47,6 +49,7 @@ class DiscoveryWorkers:
         self._told = watch
         self._begun = 0
         self._workers = workers
+        self._without_effects: WithoutEffects | None = None
 
     def watch(self, words: str, steps: int) -> None:
         """Tell of steps that are done."""
@@ -161,48 +164,59 @@ class DiscoveryWorkers:
             self.watch("solving", 1)
         return out
 
+    def defer(self, tuned: Fit) -> None:
+        """Have what a verdict takes of the re-tuned axle done where workers would be without work."""
+        self._without_effects = WithoutEffects.of(tuned)
+
     def held_out(
         self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit
     ) -> Callable[[], tuple[HeldOut, ...]]:
-        """Begins to predict every load case of the records from the others, see `held_out`; what is returned
-        waits for it."""
-        cases = list(dict.fromkeys(c.load_case for c in tuned.model.likelihood.curves))
-        predictions: dict[str, HeldOut] = {}
-        parts = min(len(cases), self._workers)  # each is sent three fits, of some 50 MB together
-        groups = [cases[k::parts] for k in range(parts)]
-        futures = [
-            self._executor.submit(_held_out_many, tuned, with_effects, with_discrepancy, group)
-            for group in groups
+        """Begins to predict every load case of the records from the others, see `held_out_scores`; what is
+        returned waits for it."""
+        cases = load_cases(tuned)
+        parts = min(len(cases), self._workers)  # each is sent two fits, of some 30 MB together
+        with_effect = [
+            self._executor.submit(_held_out_scores, with_effects, with_discrepancy, cases[k::parts])
+            for k in range(parts)
         ]
+        without = {case: task.begin(self._executor) for case, task in self._of_tuned(tuned).held_out.items()}
 
         def waited() -> tuple[HeldOut, ...]:
             self._begun += len(cases)
-            for future in as_completed(futures):
-                predictions.update((r.load_case, r) for r in future.result())
+            scores: dict[str, tuple[HeldOutScore, HeldOutScore]] = {}
+            for future in as_completed(with_effect):
+                scores |= future.result()
                 self.watch("load cases held out", len(future.result()))
-            return tuple(predictions[case] for case in cases)
+            return tuple(HeldOut(case, without[case].result(), *scores[case]) for case in cases)
 
         return waited
 
-    def scan(self, tuned: Fit, temper: float) -> Callable[[], Scan | None]:
-        """Begins the generic scan at a model; what is returned waits for it.
+    def scan(self, tuned: Fit) -> Callable[[], list[tuple[Place, float]] | None]:
+        """Begins the generic scan at a model, see `scanned_places`; what is returned waits for it.
 
         None when its axle has no equilibrium with the instruments in.
         """
-        future = self._executor.submit(_scan, tuned, temper)
+        future = self._of_tuned(tuned).scan.begin(self._executor)
         self._begun += 1
 
-        def waited() -> Scan | None:
+        def waited() -> list[tuple[Place, float]] | None:
             result = future.result()
             self.watch("scanning every interface", 1)
             return result
 
         return waited
 
+    def _of_tuned(self, tuned: Fit) -> WithoutEffects:
+        known = self._without_effects
+        if known is None or known.tuned is not tuned:
+            known = self._without_effects = WithoutEffects.of(tuned)
+        return known
+
     def _run(self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
         """(place, result) of every task as it is done; in this process one is done before the next begins.
 
-        No more are begun ahead than keep every worker busy: what they are given is large.
+        No more are begun ahead than keep every worker busy: what they are given is large. Beside a single
+        task the other workers begin deferred ones: beside several those would hold up what comes next.
         """
         if isinstance(self._executor, InProcess):
             for i, call in enumerate(arguments):
@@ -212,34 +226,37 @@ class DiscoveryWorkers:
         begun: dict[Future[T], int] = {}
         for i, call in islice(following, TASKS_AHEAD * self._workers):
             begun[self._executor.submit(task, *call)] = i
+        alone = len(begun) == 1
         while begun:
-            for future in wait(begun, return_when=FIRST_COMPLETED).done:
+            deferred = self._begin_deferred() if alone else set()
+            for future in wait({*begun, *deferred}, return_when=FIRST_COMPLETED).done - deferred:
                 place = begun.pop(future)
                 for i, call in islice(following, 1):
                     begun[self._executor.submit(task, *call)] = i
                 yield place, future.result()
+
+    def _begin_deferred(self) -> set[Future[Any]]:
+        """Deferred tasks that are under way, on all workers but one."""
+        if self._without_effects is None:
+            return set()
+        tasks = self._without_effects.tasks
+        begin_some(tasks, self._executor, self._workers - 1)
+        return under_way(tasks, self._executor)
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:
     return [screen(fit, h, shape) for h, shape in starts]
 
 
-def _held_out_many(
-    tuned: Fit, with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
-) -> list[HeldOut]:
-    return [held_out(tuned, with_effects, with_discrepancy, case) for case in cases]
+def _held_out_scores(
+    with_effects: Fit, with_discrepancy: Fit, cases: Sequence[str]
+) -> dict[str, tuple[HeldOutScore, HeldOutScore]]:
+    return {case: held_out_scores(with_effects, with_discrepancy, case) for case in cases}
 
 
 def _residual(model: EffectModel, z: FloatArray) -> FloatArray | None:
     try:
         return model.residual(z)
-    except NotConverged:
-        return None
-
-
-def _scan(tuned: Fit, temper: float) -> Scan | None:
-    try:
-        return scan(tuned, temper=temper)
     except NotConverged:
         return None
 

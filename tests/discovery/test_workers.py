@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,9 +16,11 @@ from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import Arrays, ResultCache
+from doe_kc.discovery.screening.scan import scanned_places
 from doe_kc.discovery.screening.screen import effort
 from doe_kc.discovery.search.baseline import tune
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS
+from doe_kc.discovery.without_effects import load_cases
 from doe_kc.discovery.workers import TASKS_AHEAD, DiscoveryWorkers
 from doe_kc.solver.result import Failure, NotConverged
 from tests.discovery.cases import library, model
@@ -205,3 +208,29 @@ def test_the_other_starts_are_given_up_where_they_promise_less_than_the_first(tu
     first, _, last = Noted().fits([near, near, far], "", enough=lambda refit: False)
     assert first is not None and last is not None and not last.converged
     assert given == [np.inf, first.cost + 2.0 * FREE_SHAPE_LOSS, 7.0]
+
+
+def test_deferred_tasks_begin_beside_a_single_task_alone(tuned: Fit) -> None:
+    """Beside several they would hold up what comes next; what has not begun does when it is asked for."""
+    cases = load_cases(tuned)
+    for values, begun in (([1.0], 1), ([1.0, 2.0], 0)):
+        with ThreadPoolExecutor(2) as executor:
+            workers = DiscoveryWorkers(executor, workers=2)
+            workers.defer(tuned)
+            deferred = workers._of_tuned(tuned)
+            given = [(-v,) for v in values]
+            assert sorted(result for _, result in workers._run(abs, given)) == values
+            assert sum(not task.waits for task in deferred.tasks) >= begun
+            if not begun:
+                assert all(task.waits for task in deferred.tasks)
+            scanned = workers.scan(tuned)()
+            predictions = workers.held_out(tuned, tuned, tuned)()
+    assert [p.load_case for p in predictions] == cases
+    assert all(p.tuned == p.with_effect == p.law_granted for p in predictions)
+    assert scanned is not None and scanned[0] == scanned_places(tuned)[0]
+
+
+def test_what_is_known_of_another_re_tuned_axle_is_not_taken(tuned: Fit) -> None:
+    workers = DiscoveryWorkers()
+    workers.defer(replace(tuned, z=tuned.z.copy()))
+    assert workers._of_tuned(tuned).tuned is tuned

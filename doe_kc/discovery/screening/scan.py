@@ -8,7 +8,7 @@ that physics allows.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import nnls
@@ -75,23 +75,30 @@ class Scan:
     interface: str | None
     """The interface whose summed probability is above PLACE_PROBABILITY, None without one."""
 
+    @staticmethod
+    def of(scanned: Sequence[tuple[Place, float]], temper: float = 1.0) -> Scan:
+        """scanned: see `scanned_places`. temper: ln evidence is divided by it."""
+        logs = np.array([gain for _, gain in scanned]) / temper
+        shares = np.exp(logs - logs.max()) / np.exp(logs - logs.max()).sum()
+        places = tuple(
+            replace(place, probability=float(share))
+            for (place, _), share in zip(scanned, shares, strict=True)
+        )
+        return Scan(places, _sure_interface(places))
 
-def scan(tuned: Fit, *, temper: float = 1.0) -> Scan:
-    """The scan at a model without effects. temper: ln evidence is divided by it. NotConverged as `solve`."""
+
+def scanned_places(tuned: Fit) -> list[tuple[Place, float]]:
+    """Every place with its ln evidence at a model without effects, best first, yet without probabilities.
+
+    NotConverged as `solve`.
+    """
     axle = tuned.model.axle_at(tuned.z)
     influences = interface_influences(axle, tuned.model.solutions(axle))
     scored: list[tuple[Place, float]] = []
     for law in LAWS:
         scored += _of_law(law, influences, tuned)
     scored += _of_rubber(influences, tuned)
-    scored.sort(key=lambda item: -item[1])
-    logs = np.array([gain for _, gain in scored]) / temper
-    shares = np.exp(logs - logs.max()) / np.exp(logs - logs.max()).sum()
-    places = tuple(
-        Place(p.interface, p.law, p.side, p.dofs, p.score, p.explained, float(share))
-        for (p, _), share in zip(scored, shares, strict=True)
-    )
-    return Scan(places, _sure_interface(places))
+    return sorted(scored, key=lambda item: -item[1])
 
 
 def _sure_interface(places: Sequence[Place]) -> str | None:

@@ -93,6 +93,8 @@ def _start(model: EffectModel, library: Sequence[Hypothesis], workers: Discovery
     """Without any effect."""
     tuned = tune(model)
     workers.watch("re-tuning", 1)
+    if not tuned.residual_map.agrees:
+        workers.defer(tuned)
     screened = workers.screenings(tuned, library)
     current = with_traces(tuned, screened)
     return SearchState(tuned, (), current, tuple(screened), MemberState(), SetPrior.of(library))

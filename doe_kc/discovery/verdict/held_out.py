@@ -48,16 +48,21 @@ class HeldOut:
         return self.with_effect.score - self.tuned.score
 
 
-def held_out(tuned: Fit, with_effects: Fit, with_discrepancy: Fit, case: str) -> HeldOut:
-    """One load case of the records, predicted from all the others.
+def held_out_scores(with_effects: Fit, with_discrepancy: Fit, case: str) -> tuple[HeldOutScore, HeldOutScore]:
+    """`with_effect` and `law_granted` of a load case, see `HeldOut`.
 
     with_effects: fitted to the records' own errors; with_discrepancy: to errors that hold that of the laws.
     """
-    with_effect = law_granted = held_out_score(with_effects, fit_without(with_effects, case))
-    if with_discrepancy.model.likelihood is not with_effects.model.likelihood:
-        model = replace(with_discrepancy.model, left_out=case)
-        law_granted = held_out_score(with_discrepancy, chord_fit(with_discrepancy, model))
-    return HeldOut(case, held_out_score(tuned, fit_without(tuned, case)), with_effect, law_granted)
+    with_effect = score_without(with_effects, case)
+    if with_discrepancy.model.likelihood is with_effects.model.likelihood:
+        return with_effect, with_effect
+    model = replace(with_discrepancy.model, left_out=case)
+    return with_effect, held_out_score(with_discrepancy, chord_fit(with_discrepancy, model))
+
+
+def score_without(fit: Fit, case: str) -> HeldOutScore:
+    """Of a load case of the records, predicted from all the others."""
+    return held_out_score(fit, fit_without(fit, case))
 
 
 def fit_without(start: Fit, case: str) -> Fit:

@@ -14,7 +14,7 @@ from doe_kc.discovery.gauss_newton import chord_fit, fit
 from doe_kc.discovery.jacobian import Jacobian
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.thresholds import HELD_OUT_LIMIT
-from doe_kc.discovery.verdict.held_out import HeldOutScore, fit_without, held_out, held_out_score
+from doe_kc.discovery.verdict.held_out import HeldOutScore, fit_without, held_out_score, held_out_scores
 from doe_kc.ground.typing import FloatArray
 from tests.discovery.cases import LOAD_CASES, discovery
 
@@ -39,8 +39,8 @@ def test_the_excess_counts_records_and_the_noise_s_own_size() -> None:
 @pytest.mark.parametrize("case", LOAD_CASES[-1:])
 def test_what_a_law_leaves_open_counts_where_it_was_granted(case: str) -> None:
     search = discovery("named").search
-    alike = held_out(search.tuned, search.with_effects, search.with_effects, case)
-    assert alike.law_granted is alike.with_effect
+    with_effect, law_granted = held_out_scores(search.with_effects, search.with_effects, case)
+    assert law_granted is with_effect
 
 
 def test_a_right_model_is_followed_on_the_derivatives_that_are_known(monkeypatch: pytest.MonkeyPatch) -> None:

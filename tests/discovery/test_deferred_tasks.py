@@ -1,0 +1,47 @@
+"""Tasks that wait until workers have nothing else to do."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor, Future
+from typing import Any
+
+from doe_kc.discovery.deferred_tasks import DeferredTask, begin_some, under_way
+
+
+class Pending(Executor):
+    """Tasks are done when the test says so."""
+
+    def __init__(self) -> None:
+        self.begun: list[Future[Any]] = []
+
+    def submit(self, fn: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        future.fn = lambda: future.set_result(fn(*args, **kwargs))  # type: ignore[attr-defined]
+        self.begun.append(future)
+        return future
+
+    def work(self, place: int) -> None:
+        self.begun[place].fn()  # type: ignore[attr-defined]
+
+
+def test_so_many_are_under_way_at_once_in_their_order() -> None:
+    executor = Pending()
+    tasks = [DeferredTask(divmod, 10 * i, 7) for i in range(3)]
+    begin_some(tasks, executor, 0)
+    assert not executor.begun
+    for _ in range(2):
+        begin_some(tasks, executor, 2)
+        assert [t.waits for t in tasks] == [False, False, True]
+    assert under_way(tasks, executor) == set(executor.begun)
+    executor.work(0)
+    assert under_way(tasks, executor) == {executor.begun[1]}
+    begin_some(tasks, executor, 2)
+    assert len(executor.begun) == 3
+    executor.work(2)
+    assert tasks[2].begin(executor).result() == (2, 6)
+
+
+def test_a_task_begins_once() -> None:
+    executor = Pending()
+    task = DeferredTask(abs, -3.0)
+    assert task.begin(executor) is task.begin(executor) and len(executor.begun) == 1
