@@ -12,11 +12,10 @@ T = TypeVar("T")
 
 
 class DeferredTask(Generic[T]):
-    """A task that an executor begins when it is told to, at the latest when its result is asked for."""
+    """A task of an executor that begins when it is told to."""
 
-    def __init__(self, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> None:
-        self._submitted_to: Callable[[Executor], Future[T]] | None
-        self._submitted_to = lambda executor: executor.submit(task, *args, **kwargs)
+    def __init__(self, executor: Executor, task: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> None:
+        self._submit: Callable[[], Future[T]] | None = lambda: executor.submit(task, *args, **kwargs)
         self._future: Future[T] | None = None
 
     @property
@@ -24,22 +23,21 @@ class DeferredTask(Generic[T]):
         """Whether it has not begun."""
         return self._future is None
 
-    def begin(self, executor: Executor) -> Future[T]:
+    def begin(self) -> Future[T]:
         """Its future, the same each time; what the task is given is let go."""
-        if self._future is None:
-            assert self._submitted_to is not None
-            self._future = self._submitted_to(executor)
-            self._submitted_to = None
+        submit, self._submit = self._submit, None
+        if submit is not None:
+            self._future = submit()
+        assert self._future is not None
         return self._future
 
 
-def under_way(tasks: Sequence[DeferredTask[Any]], executor: Executor) -> set[Future[Any]]:
+def under_way(tasks: Sequence[DeferredTask[Any]]) -> set[Future[Any]]:
     """Of those that have begun, what is not done."""
-    return {f for t in tasks if not t.waits and not (f := t.begin(executor)).done()}
+    return {t.begin() for t in tasks if not t.waits and not t.begin().done()}
 
 
-def begin_some(tasks: Sequence[DeferredTask[Any]], executor: Executor, most: int) -> None:
-    """Begin so many of those that wait that `most` are under way, in their order."""
-    spare = most - len(under_way(tasks, executor))
-    for task in islice((t for t in tasks if t.waits), max(0, spare)):
-        task.begin(executor)
+def begin_some(tasks: Sequence[DeferredTask[Any]], most: int) -> set[Future[Any]]:
+    """Begin those that wait, in their order, until so many are under way; these."""
+    spare = max(0, most - len(under_way(tasks)))
+    return {task.begin() for task in islice((t for t in tasks if t.waits), spare)} | under_way(tasks)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,10 +25,10 @@ class WithoutEffects:
     """Load case -> its score."""
 
     @staticmethod
-    def of(tuned: Fit) -> WithoutEffects:
+    def of(tuned: Fit, executor: Executor) -> WithoutEffects:
         """Nothing of it has begun."""
-        held_out = {case: DeferredTask(score_without, tuned, case) for case in load_cases(tuned)}
-        return WithoutEffects(tuned, DeferredTask(_scan, tuned), held_out)
+        held_out = {case: DeferredTask(executor, score_without, tuned, case) for case in load_cases(tuned)}
+        return WithoutEffects(tuned, DeferredTask(executor, _scan, tuned), held_out)
 
     @property
     def tasks(self) -> list[DeferredTask[Any]]:

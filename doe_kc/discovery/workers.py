@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from doe_kc.campaign.executors import InProcess
-from doe_kc.discovery.deferred_tasks import begin_some, under_way
+from doe_kc.discovery.deferred_tasks import begin_some
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import FitStart, fit, known_columns
 from doe_kc.discovery.model import EffectModel
@@ -166,7 +166,7 @@ class DiscoveryWorkers:
 
     def defer(self, tuned: Fit) -> None:
         """Have what a verdict takes of the re-tuned axle done where workers would be without work."""
-        self._without_effects = WithoutEffects.of(tuned)
+        self._without_effects = WithoutEffects.of(tuned, self._executor)
 
     def held_out(
         self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit
@@ -179,7 +179,7 @@ class DiscoveryWorkers:
             self._executor.submit(_held_out_scores, with_effects, with_discrepancy, cases[k::parts])
             for k in range(parts)
         ]
-        without = {case: task.begin(self._executor) for case, task in self._of_tuned(tuned).held_out.items()}
+        without = {case: task.begin() for case, task in self._of_tuned(tuned).held_out.items()}
 
         def waited() -> tuple[HeldOut, ...]:
             self._begun += len(cases)
@@ -196,7 +196,7 @@ class DiscoveryWorkers:
 
         None when its axle has no equilibrium with the instruments in.
         """
-        future = self._of_tuned(tuned).scan.begin(self._executor)
+        future = self._of_tuned(tuned).scan.begin()
         self._begun += 1
 
         def waited() -> list[tuple[Place, float]] | None:
@@ -209,7 +209,7 @@ class DiscoveryWorkers:
     def _of_tuned(self, tuned: Fit) -> WithoutEffects:
         known = self._without_effects
         if known is None or known.tuned is not tuned:
-            known = self._without_effects = WithoutEffects.of(tuned)
+            known = self._without_effects = WithoutEffects.of(tuned, self._executor)
         return known
 
     def _run(self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
@@ -237,11 +237,8 @@ class DiscoveryWorkers:
 
     def _begin_deferred(self) -> set[Future[Any]]:
         """Deferred tasks that are under way, on all workers but one."""
-        if self._without_effects is None:
-            return set()
-        tasks = self._without_effects.tasks
-        begin_some(tasks, self._executor, self._workers - 1)
-        return under_way(tasks, self._executor)
+        known = self._without_effects
+        return set() if known is None else begin_some(known.tasks, self._workers - 1)
 
 
 def _screen_many(fit: Fit, starts: Sequence[tuple[Hypothesis, FloatArray | None]]) -> list[Screened]:

@@ -26,22 +26,22 @@ class Pending(Executor):
 
 def test_so_many_are_under_way_at_once_in_their_order() -> None:
     executor = Pending()
-    tasks = [DeferredTask(divmod, 10 * i, 7) for i in range(3)]
-    begin_some(tasks, executor, 0)
+    tasks = [DeferredTask(executor, divmod, 10 * i, 7) for i in range(3)]
+    assert begin_some(tasks, 0) == set()
     assert not executor.begun
     for _ in range(2):
-        begin_some(tasks, executor, 2)
+        assert begin_some(tasks, 2) == set(executor.begun)
         assert [t.waits for t in tasks] == [False, False, True]
-    assert under_way(tasks, executor) == set(executor.begun)
+    assert under_way(tasks) == set(executor.begun)
     executor.work(0)
-    assert under_way(tasks, executor) == {executor.begun[1]}
-    begin_some(tasks, executor, 2)
+    assert under_way(tasks) == {executor.begun[1]}
+    assert begin_some(tasks, 2) == set(executor.begun[1:])
     assert len(executor.begun) == 3
     executor.work(2)
-    assert tasks[2].begin(executor).result() == (2, 6)
+    assert tasks[2].begin().result() == (2, 6)
 
 
 def test_a_task_begins_once() -> None:
     executor = Pending()
-    task = DeferredTask(abs, -3.0)
-    assert task.begin(executor) is task.begin(executor) and len(executor.begun) == 1
+    task = DeferredTask(executor, abs, -3.0)
+    assert task.begin() is task.begin() and len(executor.begun) == 1
