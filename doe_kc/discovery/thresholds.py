@@ -232,6 +232,9 @@ begin. Three of four steps between its sliders, in ratios of 1.4 to 2.3, are sho
 SAME_OPTIMUM = 0.01
 """-, by which all sizes of two fits of a set differ at most that are at one optimum. A hundredth: shapes
 apart, fits that end there agree to a thousandth."""
+COMPLIANCE_FACTORS = (0.7, 1.4)
+"""times a compliance beside a free play, those from which fits begin too. An optimum that was missed lay 1.35
+times as far."""
 NEAR_START = 0.5
 """prior standard deviations, within which a number is where another start would begin. Half of the distance
 between two starts of rubber's spread."""

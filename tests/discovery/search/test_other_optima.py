@@ -15,11 +15,12 @@ from doe_kc.discovery.search.law_variants import open_laws, with_law
 from doe_kc.discovery.search.other_optima import (
     at_best_free_shape,
     at_best_optimum,
+    other_compliances,
     other_shapes,
     other_sliders,
     other_stiffnesses,
 )
-from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS, GRID_FACTORS, SERIES_RATIOS
+from doe_kc.discovery.thresholds import COMPLIANCE_FACTORS, FREE_SHAPE_LOSS, GRID_FACTORS, SERIES_RATIOS
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.effects import EFFECTS
 from doe_kc.effects.rubber_hysteresis import SPREAD_STARTS
@@ -73,6 +74,27 @@ def test_a_friction_on_a_mount_begins_from_other_stiffnesses() -> None:
     assert not other_stiffnesses(agreeing()) and not other_stiffnesses(beside_a_hub())
     assert not other_stiffnesses(current, free=True), "by a closed law"
     assert len(other_stiffnesses(on_a_mount(free=True), free=True)) == len(SERIES_RATIOS)
+
+
+def test_beside_a_free_play_every_compliance_begins_from_others() -> None:
+    """Its own contact too; not its gap, nor beside anything else."""
+    current = beside_a_hub()
+    assert not other_compliances(current)
+    play = library("tie_rod_free_play")[0]
+    model_ = current.model.extended(play)
+    both = replace(current, model=model_, z=np.append(current.z, [1.0, 0.5]))
+    gap = both.z.size - 2
+    yields = [
+        i
+        for i in range(model_.dimension, both.z.size)
+        if i != gap and model_.sizes[i - model_.dimension].growth == "compliance"
+    ]
+    starts = other_compliances(both)
+    assert yields[-1] == gap + 1 and len(yields) > 1
+    assert len(starts) == len(yields) * len(COMPLIANCE_FACTORS)
+    for start, (i, factor) in zip(starts, [(i, f) for i in yields for f in COMPLIANCE_FACTORS], strict=True):
+        assert start.z[i] == factor * both.z[i] and start.model is model_
+        np.testing.assert_array_equal(np.delete(start.z, i), np.delete(both.z, i))
 
 
 def test_other_stiffnesses_are_asked_for_until_none_is_better() -> None:
