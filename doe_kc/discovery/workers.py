@@ -20,8 +20,8 @@ from doe_kc.discovery.result_cache import Arrays, ResultCache, fingerprint, key_
 from doe_kc.discovery.screening.scan import Place
 from doe_kc.discovery.screening.screen import Screened, effort, screen
 from doe_kc.discovery.thresholds import CHUNKS, FREE_SHAPE_LOSS
+from doe_kc.discovery.tuned_tasks import TunedTasks
 from doe_kc.discovery.verdict.held_out import HeldOut, HeldOutScore, held_out_scores
-from doe_kc.discovery.without_effects import WithoutEffects, load_cases
 from doe_kc.effects.hypothesis import Hypothesis
 from doe_kc.ground.typing import FloatArray
 from doe_kc.solver.result import NotConverged
@@ -49,7 +49,7 @@ class DiscoveryWorkers:
         self._told = watch
         self._begun = 0
         self._workers = workers
-        self._without_effects: WithoutEffects | None = None
+        self._tuned_tasks: TunedTasks | None = None
 
     def watch(self, words: str, steps: int) -> None:
         """Tell of steps that are done."""
@@ -166,14 +166,14 @@ class DiscoveryWorkers:
 
     def defer(self, tuned: Fit) -> None:
         """Have what a verdict takes of the re-tuned axle done where workers would be without work."""
-        self._without_effects = WithoutEffects.of(tuned, self._executor)
+        self._tuned_tasks = TunedTasks.of(tuned, self._executor)
 
     def held_out(
         self, tuned: Fit, with_effects: Fit, with_discrepancy: Fit
     ) -> Callable[[], tuple[HeldOut, ...]]:
         """Begins to predict every load case of the records from the others, see `held_out_scores`; what is
         returned waits for it."""
-        cases = load_cases(tuned)
+        cases = tuned.model.cases
         parts = min(len(cases), self._workers)  # each is sent two fits, of some 30 MB together
         with_effect = [
             self._executor.submit(_held_out_scores, with_effects, with_discrepancy, cases[k::parts])
@@ -206,10 +206,10 @@ class DiscoveryWorkers:
 
         return waited
 
-    def _of_tuned(self, tuned: Fit) -> WithoutEffects:
-        known = self._without_effects
+    def _of_tuned(self, tuned: Fit) -> TunedTasks:
+        known = self._tuned_tasks
         if known is None or known.tuned is not tuned:
-            known = self._without_effects = WithoutEffects.of(tuned, self._executor)
+            known = self._tuned_tasks = TunedTasks.of(tuned, self._executor)
         return known
 
     def _run(self, task: Callable[..., T], arguments: Iterable[tuple[Any, ...]]) -> Iterator[tuple[int, T]]:
@@ -237,7 +237,7 @@ class DiscoveryWorkers:
 
     def _begin_deferred(self) -> set[Future[Any]]:
         """Deferred tasks that are under way, on all workers but one."""
-        known = self._without_effects
+        known = self._tuned_tasks
         return set() if known is None else begin_some(known.tasks, self._workers - 1)
 
 

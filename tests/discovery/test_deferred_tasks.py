@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import weakref
 from concurrent.futures import Executor, Future
 from typing import Any
 
+from doe_kc.campaign.executors import InProcess
 from doe_kc.discovery.deferred_tasks import DeferredTask, begin_some, under_way
 
 
@@ -45,3 +47,12 @@ def test_a_task_begins_once() -> None:
     executor = Pending()
     task = DeferredTask(executor, abs, -3.0)
     assert task.begin() is task.begin() and len(executor.begun) == 1
+
+
+def test_what_a_task_is_given_goes_when_it_has_begun() -> None:
+    """Derivatives of 7 MB each; the executor lets its own go."""
+    given = Pending()
+    here, task = weakref.ref(given), DeferredTask(InProcess(), id, given)
+    del given
+    assert here() is not None and task.begin().done()
+    assert here() is None

@@ -13,6 +13,8 @@ import pytest
 from doe_kc.discovery import result_cache
 from doe_kc.discovery.linear_nuisances import LinearNuisances
 from doe_kc.discovery.result_cache import (
+    LOG_PAGES,
+    PAGE_SIZE,
     WRITES_BEGUN,
     Arrays,
     ResultCache,
@@ -109,3 +111,9 @@ def test_whatever_changes_the_answer_changes_the_fingerprint() -> None:
 def test_keys_depend_on_every_part() -> None:
     z = np.array([1.0, 2.0])
     assert len({key_of("a", z), key_of("b", z), key_of("a", z + 1e-12), key_of("a")}) == 4
+
+
+def test_a_new_store_has_large_pages_and_a_small_log(tmp_path: Path) -> None:
+    with ResultCache(tmp_path / "discovery.sqlite") as cache:
+        sizes = [cache._writer.execute(f"PRAGMA {p}").fetchone() for p in ("page_size", "wal_autocheckpoint")]
+        assert sizes == [(PAGE_SIZE,), (LOG_PAGES,)]

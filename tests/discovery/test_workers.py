@@ -20,7 +20,6 @@ from doe_kc.discovery.screening.scan import scanned_places
 from doe_kc.discovery.screening.screen import effort
 from doe_kc.discovery.search.baseline import tune
 from doe_kc.discovery.thresholds import FREE_SHAPE_LOSS
-from doe_kc.discovery.without_effects import load_cases
 from doe_kc.discovery.workers import TASKS_AHEAD, DiscoveryWorkers
 from doe_kc.solver.result import Failure, NotConverged
 from tests.discovery.cases import library, model
@@ -212,7 +211,6 @@ def test_the_other_starts_are_given_up_where_they_promise_less_than_the_first(tu
 
 def test_deferred_tasks_begin_beside_a_single_task_alone(tuned: Fit) -> None:
     """Beside several they would hold up what comes next; what has not begun does when it is asked for."""
-    cases = load_cases(tuned)
     for values, begun in (([1.0], 1), ([1.0, 2.0], 0)):
         with ThreadPoolExecutor(2) as executor:
             workers = DiscoveryWorkers(executor, workers=2)
@@ -225,9 +223,9 @@ def test_deferred_tasks_begin_beside_a_single_task_alone(tuned: Fit) -> None:
                 assert all(task.waits for task in deferred.tasks)
             scanned = workers.scan(tuned)()
             predictions = workers.held_out(tuned, tuned, tuned)()
-    assert [p.load_case for p in predictions] == cases
-    assert all(p.tuned == p.with_effect == p.law_granted for p in predictions)
-    assert scanned is not None and scanned[0] == scanned_places(tuned)[0]
+        assert [p.load_case for p in predictions] == list(tuned.model.cases)
+        assert all(p.tuned == p.with_effect == p.law_granted for p in predictions)
+        assert scanned is not None and scanned[0] == scanned_places(tuned)[0]
 
 
 def test_what_is_known_of_another_re_tuned_axle_is_not_taken(tuned: Fit) -> None:

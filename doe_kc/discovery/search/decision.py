@@ -151,12 +151,12 @@ def next_decision(
     known: Sequence[Screened],
     first_screened: Sequence[Screened],
     *,
-    again: Set[str],
+    runners_up: Set[str],
     laws_open: bool,
 ) -> Decision:
     """known: every hypothesis as it was screened last, in the errors of `current`. first_screened: as at the
-    first step. again: names of those that are refitted whatever screening says, see `gave_way`. laws_open:
-    whether other laws of the frictions in the set have yet to be tried.
+    first step. runners_up: names of those, see the function. laws_open: whether other laws of the frictions
+    in the set have yet to be tried.
 
     A decoy of another kind is refitted beside the first effect alone: beside further ones the verdict does so
     at the last set.
@@ -173,8 +173,8 @@ def next_decision(
         more = [s for s in overlooked(screened, least) if s.hypothesis.name not in done]
         trials += joint_refits(current, more[:OVERLOOKED_MOST], prior, workers, ACCEPTED_ODDS)
     if not laws_open and not any(_accepted(t, current) for t in trials):
-        unsure = _screened_in_vain(current, screened, trials, again)
-        trials += joint_refits(current, unsure, prior, workers, ACCEPTED_ODDS)
+        further = _further_candidates(current, screened, trials, runners_up)
+        trials += joint_refits(current, further, prior, workers, ACCEPTED_ODDS)
     best = max(trials, key=lambda t: _believed_gain(t, current), default=None)
     if best is not None and _passes(best, current):
         trials += joined_refits(current, best, library, prior, workers)
@@ -188,7 +188,7 @@ def next_decision(
     return Decision(current, tuple(screened), tuple(trials), divisor, first.gain / divisor > ACCEPTED_ODDS)
 
 
-def gave_way(steps: Sequence[Step]) -> Set[str]:
+def runners_up(steps: Sequence[Step]) -> Set[str]:
     """Names of effects that would have been accepted, beside others, where another one was; by their last
     refit.
 
@@ -204,15 +204,15 @@ def _alone(candidate: HypothesisGain) -> bool:
     return candidate.joint and not candidate.beside
 
 
-def _screened_in_vain(
-    current: Fit, screened: Sequence[Screened], trials: Sequence[HypothesisFit], again: Set[str]
+def _further_candidates(
+    current: Fit, screened: Sequence[Screened], trials: Sequence[HypothesisFit], runners_up: Set[str]
 ) -> list[Screened]:
     """What has no refit although screening says too little of it: where noise does not explain what is left,
-    what that has first of every effect; else those that gave way to others."""
+    what that has first of every effect; else the runners-up of earlier steps."""
     if current.residual_map.chance < NOISE_CHANCE:
         return untried(screened, trials)
     done = {t.hypothesis.name for t in trials}
-    return [s for s in screened if s.hypothesis.name in again - done and not s.failed]
+    return [s for s in screened if s.hypothesis.name in runners_up - done and not s.failed]
 
 
 def _leader_refits(

@@ -11,7 +11,7 @@ from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.screening.screen import Screened, rewhitened_screenings
 from doe_kc.discovery.search.baseline import tune, with_traces
 from doe_kc.discovery.search.convergence import both_optima
-from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, gave_way, next_decision
+from doe_kc.discovery.search.decision import Decision, HypothesisGain, Step, next_decision, runners_up
 from doe_kc.discovery.search.effect_search import EffectSearch
 from doe_kc.discovery.search.final_laws import with_final_laws
 from doe_kc.discovery.search.free_shapes import with_free_shapes
@@ -157,7 +157,7 @@ class _SetSearch:
             self._workers,
             self._screened,
             self._first.screened if self._first else (),
-            again=gave_way(self._steps),
+            runners_up=runners_up(self._steps),
             laws_open=self._laws_open,
         )
         self._first = self._first or decision

@@ -10,7 +10,7 @@ import pytest
 from doe_kc.discovery.fit import Fit
 from doe_kc.discovery.gauss_newton import fit
 from doe_kc.discovery.search import decision as decision_module
-from doe_kc.discovery.search.decision import HypothesisGain, Step, gave_way, next_decision
+from doe_kc.discovery.search.decision import HypothesisGain, Step, next_decision, runners_up
 from doe_kc.discovery.search.refits import HypothesisFit, held_loss
 from doe_kc.discovery.search.set_prior import SetPrior
 from doe_kc.discovery.workers import DiscoveryWorkers
@@ -55,27 +55,29 @@ def test_a_refit_beyond_belief_comes_first_where_it_gains_more_than_it_loses_at_
     monkeypatch.setattr(decision_module, "_leader_refits", lambda *_: [believed, beyond])
     monkeypatch.setattr(decision_module, "refits_from_nominal", lambda *_: [])
     found = next_decision(
-        current, PLACES, SetPrior.of(PLACES), DiscoveryWorkers(), (), (), again=set(), laws_open=True
+        current, PLACES, SetPrior.of(PLACES), DiscoveryWorkers(), (), (), runners_up=set(), laws_open=True
     )
     assert [t.hypothesis for t in found.trials] == [PLACES[taken], PLACES[1 - taken]]
     assert found.accepted
 
 
 @pytest.mark.parametrize("laws_open", [True, False])
-def test_what_gave_way_is_refitted_whatever_its_screening_promises(
+def test_what_runners_up_is_refitted_whatever_its_screening_promises(
     laws_open: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where no other law is left to try, and nothing else is accepted."""
     current, workers, prior = tuned(), DiscoveryWorkers(), SetPrior.of(PLACES)
     screened = workers.screenings(current, PLACES)
     assert all(s.gain < 0.0 for s in screened) and current.residual_map.agrees
-    again = {PLACES[1].name, "no place of this axle"}
-    found = next_decision(current, PLACES, prior, workers, screened, (), again=again, laws_open=laws_open)
+    names = {PLACES[1].name, "no place of this axle"}
+    found = next_decision(
+        current, PLACES, prior, workers, screened, (), runners_up=names, laws_open=laws_open
+    )
     assert [t.hypothesis for t in found.trials] == ([] if laws_open else [PLACES[1]])
     assert not found.accepted
 
 
-def test_what_gave_way_is_told_by_the_last_refit_beside_others() -> None:
+def test_what_runners_up_is_told_by_the_last_refit_beside_others() -> None:
     """Not by what it gained where the set had nothing, beside which anything does, nor by its screening."""
     one, two, three = PLACES[:3]
 
@@ -83,9 +85,9 @@ def test_what_gave_way_is_told_by_the_last_refit_beside_others() -> None:
         return Step((one,) * members, 1.0, gains, 1.0, (), False)
 
     alone = step(0, HypothesisGain(two, 900.0, True))
-    assert gave_way([alone]) == set()
+    assert runners_up([alone]) == set()
     rivals = step(1, HypothesisGain(two, 20.0, True), HypothesisGain(three, 30.0, False))
-    assert gave_way([alone, rivals]) == {two.name}
+    assert runners_up([alone, rivals]) == {two.name}
     with_another = step(1, HypothesisGain(two, -3.0, True, (three,)))
-    assert gave_way([rivals, with_another, step(1, HypothesisGain(two, -5.0, False))]) == {two.name}
-    assert gave_way([rivals, step(1, HypothesisGain(two, 1.0, True))]) == set()
+    assert runners_up([rivals, with_another, step(1, HypothesisGain(two, -5.0, False))]) == {two.name}
+    assert runners_up([rivals, step(1, HypothesisGain(two, 1.0, True))]) == set()

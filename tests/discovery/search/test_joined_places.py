@@ -40,7 +40,7 @@ def decided(current: Fit, trial: HypothesisFit, monkeypatch: pytest.MonkeyPatch)
     """The step in which nothing but one trial is refitted."""
     monkeypatch.setattr(decision_module, "_leader_refits", lambda *_: [trial])
     monkeypatch.setattr(decision_module, "refits_from_nominal", lambda *_: [])
-    return next_decision(current, RUBBER, PRIOR, DiscoveryWorkers(), (), (), again=set(), laws_open=True)
+    return next_decision(current, RUBBER, PRIOR, DiscoveryWorkers(), (), (), runners_up=set(), laws_open=True)
 
 
 def test_rubber_of_all_bushings_comes_in_for_that_of_two_groups(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,7 @@ from doe_kc.solver.result import NotConverged
 
 
 @dataclass(frozen=True)
-class WithoutEffects:
+class TunedTasks:
     """What a verdict takes of the re-tuned axle without effects."""
 
     tuned: Fit
@@ -25,20 +25,15 @@ class WithoutEffects:
     """Load case -> its score."""
 
     @staticmethod
-    def of(tuned: Fit, executor: Executor) -> WithoutEffects:
+    def of(tuned: Fit, executor: Executor) -> TunedTasks:
         """Nothing of it has begun."""
-        held_out = {case: DeferredTask(executor, score_without, tuned, case) for case in load_cases(tuned)}
-        return WithoutEffects(tuned, DeferredTask(executor, _scan, tuned), held_out)
+        held_out = {case: DeferredTask(executor, score_without, tuned, case) for case in tuned.model.cases}
+        return TunedTasks(tuned, DeferredTask(executor, _scan, tuned), held_out)
 
     @property
     def tasks(self) -> list[DeferredTask[Any]]:
         """All of them, the longest last: nothing may have to wait for it."""
         return [*self.held_out.values(), self.scan]
-
-
-def load_cases(fit: Fit) -> list[str]:
-    """Of the records."""
-    return list(dict.fromkeys(c.load_case for c in fit.model.likelihood.curves))
 
 
 def _scan(tuned: Fit) -> list[tuple[Place, float]] | None:
