@@ -14,8 +14,9 @@ from benchmarks.discovery.truth import DELETED, TrueEffect, Truth
 
 @dataclass(frozen=True)
 class Estimate:
-    """A parameter of a rightly named effect. approximate: of a law of another shape. limit: None where the
-    answer tells it from none. shown: whether it says that the records show it."""
+    """A parameter of a rightly named effect, also beside something unexplained. approximate: of a law of
+    another shape. limit: None where the answer tells it from none. shown: whether it says that the records
+    show it."""
 
     effect: str
     parameter: str
@@ -48,13 +49,14 @@ class Score:
     first name is one of them. in_class: each is named or in a class. open: each is that, or said not to be
     testable with these records. wrong: some name is not what is there; trace: some name is clutter, rightly
     sized but too small to matter. missed: answered that nothing is missing. placed: an unexplained deviation
-    is reported where it is. located: right places over places asked. closed, decoy: share of the gap that
-    the named effects, and the best other one, close; nan where the answer gives none. members: hidden effects
-    that are named, also beside something unexplained, over those diagnosable by themselves beside the others.
-    false_names: names, those among them, that are not what is there, over all. excluded: hidden effects
-    that are excluded below their size, over those not named. traces: parameters of effects told as traces
-    that the car has; traced: such effects, over all told. limits: small effects of the car whose limit of
-    exclusion is below their size, over those with one.
+    is reported where it is. located: right places of rightly named effects, also beside something
+    unexplained, over those that have one. closed, decoy: share of the gap that the named effects, and the
+    best other one, close; nan where the answer gives none. members: hidden effects that are named, also
+    beside something unexplained, over those diagnosable by themselves beside the others. false_names: names,
+    those among them, that are not what is there, over all. excluded: hidden effects that are excluded below
+    their size, over those not named. traces: parameters of effects told as traces that the car has; traced:
+    such effects, over all told. limits: small effects of the car whose limit of exclusion is below their
+    size, over those with one.
     """
 
     name: str
@@ -108,7 +110,7 @@ def score(truth: Truth, answer: Answer, predicted: Predicted | None = None) -> S
     shows = truth.shows | (predicted.shows if predicted is not None else frozenset())
     names, committed = frozenset(answer.names), frozenset(answer.committed)
     small = frozenset(e.id for e in answer.effects if e.id in committed - truth.ids and _traced(truth, e))
-    pairs = [(t, n) for t in truth.effects for n in answer.effects if n.id == t.id and t.id in names]
+    pairs = [(t, n) for t in truth.effects for n in answer.told if n.id == t.id and t.id in committed]
     traces = [(t, n) for t in (*truth.effects, *truth.small) for n in answer.traces if _same(t, n)]
     return Score(
         name=truth.name,

@@ -84,7 +84,7 @@ def _cell(group: str, label: str, flags: Sequence[bool]) -> str:
 
 
 def located(found: Iterable[Score]) -> Share:
-    """Right places of rightly named effects that have one."""
+    """Right places of rightly named effects that have one, also beside something unexplained."""
     pairs = [s.located for s in found]
     return Share(sum(p[0] for p in pairs), sum(p[1] for p in pairs))
 

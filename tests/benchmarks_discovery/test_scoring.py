@@ -245,15 +245,25 @@ def test_an_analysis_that_broke_off_is_no_answer() -> None:
     assert found.verdict == "failed" and not found.exact
 
 
-def test_location_and_numbers() -> None:
+@pytest.mark.parametrize("verdict", ["named", "unexplained"])
+def test_location_and_numbers(verdict: str) -> None:
     effect = TrueEffect("bushing_preload", 1.0, "LLR", {"LLR[1]": 600.0}, False)
     truth = Truth("x", "single", (effect,), (), "", frozenset())
     numbers = {"LLR[1]": {"value": 660.0, "sd": 40.0, "unit": "N"}}
     named = {"id": "bushing_preload", "location": "llr", "probability": 0.95, "parameters": numbers}
-    found = score(truth, read_answer({"verdict": "named", "effects": [named]}))
+    found = score(truth, read_answer({"verdict": verdict, "effects": [{**named, "verdict": "named"}]}))
     assert found.located == (1, 1)
     assert found.estimates[0].z == pytest.approx(1.5)
     assert found.estimates[0].relative == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("verdict", ["named", "unexplained"])
+def test_a_name_elsewhere_is_a_wrong_place(verdict: str) -> None:
+    effect = TrueEffect("bushing_preload", 1.0, "LLR", {"LLR[1]": 600.0}, False)
+    truth = Truth("x", "single", (effect,), (), "", frozenset())
+    named = {"id": effect.id, "location": "LLF", "probability": 0.95, "parameters": {}, "verdict": "named"}
+    found = score(truth, read_answer({"verdict": verdict, "effects": [named]}))
+    assert found.located == (0, 1)
 
 
 @pytest.mark.parametrize(
