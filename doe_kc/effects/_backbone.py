@@ -1,4 +1,4 @@
-"""Virgin curves of dry frictions, and the free backbone that comes near to one.
+"""Virgin curves of dry frictions, and the free backbone and the closed law that come near to one.
 
 A law of sliders obeys Masing's rule: a branch after a reversal is its virgin curve twice as large. Dahl's and
 Duhem's do not; of theirs the branch from one limit to the other counts, half as large, as a rig runs over
@@ -7,7 +7,7 @@ such loops and sees little of a first loading. By it Dahl's law is an exponentia
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,11 @@ TRAVEL_FACTORS = np.geomspace(0.25, 4.0, 33)
 """Travels of the backbone that are tried, over that yield displacement."""
 UNUSED_SHARE = 0.005
 """-, of a slider that the curve has no use for: none would hold the fit that begins there."""
+SHAPE_NUMBERS: Mapping[FrictionLaw, FloatArray] = {
+    "duhem": np.geomspace(0.5, 4.0, 13),
+    "lognormal": np.geomspace(0.1, 3.0, 18),
+}
+"""-, exponents and spreads that are tried, an eighth and a quarter apart."""
 PULL = 0.05
 """-, of a share to the usual one, where the curve says little: over the weight of one point of the curve."""
 
@@ -54,6 +59,16 @@ class Backbone:
     """Of the sliders in the limit, of sum 1."""
 
 
+@dataclass(frozen=True)
+class ClosedShape:
+    """A closed law near the virgin curve of a friction, of the same limit."""
+
+    travel: float
+    """In the unit of the curve's distances."""
+    number: float | None
+    """Exponent of duhem, spread of lognormal; None of a law without one."""
+
+
 def virgin_curve(law: FrictionLaw, exponent: float, spread: float, shares: Sequence[float]) -> VirginCurve:
     """Of a law, its distances over its travel.
 
@@ -78,6 +93,23 @@ def nearest_backbone(
     (shares, _), travel = min(trials, key=lambda trial: trial[0][1])
     shares = np.maximum(shares, UNUSED_SHARE)
     return Backbone(float(shares.sum()), travel, tuple((shares / shares.sum()).tolist()))
+
+
+def nearest_shape(curve: VirginCurve, law: FrictionLaw) -> ClosedShape:
+    """The closed law that has half of its limit where a curve has, of least squares from it among
+    SHAPE_NUMBERS."""
+    trials = [_at_half(curve, law, number) for number in SHAPE_NUMBERS.get(law, np.ones(1)).tolist()]
+    _, travel, number = min(trials)
+    return ClosedShape(travel, number if law in SHAPE_NUMBERS else None)
+
+
+def _at_half(curve: VirginCurve, law: FrictionLaw, number: float) -> tuple[float, float, float]:
+    """Square of what the law of a number leaves of a curve, its travel, and the number."""
+    own = virgin_curve(law, exponent=number, spread=number, shares=())
+    travel = curve.distance(0.5) / own.distance(0.5)
+    distances, shares = (np.append(0.0, values) for values in (travel * own.distances, own.shares))
+    left = np.interp(curve.distances, distances, shares) - curve.shares
+    return float(left @ left), travel, number
 
 
 def _shares(curve: VirginCurve, travel: float, usual: FloatArray) -> tuple[FloatArray, float]:

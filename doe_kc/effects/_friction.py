@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, cast
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from doe_kc.axle.model import Axle
 from doe_kc.axle.places import Places
 from doe_kc.axle.sliders import BACKBONE_YIELDS
 from doe_kc.axle.topology import FrictionLaw
-from doe_kc.effects._backbone import VirginCurve, nearest_backbone, virgin_curve
+from doe_kc.effects._backbone import VirginCurve, nearest_backbone, nearest_shape, virgin_curve
 from doe_kc.effects._base import Effect, Option
 from doe_kc.effects._places import DEFAULT_PLACES
 from doe_kc.effects._series import on_compliance
@@ -66,9 +66,11 @@ class DryFriction(Effect):
 
     def numbers_by(self, law: str, options: Mapping[str, Any]) -> Mapping[str, Any]:
         own = self.read(options, self.label)
-        if law != FREE_LAW or own["law"] == FREE_LAW:
+        if (law == FREE_LAW) == (own["law"] == FREE_LAW):
             return {}
-        return _free_numbers(_curve(own), own[LIMIT], own[TRAVEL])
+        if law == FREE_LAW:
+            return _free_numbers(_curve(own), own[LIMIT], own[TRAVEL])
+        return self._closed_numbers(_curve(own), own[LIMIT], own[TRAVEL], law)
 
     def on_compliance(
         self, law: str, options: Mapping[str, Any], spring: float, ratio: float
@@ -77,22 +79,27 @@ class DryFriction(Effect):
         nearly the loops that it makes at some options without.
 
         spring: N/mm, of that beside it without the compliance. ratio: of the limits, and of the springs;
-        below 1 the compliance is taken away. See `_series`. Numbers of the law's shape that are not given
-        stay what they are.
+        below 1 the compliance is taken away. See `_series`.
         """
         own = self.read(options, self.label)
         limit, travel = ratio * own[LIMIT], own[TRAVEL]
         curve = on_compliance(_curve(own), own[LIMIT] / (spring * travel), ratio)
         if law == FREE_LAW:
             return _free_numbers(curve, limit, travel)
-        half = _curve(own | {"law": law}).distance(0.5)
-        return {LIMIT: limit, TRAVEL: travel * curve.distance(0.5) / half}
+        return self._closed_numbers(curve, limit, travel, law)
 
     def with_travel(self, options: Mapping[str, Any], factor: float) -> Mapping[str, Any]:
         """Options of the free backbone of another travel that does nearly what one does at some options: its
         sliders yield elsewhere. factor: of the travel."""
         own = self.read(options, self.label)
         return _free_numbers(_curve(own), own[LIMIT], own[TRAVEL], factor)
+
+    def _closed_numbers(self, curve: VirginCurve, limit: float, travel: float, law: str) -> Mapping[str, Any]:
+        """Options of a closed law near a curve, as `_free_numbers`."""
+        name = law or next(iter(self.laws))
+        shape = nearest_shape(curve, cast(FrictionLaw, name))
+        numbers = {size.key: shape.number for size in self.laws[name]}
+        return {LIMIT: limit, TRAVEL: travel * shape.travel, **numbers}
 
     def read(
         self, options: Mapping[str, Any], source: str, places: Places = DEFAULT_PLACES

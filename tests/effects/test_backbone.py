@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from doe_kc.axle.sliders import BACKBONE_YIELDS, IWAN_ELEMENTS, yield_ratios
-from doe_kc.effects._backbone import nearest_backbone, virgin_curve
+from doe_kc.effects._backbone import VirginCurve, nearest_backbone, nearest_shape, virgin_curve
 from doe_kc.effects._friction import BACKBONE_SHARES
 from tests.solver.elements.test_friction import LEVEL, PRE, Law
 
@@ -75,6 +75,28 @@ def test_the_virgin_curve_is_half_a_branch_of_the_loop(law: str, shape: dict[str
     here, start = 200.0 * PRE, solved.to(200.0 * PRE)
     branch = start - solved.along(here - 2.0 * PRE * curve.distances)
     np.testing.assert_allclose(curve.shares, branch / (2.0 * LEVEL), atol=0.004)
+
+
+@pytest.mark.parametrize(("law", "shape"), CLOSED)
+def test_a_law_is_nearest_to_its_own_curve(law: str, shape: dict[str, float]) -> None:
+    """Over another travel: within half a step of the numbers that are tried."""
+    number = next(iter(shape.values()), None)
+    exponent, spread = shape.get("f.exponent", 1.0), shape.get("f.spread", 0.8)
+    own = virgin_curve(law, exponent, spread, BACKBONE_SHARES)  # type: ignore[arg-type]
+    there = VirginCurve(3.0 * own.distances, own.shares, 3.0 * own.typical)
+    near = nearest_shape(there, law)  # type: ignore[arg-type]
+    assert near.number == (None if number is None else pytest.approx(number, rel=0.12))
+    assert near.travel == pytest.approx(3.0, rel=0.06 if law == "duhem" else 0.16 if number else 1e-9)
+
+
+@pytest.mark.parametrize("spread", [0.4, 0.8, 1.0])
+def test_the_law_is_found_again_from_the_free_backbone_near_it(spread: float) -> None:
+    """From spreads of 0.8 and the same travel 323 N on 6490 N/mm ended there, for 363 N on 3820 N/mm."""
+    free = nearest_backbone(virgin_curve("lognormal", 1.0, spread, BACKBONE_SHARES), BACKBONE_SHARES)
+    curve = virgin_curve("backbone", 1.0, 1.0, free.shares)
+    near = nearest_shape(curve, "lognormal")
+    assert near.number == pytest.approx(spread, rel=0.25)
+    assert near.travel * free.travel == pytest.approx(1.0, rel=0.25)
 
 
 def test_the_distance_of_a_share_is_where_the_curve_has_it() -> None:

@@ -137,3 +137,16 @@ def test_other_sliders_make_nearly_the_same_curve(factor: float) -> None:
     alone = np.interp(at, factor * TRAVEL * own.distances, LIMIT * own.shares)
     left, travel = (np.sqrt(np.mean((curve - here) ** 2)) for curve in (moved, alone))
     assert left < 0.05 * LIMIT and left < 0.5 * travel
+
+
+def test_a_closed_law_begins_where_the_free_shape_is() -> None:
+    effect = EFFECTS["steering_friction"]
+    assert isinstance(effect, DryFriction)
+    wide = {"force_N": LIMIT, "presliding_mm": TRAVEL, "law": "lognormal", "spread": 1.0}
+    free = effect.numbers_by("backbone", wide)
+    back = effect.numbers_by("lognormal", dict(free) | {"law": "backbone"})
+    assert back["spread"] == pytest.approx(1.0, rel=0.25) and back["presliding_mm"] == pytest.approx(
+        TRAVEL, rel=0.25
+    )
+    assert back["force_N"] == free["force_N"]
+    assert set(effect.numbers_by("", dict(free) | {"law": "backbone"})) == {"force_N", "presliding_mm"}

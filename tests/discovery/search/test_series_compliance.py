@@ -87,6 +87,27 @@ def test_a_mount_that_is_not_there_is_asked_for_by_every_closed_law_and_not_take
     assert asked.count == 1 + 4 * len(SERIES_RATIOS) and not taken
 
 
+@pytest.mark.usefixtures("explained")
+@pytest.mark.parametrize("other", ["duhem", ""], ids=["by another law", "by the same one"])
+def test_a_better_set_without_the_mount_is_asked_again_by_another_law(
+    other: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """201 N by a law of wide spread ended at 133.0 +- 1.6 N without its mount, by way of a set with one."""
+    better = alone("mounted", other)
+    asked: list[Fit] = []
+
+    def gone_on(before: EffectSearch, *_: object) -> EffectSearch:
+        asked.append(before.with_effects)
+        found = better.with_law_discrepancy
+        ahead = before.with_law_discrepancy.cost - 100.0
+        return replace(better, with_law_discrepancy=replace(found, cost=ahead))
+
+    monkeypatch.setattr(series_compliance, "search_from", gone_on)
+    monkeypatch.setattr(series_compliance, "ACCEPTED_ODDS", 0.0)
+    assert with_series_compliances(alone("mounted"), EVERY, DiscoveryWorkers()) is not alone("mounted")
+    assert asked == [alone("mounted").with_effects, *([better.with_effects] if other else [])]
+
+
 @cache
 def freed(car: str, law: str) -> EffectSearch:
     """A search that ended with a steering friction of free shape, beside which a closed law was the best."""

@@ -15,7 +15,7 @@ from doe_kc.discovery.search.law_variants import open_laws, other_laws, with_law
 from doe_kc.discovery.search.series_start import in_series, series_starts
 from doe_kc.discovery.thresholds import SERIES_RATIOS
 from doe_kc.effects._backbone import virgin_curve
-from doe_kc.effects._friction import BACKBONE_SHARES, EXPONENT, SPREAD
+from doe_kc.effects._friction import BACKBONE_SHARES
 from doe_kc.variables import VariableOptions, build_space
 from tests.discovery.cases import TUNABLE, library, nominal
 from tests.discovery.search.law_answers import agreeing, beside_a_hub, with_member
@@ -118,7 +118,8 @@ def test_by_another_law_half_of_the_limit_is_where_the_mount_leaves_it(name: str
     for start, ratio in zip(starts, SERIES_RATIOS, strict=True):
         y, taken = 0.5 * math.log(2.0) * travel, 0.5 * rigid["steering_friction.force"] / spring
         values = start.model.axle_at(start.z).values
-        curve = virgin_curve(name, EXPONENT, SPREAD, BACKBONE_SHARES)  # type: ignore[arg-type]
+        shape = (values[f"steering_friction.{key}"] for key in ("exponent", "spread"))
+        curve = virgin_curve(name, *shape, BACKBONE_SHARES)  # type: ignore[arg-type]
         half = values["steering_friction.presliding"] * curve.distance(0.5)
         assert half == pytest.approx((y - (ratio - 1.0) * taken) / ratio, rel=0.01)
         assert law in start.model.members and FRICTION not in start.model.members
