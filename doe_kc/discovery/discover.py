@@ -66,7 +66,7 @@ def discover(
     gap, curve_gaps = gaps(model.likelihood, nominal, tuned, with_effects, decoy.fit if decoy else None)
     traces = shown_traces(members, set_adequacy)
     limits_hold = resolved(search, set_adequacy)
-    statuses = _statuses(search, (*relevant, *traces), len(library), resolved=limits_hold)
+    statuses = library_statuses(search, (*relevant, *traces), len(library), resolved=limits_hold)
     outside, others = beyond(model.space, with_effects), other_sizes(search, compared, relevant)
     groups = classes(relevant) if outcome.kind == "class" else ()
     separating = _separating(compared, relevant) if groups else {}
@@ -179,10 +179,14 @@ def shown_traces(members: Sequence[Finding], adequacy: Adequacy) -> tuple[Findin
     return tuple(f for f in small if adequacy.holds or not EFFECTS[f.hypothesis.effect].on_rig)
 
 
-def _statuses(
+def library_statuses(
     search: EffectSearch, named: Sequence[Finding], count: int, *, resolved: bool
 ) -> tuple[HypothesisStatus, ...]:
-    """named: the findings and traces that are reported."""
+    """Of the members of the last set and of all that can come in beside it.
+
+    named: the findings and traces that are reported. count: hypotheses of the library. resolved: see
+    `resolved`.
+    """
     last, critical = search.with_law_discrepancy, float(np.sqrt(2.0 * threshold(count)))
     statuses: dict[str, Status] = {f.hypothesis.name: "found" if f.relevant else "trace" for f in named}
     own = {h.name for h in last.model.members}
@@ -195,7 +199,8 @@ def _statuses(
         s for s in search.screened if s.hypothesis.name not in own and compatible(last.model, s.hypothesis)
     ]
     others.sort(key=lambda s: -s.gain)
-    return hypothesis_statuses(last, others, members, critical, resolved=resolved)
+    masked = {h.name for one in search.larger for h in one.fit.model.members}
+    return hypothesis_statuses(last, others, members, critical, resolved=resolved, masked=masked)
 
 
 def gaps(

@@ -10,10 +10,11 @@ import pytest
 
 from doe_kc.axle_file import read_axle
 from doe_kc.correlation.likelihood import Likelihood, record_likelihood
-from doe_kc.discovery.discover import discover, gaps, resolved, shown_traces
+from doe_kc.discovery.discover import discover, gaps, library_statuses, resolved, shown_traces
 from doe_kc.discovery.fit import rewhitened_fit
 from doe_kc.discovery.model import EffectModel
 from doe_kc.discovery.result_cache import ResultCache
+from doe_kc.discovery.search.refits import HypothesisFit
 from doe_kc.discovery.workers import DiscoveryWorkers
 from doe_kc.measurement import reduce_measurement
 from doe_kc.variables import VariableOptions
@@ -53,6 +54,21 @@ def test_the_gap_closes_on_load_cases_held_out_and_a_decoy_does_not_close_it(car
     after = np.sqrt(np.mean([h.with_effect.rms**2 for h in found.held_out]))
     assert 1.0 - (after - 1.0) / (tuned - 1.0) > 0.9
     assert found.gap.with_effect < 1.1 < found.gap.best_decoy
+
+
+def test_an_effect_of_a_set_that_counts_for_the_sizes_is_not_excluded() -> None:
+    found = discovery("friction")
+    search, count = found.search, len(found.statuses)
+    status = next(s for s in found.statuses if s.status == "excluded")
+    last = search.with_effects
+    fit = replace(last, model=last.model.extended(status.hypothesis))
+    larger = replace(search, larger=(HypothesisFit(status.hypothesis, fit, 0.0),))
+    before, after = (
+        {s.hypothesis.name: s.status for s in library_statuses(one, found.findings, count, resolved=True)}
+        for one in (search, larger)
+    )
+    assert {name for name in before if before[name] != after[name]} == {status.hypothesis.name}
+    assert after[status.hypothesis.name] == "not testable"
 
 
 def test_two_effects_are_both_found() -> None:

@@ -135,6 +135,18 @@ def test_a_member_shows_by_its_fit_where_its_screening_was_blind() -> None:
     assert np.all(np.array(seen.limits) <= by_fit * 1.001)
 
 
+def test_what_a_member_may_stand_for_is_not_excluded(tuned: Fit) -> None:
+    """A mount of the rack of 7260 N/mm was excluded below 25 600 beside a friction on it, told as wide as a
+    set with the mount."""
+    mount, clear = (screen(tuned, h) for h in library("rack_mount_compliance", "strut_friction"))
+    names = {mount.hypothesis.name}
+    open_, shown = hypothesis_statuses(tuned, [mount, clear], [], 4.0, resolved=True, masked=names)
+    assert open_.status == "not testable" and open_.limits[0] == np.inf
+    assert shown.status == "excluded" and np.isfinite(shown.detectable)
+    seen, _ = hypothesis_statuses(tuned, [mount, clear], [], 4.0, resolved=True)
+    assert np.isfinite(seen.limits[0])
+
+
 def test_what_every_car_has_some_of_is_excluded_above_its_mean(tuned: Fit) -> None:
     """The same columns, of an effect whose trace has a mean and of one whose trace has none."""
     (mount,) = library("rack_mount_compliance")
