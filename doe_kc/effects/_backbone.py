@@ -26,7 +26,7 @@ SHAPE_NUMBERS: Mapping[FrictionLaw, FloatArray] = {
     "duhem": np.geomspace(0.5, 4.0, 13),
     "lognormal": np.geomspace(0.1, 3.0, 18),
 }
-"""-, exponents and spreads that are tried, an eighth and a quarter apart."""
+"""-, exponents and spreads that are tried, a fifth apart."""
 PULL = 0.05
 """-, of a share to the usual one, where the curve says little: over the weight of one point of the curve."""
 

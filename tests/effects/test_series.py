@@ -145,8 +145,7 @@ def test_a_closed_law_begins_where_the_free_shape_is() -> None:
     wide = {"force_N": LIMIT, "presliding_mm": TRAVEL, "law": "lognormal", "spread": 1.0}
     free = effect.numbers_by("backbone", wide)
     back = effect.numbers_by("lognormal", dict(free) | {"law": "backbone"})
-    assert back["spread"] == pytest.approx(1.0, rel=0.25) and back["presliding_mm"] == pytest.approx(
-        TRAVEL, rel=0.25
-    )
+    assert back["spread"] == pytest.approx(1.0, rel=0.25)
+    assert back["presliding_mm"] == pytest.approx(TRAVEL, rel=0.25)
     assert back["force_N"] == free["force_N"]
     assert set(effect.numbers_by("", dict(free) | {"law": "backbone"})) == {"force_N", "presliding_mm"}
