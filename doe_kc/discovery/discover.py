@@ -199,7 +199,7 @@ def library_statuses(
         s for s in search.screened if s.hypothesis.name not in own and compatible(last.model, s.hypothesis)
     ]
     others.sort(key=lambda s: -s.gain)
-    masked = {h.name for one in search.larger for h in one.fit.model.members}
+    masked = {one.hypothesis.name for one in search.larger}
     return hypothesis_statuses(last, others, members, critical, resolved=resolved, masked=masked)
 
 

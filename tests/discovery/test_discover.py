@@ -60,9 +60,7 @@ def test_an_effect_of_a_set_that_counts_for_the_sizes_is_not_excluded() -> None:
     found = discovery("friction")
     search, count = found.search, len(found.statuses)
     status = next(s for s in found.statuses if s.status == "excluded")
-    last = search.with_effects
-    fit = replace(last, model=last.model.extended(status.hypothesis))
-    larger = replace(search, larger=(HypothesisFit(status.hypothesis, fit, 0.0),))
+    larger = replace(search, larger=(HypothesisFit(status.hypothesis, search.with_effects, 0.0),))
     before, after = (
         {s.hypothesis.name: s.status for s in library_statuses(one, found.findings, count, resolved=True)}
         for one in (search, larger)
