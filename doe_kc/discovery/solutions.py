@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections import OrderedDict
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cached_property
 
 from doe_kc.axle.model import Axle
 from doe_kc.load_cases import LoadCase
@@ -35,17 +34,23 @@ class _Solved:
 class Solutions:
     """Solutions of an axle by its values, topology and load cases; each process has its own.
 
-    threads: that solve load cases side by side, and that take their derivatives.
+    threads: that solve load cases side by side, and that take their derivatives. In another process it is
+    one, for that does one task of several, until it is told otherwise.
     """
 
     def __init__(self, threads: int = 1) -> None:
-        self._threads = threads
+        self.threads = threads
         self._axles: OrderedDict[tuple[object, ...], _Solved] = OrderedDict()
+        self._pools: dict[int, Executor] = {}
 
-    @cached_property
+    @property
     def pool(self) -> Executor | None:
         """See `suite.solve`; None for one thread."""
-        return ThreadPoolExecutor(self._threads, "load case") if self._threads > 1 else None
+        if self.threads == 1:
+            return None
+        if self.threads not in self._pools:
+            self._pools[self.threads] = ThreadPoolExecutor(self.threads, "load case")
+        return self._pools[self.threads]
 
     def __call__(self, axle: Axle) -> Solution:
         """As `solve`: NotConverged when a load case has no equilibrium."""
@@ -69,5 +74,5 @@ class Solutions:
             self._axles.popitem(last=False)
         return Solution(axle.name, known.output_names, known.static, cases, None, known.half_track)
 
-    def __reduce__(self) -> tuple[type[Solutions], tuple[int]]:
-        return Solutions, (self._threads,)
+    def __reduce__(self) -> tuple[type[Solutions], tuple[()]]:
+        return Solutions, ()

@@ -146,8 +146,10 @@ class DiscoveryWorkers:
             self.watch(what, len(out))
         missing = [i for i in range(len(starts)) if i not in out]
         missing.sort(key=lambda i: -starts[i].z.size)  # the long ones first, or one worker ends alone
+        threads = self._workers if len(missing) == 1 else 1  # a task that is alone has every core
         tasks = (
-            (s.model, s.z, known_columns(s.near, s.model), s.ceiling) for s in (starts[i] for i in missing)
+            (s.model, s.z, known_columns(s.near, s.model), s.ceiling, threads)
+            for s in (starts[i] for i in missing)
         )
         for at, result in self._run(_fit_one, tasks):
             self._cache.put(keys[missing[at]], result)
@@ -268,7 +270,10 @@ def _fit_key(start: FitStart) -> str:
     return key_of("fit", fingerprint(start.model), start.z, *limit)
 
 
-def _fit_one(model: EffectModel, start: FloatArray, known: FloatArray, ceiling: float) -> Arrays:
+def _fit_one(
+    model: EffectModel, start: FloatArray, known: FloatArray, ceiling: float, threads: int
+) -> Arrays:
+    model.solutions.threads = threads
     try:
         return fit_arrays(fit(model, start, known=known, ceiling=ceiling))
     except NotConverged:

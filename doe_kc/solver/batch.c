@@ -17,8 +17,8 @@ int constants(const double **, double **, integer *, double *, int);
 #define TOGETHER 2              /* else at the next multiple of so many steps, together with that of other lanes */
 #define LARGEST_FACTOR 1e8      /* of the elimination, whose order is the same for all designs */
 
-/* What a lane waits for, in the order in which it is done. */
-enum { ACCEPT = 1, FACTOR = 2, SOLVE = 4, TRY = 8, EVALUATE = 16, UPDATE = 32, MEET = 64, PARTS = 6 };
+/* What a lane waits for: parts of one round, in the order in which they are done; UPDATE before a round. */
+enum { ACCEPT = 1, FACTOR = 2, SOLVE = 4, TRY = 8, EVALUATE = 16, UPDATE = 32, MEET = 64, PARTS = 5 };
 
 /* Sizes and settings as in driver.c, and the pattern of L, U in the order of elimination. */
 typedef struct {
@@ -42,6 +42,7 @@ typedef struct {
 
 /* One design on its way. Pointers to rows of numbers of its own. */
 typedef struct {
+    int own;                                /* which of the batch it is */
     int at, newton_at;                      /* where `go_on` and `newton` resume */
     int steps, step, points, have_lu, stale, singular, failed, smooth;
     int iterations, slow, fresh, halvings, accepted, work, bad;
@@ -64,6 +65,17 @@ typedef struct {
     design lanes[LANES];
     long long *counts;                      /* calls of residual, jacobian, solve, outputs */
 } block;
+
+/* All designs of a call, see `march_batch`; those from `next` to `end` wait for a lane. */
+typedef struct {
+    int next, end, steps, known;
+    const int *steps_of;
+    const double *c, *s_known, *x_known, *u_start, *s, *u;
+    double *z_end, *x_out, *y_out, *z_out, *between;
+    double *z_rows;                         /* (LANES, steps, nz) in place of z_out */
+    int *failed, *passed, *done;            /* done: steps of each, where its outputs are written at the end */
+    long long *own_counts;
+} batch;
 
 static void put(lane *to, int l, const double *from, int count) {
     double *column = (double *)to + l;
@@ -436,12 +448,77 @@ static void count(long long *counts, int want) {
     counts[3] += (want & SOLVE) != 0;
 }
 
-static void run(block *b) {
-    lane_mask of[PARTS];
-    for (int l = 0; l < LANES; l++) b->want[l] = b->lanes[l].steps ? go_on(b, b->lanes + l, l) : 0;
+/* Lane `l` on the numbers of design i: those that it marches from, and where those that it passes go. */
+static void seat(block *b, const batch *all, int l, int i) {
+    const problem *p = b->p;
+    design *t = b->lanes + l;
+    put((lane *)b->c, l, all->c + (size_t)i * p->nc, p->nc);
+    put(b->z, l, all->z_end + (size_t)i * p->nz, p->nz);
+    t->s = all->s + (size_t)i * all->steps;
+    t->u = all->u + (size_t)i * all->steps * p->nu;
+    t->x_out = all->x_out + (size_t)i * all->steps * p->n;
+    t->z_out = all->z_out ? all->z_out + (size_t)i * all->steps * p->nz : all->z_rows + (size_t)l * all->steps * p->nz;
+    if (all->between) t->between = all->between + (size_t)i * p->capacity * (2 + p->nu + p->n + p->nz);
+}
+
+/* Lane `l` takes design i. */
+static void begin(block *b, const batch *all, int l, int i) {
+    const problem *p = b->p;
+    design *t = b->lanes + l;
+    const double *s_known = all->s_known + (size_t)i * all->known;
+    const double *x_known = all->x_known + (size_t)i * all->known * p->n;
+    seat(b, all, l, i);
+    t->own = i;
+    t->steps = all->failed[i] ? 0 : all->steps_of[i];
+    t->step = 0;
+    t->points = all->known < HISTORY ? all->known : HISTORY;
+    for (int k = 0; k < t->points; k++) t->hs[k] = s_known[all->known - t->points + k];
+    memcpy(t->hx, x_known + (size_t)(all->known - t->points) * p->n, sizeof(double) * t->points * p->n);
+    memcpy(t->u_now, all->u_start + (size_t)i * p->nu, sizeof(double) * p->nu);
+    t->at = t->have_lu = t->stale = t->singular = t->passed = 0;
+    memset(t->counts, 0, sizeof(t->counts));
+    t->wish = 1.0;
+}
+
+/* The design of lane `l` has ended: what is left of it that is not where it goes. */
+static void end(const block *b, const batch *all, int l) {
+    const design *t = b->lanes + l;
+    int i = t->own;
+    all->failed[i] = t->failed;
+    get(all->z_end + (size_t)i * b->p->nz, b->z, l, b->p->nz);
+    if (all->own_counts) memcpy(all->own_counts + 4 * i, t->counts, sizeof(t->counts));
+    if (all->passed) all->passed[i] = t->passed;
+    all->done[i] = t->step;
+}
+
+/* What the lane waits for next, with the next design where its own has ended; 0 when none is left. */
+static int advance(block *b, batch *all, int l) {
+    design *t = b->lanes + l;
     for (;;) {
-        int any = 0, meet = 0, others = 0, waiting = 0, now[LANES];
-        for (int l = 0; l < LANES; l++) {   /* a Jacobian costs six residuals: a few that want one wait for more */
+        int want = t->steps ? go_on(b, t, l) : 0;
+        if (want) return want;
+        if (t->steps) end(b, all, l);
+        t->steps = 0;
+        if (all->next >= all->end) return 0;
+        begin(b, all, l, all->next++);
+    }
+}
+
+static void run(block *b, batch *all) {
+    lane_mask of[PARTS];
+    for (int l = 0; l < LANES; l++) b->want[l] = advance(b, all, l);
+    for (;;) {
+        int any = 0, meet = 0, others = 0, waiting = 0, moving = 0, now[LANES];
+        for (int l = 0; l < LANES; l++) {
+            moving |= b->want[l] == UPDATE;
+            of[0][l] = -(integer)(b->want[l] == UPDATE);
+        }
+        if (moving) {   /* at once: what comes next needs all the others' time again */
+            update(b, of[0]);
+            for (int l = 0; l < LANES; l++)
+                if (b->want[l] == UPDATE) b->want[l] = advance(b, all, l);
+        }
+        for (int l = 0; l < LANES; l++) {   /* a Jacobian costs four residuals: a few that want one wait for more */
             waiting += (b->want[l] & FACTOR) != 0;
             others += b->want[l] && !(b->want[l] & (FACTOR | MEET));
         }
@@ -466,9 +543,8 @@ static void run(block *b) {
             for (int i = b->p->active; i < b->p->n; i++) b->x_trial[i] = lane_select(of[3], b->x[i], b->x_trial[i]);
         }
         if (any & EVALUATE) evaluate(b);
-        if (any & UPDATE) update(b, of[5]);
         for (int l = 0; l < LANES; l++)
-            if (now[l] && (!any || now[l] != MEET)) b->want[l] = go_on(b, b->lanes + l, l);
+            if (now[l] && (!any || now[l] != MEET)) b->want[l] = advance(b, all, l);
     }
 }
 
@@ -515,22 +591,13 @@ static void open_block(block *b, const problem *p, lane *memory, double *own) {
     }
 }
 
-static void begin(const problem *p, design *t, int known, const double *s_known, const double *x_known, const double *u_start) {
-    t->points = known < HISTORY ? known : HISTORY;
-    for (int i = 0; i < t->points; i++) t->hs[i] = s_known[known - t->points + i];
-    memcpy(t->hx, x_known + (size_t)(known - t->points) * p->n, sizeof(double) * t->points * p->n);
-    memcpy(t->u_now, u_start, sizeof(double) * p->nu);
-    t->at = t->have_lu = t->stale = t->singular = t->passed = 0;
-    memset(t->counts, 0, sizeof(t->counts));
-    t->wish = 1.0;
-}
-
-/* y of every step that all lanes have passed or that some have: the others' numbers are never read. */
-static void write_outputs(block *b, int steps, double *const *y) {
+/* y of every step that all lanes have passed or that some have: the others' numbers are never read. first: design of
+   the first lane. */
+static void write_outputs(block *b, const batch *all, int first) {
     const problem *p = b->p;
     const lane *arg[4] = {b->x_trial, b->c, b->u, b->z};
     lane *result[1] = {b->out};
-    for (int step = 0; step < steps; step++) {
+    for (int step = 0; step < all->steps; step++) {
         int any = 0;
         for (int l = 0; l < LANES; l++) {
             const design *t = b->lanes + l;
@@ -545,9 +612,17 @@ static void write_outputs(block *b, int steps, double *const *y) {
         b->counts[3]++;
         for (int l = 0; l < LANES; l++) {
             if (step >= b->lanes[l].step) continue;
-            double *row = y[l] + (size_t)step * p->columns;
+            double *row = all->y_out + ((size_t)(first + l) * all->steps + step) * p->columns;
             for (int i = 0; i < p->columns; i++) row[i] = b->out[p->column[i]][l];
         }
+    }
+}
+
+/* Lanes on designs first, first + 1, ...; a lane without a design of its own idles on the numbers of the first. */
+static void begin_lanes(block *b, const batch *all, int first, int designs) {
+    for (int l = 0; l < LANES; l++) {
+        begin(b, all, l, first + l < designs ? first + l : first);
+        if (first + l >= designs) b->lanes[l].steps = 0;
     }
 }
 
@@ -576,45 +651,33 @@ int march_batch(int n, int active, int nu, int nz, int ny, int nc, int nnz, cons
     size_t vectors = 7 * (size_t)n + nnz + 2 * filled + nu + 2 * (size_t)nz + ny + nc;
     size_t own = ((HISTORY + 4) * (size_t)n + 3 * (size_t)nu) * LANES, path = (size_t)steps * nz;
     lane *memory = aligned_alloc(sizeof(lane), sizeof(lane) * vectors);
-    double *rows = malloc(sizeof(double) * (own + (z_out ? 0 : LANES * path) + 1)), *y[LANES];
-    if (!memory || !rows) { free(memory); free(rows); return -1; }
+    double *rows = malloc(sizeof(double) * (own + (z_out ? 0 : LANES * path) + 1));
+    int *done = calloc(designs + 1, sizeof(int)), together = z_out ? designs : LANES;
+    batch all = {0, 0, steps, known, steps_of, c, s_known, x_known, u_start_point, s, u, z_end, x_out, y_out, z_out,
+                 between, rows + own, failed, passed, done, own_counts};
+    if (!memory || !rows || !done) { free(memory); free(rows); free(done); return -1; }
     memset(memory, 0, sizeof(lane) * vectors);
     memset(&b, 0, sizeof(b));
     open_block(&b, &p, memory, rows);
     b.counts = counts;
-    for (int first = 0; first < designs; first += LANES) {
-        int any = 0;
-        for (int l = 0; l < LANES; l++) {
-            /* a lane without a design of its own idles on the numbers of another */
-            int i = first + l < designs ? first + l : first;
-            design *t = b.lanes + l;
-            put((lane *)b.c, l, c + (size_t)i * nc, nc);
-            put(b.z, l, z_end + (size_t)i * nz, nz);
-            t->steps = i == first + l && !failed[i] ? steps_of[i] : 0;
-            t->step = 0;
-            any |= t->steps;
-            t->s = s + (size_t)i * steps;
-            t->u = u + (size_t)i * steps * nu;
-            t->x_out = x_out + (size_t)i * steps * n;
-            t->z_out = z_out ? z_out + i * path : rows + own + l * path;
-            if (between) t->between = between + (size_t)i * capacity * (2 + nu + n + nz);
-            y[l] = y_out + (size_t)i * steps * columns;
-            begin(&p, t, known, s_known + (size_t)i * known, x_known + (size_t)i * known * n, u_start_point + (size_t)i * nu);
+    /* Load cases of one axle, of different lengths: a lane takes the next one as soon as it is free. Designs of one
+       length have their steps in common, which they keep when they begin together. */
+    for (int first = 0; first < designs; first += together) {
+        all.next = first + LANES;
+        all.end = first + together < designs ? first + together : designs;
+        begin_lanes(&b, &all, first, designs);
+        run(&b, &all);
+        for (int i = first; i < all.end; i += LANES) {
+            for (int l = 0; l < LANES; l++) {
+                seat(&b, &all, l, i + l < designs ? i + l : i);
+                b.lanes[l].step = i + l < designs ? done[i + l] : 0;
+            }
+            write_outputs(&b, &all, i);
         }
-        if (!any) continue;
-        run(&b);
-        for (int l = 0; l < LANES && first + l < designs; l++) {
-            const design *t = b.lanes + l;
-            if (!t->steps) continue;
-            failed[first + l] = t->failed;
-            get(z_end + (size_t)(first + l) * nz, b.z, l, nz);
-            if (own_counts) memcpy(own_counts + 4 * (first + l), t->counts, sizeof(t->counts));
-            if (passed) passed[first + l] = t->passed;
-        }
-        write_outputs(&b, steps, y);
     }
     free(memory);
     free(rows);
+    free(done);
     return 0;
 }
 

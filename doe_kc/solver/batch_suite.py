@@ -116,12 +116,8 @@ class _BatchSuite:
         return path
 
     def _controls(self, values: Mapping[str, float | FloatArray], n: int) -> FloatArray:
-        """(d, n, nu) controls; values: (n,), (d, 1) or (d, n). Those not named are zero."""
-        u = np.zeros((self._designs, n, self._kernel.nu))
-        for name, value in values.items():
-            if name in self._kernel.layout.control_names:
-                u[:, :, self._kernel.layout.control_names.index(name)] = value
-        return u
+        """(d, n, nu) controls, see `control_matrix`."""
+        return control_matrix(self._kernel, values, n, (self._designs,))
 
     def _static_states(self) -> tuple[FloatArray, FloatArray, FloatArray, Datum]:
         """x (d, nx), z (d, nz), outputs (d, columns) and datum at rest: see `static.static_state`."""

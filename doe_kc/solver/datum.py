@@ -3,7 +3,7 @@ input."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -29,19 +29,15 @@ GAIN_STEP = 1e-4
 def control_gradient(k: Kernel, case: LoadCase, inputs: FloatArray, datum: Datum) -> FloatArray:
     """(n, nu, 8) derivative of the controls at the inputs (n,) to the datum; they are affine in all of it but
     the gain."""
-    base = _controls(k, case, inputs, datum)
-    flat = [*datum.pad, *datum.wheel_centre_z, datum.preload, datum.half_track, datum.rack_mm_per_rev]
-    columns = []
-    for i in range(len(flat)):
-        moved = list(flat)
-        moved[i] += 1.0
-        shifted = Datum((moved[0], moved[1]), (moved[2], moved[3]), *moved[4:])
-        columns.append(_controls(k, case, inputs, shifted) - base)
-    more, less = (
-        _controls(k, replace(case, gain=case.gain + step), inputs, datum) for step in (GAIN_STEP, -GAIN_STEP)
+    base = np.array(
+        [*datum.pad, *datum.wheel_centre_z, datum.preload, datum.half_track, datum.rack_mm_per_rev]
     )
-    columns.append((more - less) / (2.0 * GAIN_STEP))
-    return np.stack(columns, axis=-1)
+    count = base.size
+    moved = base + np.vstack([np.zeros(count), np.eye(count), np.zeros((2, count))])
+    gains = np.array([*[case.gain] * (1 + count), case.gain + GAIN_STEP, case.gain - GAIN_STEP])
+    controls = _controls(k, case, gains[:, None] * inputs, moved)
+    further = (controls[-2:-1] - controls[-1:]) / (2.0 * GAIN_STEP)
+    return np.ascontiguousarray(np.concatenate([controls[1:-2] - controls[:1], further]).transpose(1, 2, 0))
 
 
 def gradient_between(du: FloatArray, inside: Substeps) -> FloatArray:
@@ -50,6 +46,9 @@ def gradient_between(du: FloatArray, inside: Substeps) -> FloatArray:
     return np.asarray(du[inside.step] + share * (du[inside.step + 1] - du[inside.step]))
 
 
-def _controls(k: Kernel, case: LoadCase, inputs: FloatArray, datum: Datum) -> FloatArray:
-    values = {"preload": datum.preload, **case.driven(inputs, datum)}
-    return control_matrix(k, values, len(inputs))
+def _controls(k: Kernel, case: LoadCase, inputs: FloatArray, datums: FloatArray) -> FloatArray:
+    """(d, n, nu) at true inputs (d, n) and as many datums, (d, 7)."""
+    left, right, left_centre, right_centre, preload, half_track, rack = datums.T[:, :, None]
+    fields: tuple[Any, ...] = ((left, right), (left_centre, right_centre), preload, half_track, rack)
+    values = {"preload": preload, **case.controls(inputs, Datum(*fields))}
+    return control_matrix(k, values, inputs.shape[1], (len(inputs),))

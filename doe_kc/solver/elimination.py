@@ -70,20 +70,28 @@ def paired_order(kernel: Kernel, nonzeros: FloatArray, active: int) -> Eliminati
     place = np.argsort(kernel.layout.order[:active])
     matrix = np.zeros((active, active))
     matrix[place[rows], place[columns]] = nonzeros[keep] / kernel.scale[rows]
-    left = list(range(active))
+    left = np.arange(active)  # the pairs of the rows and columns
     for k in range(active):
-        for i in range(k, active):
-            pair = left[i]
-            pivot, column = matrix[pair, pair], matrix[left[k:], pair]
-            if abs(pivot) > PIVOT_THRESHOLD * np.abs(column).max():
-                break
-        else:
+        i = _first_pivot(matrix, k)
+        if i is None:
             return elimination_order(kernel, nonzeros, active)
-        left.insert(k, left.pop(i))
-        below = left[k + 1 :]
-        matrix[below] -= np.outer(matrix[below, pair] / pivot, matrix[pair])
+        if i != k:
+            moved = np.r_[i, k:i]
+            left[k : i + 1] = left[moved]
+            matrix[k : i + 1] = matrix[moved]
+            matrix[:, k : i + 1] = matrix[:, moved]
+        below = matrix[k + 1 :, k] / matrix[k, k]
+        matrix[k + 1 :, k + 1 :] -= np.outer(below, matrix[k, k + 1 :])
     pairs = kernel.layout.order[left]
     return _of_pairs(kernel.topology, active, pairs.tobytes())
+
+
+def _first_pivot(matrix: FloatArray, k: int) -> int | None:
+    """The first place from k on whose pivot is not small in what is left of its column."""
+    for i in range(k, len(matrix)):
+        if abs(matrix[i, i]) > PIVOT_THRESHOLD * np.abs(matrix[k:, i]).max():
+            return i
+    return None
 
 
 @lru_cache(maxsize=2 * TOPOLOGY_CACHE)

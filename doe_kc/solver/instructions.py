@@ -45,6 +45,7 @@ class InstructionSet:
         return {
             "": f"-O1 -ffp-contract=off {flags}",
             "batch": f"-O3 {flags}",
+            "program": f"-O2 -ffp-contract=off {flags}",
             "link": "-lmvec -lm" if self.library else "-lm",
         }
 

@@ -10,8 +10,8 @@ from doe_kc.axle.topology import Topology
 from doe_kc.solver.library import CompileError, store_text, stored_library, stored_text
 
 OPERATIONS_BEFORE_COMPILING = 16_000_000_000
-"""Of programs: by then compiled code would have saved about twice the time that compiling takes, 3 to 9 s.
-One discovery carries out no more than half as many for any of its sets, and the next car has other sets."""
+"""Of programs: by then compiled code would have saved about the time that compiling takes, 3 to 9 s. One
+discovery carries out no more than half as many for any of its sets, and the next car has other sets."""
 STORED_STEP = OPERATIONS_BEFORE_COMPILING // 40
 """Operations between two entries in the cache: 0.1 to 0.2 s of work."""
 

@@ -12,7 +12,7 @@ typedef struct {
     int inputs, runs, results;
     const int *size;                    /* (inputs) numbers of each argument */
     const int *run;                     /* (runs, 2) operation, and how often */
-    const int *operand;                 /* (., 4) places of value and operands */
+    const unsigned long long *operand;  /* (., 2) pairs of offsets, of a double each: of value and a, of b and c */
     const int *result;                  /* (results, 3) result, which number of it, its place */
     const integer *pattern;             /* of the results, compressed, one after the other */
     const int *pattern_start;
@@ -23,20 +23,30 @@ enum { RESIDUAL, JACOBIAN, OUTPUTS, STATE_UPDATE };
 
 static _Thread_local const program *programs;
 
-/* CasADi's number of an operation, or one beyond those, and its value from a, b and c. */
-#define OPERATION(code, value)                                          \
-    case code:                                                          \
-        for (int i = 0; i < count; i++, q += 4) {                       \
-            const NUMBER a = place[q[1]], b = place[q[2]], c = place[q[3]]; \
-            (void)b;                                                    \
-            (void)c;                                                    \
-            place[q[0]] = value;                                        \
-        }                                                               \
+#define AT(offset) ((NUMBER *)((char *)place + (offset) * (sizeof(NUMBER) / sizeof(double))))
+#if __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__
+#define FIRST(pair) ((pair) >> 32)
+#define SECOND(pair) ((pair) & 0xffffffffu)
+#else
+#define FIRST(pair) ((pair) & 0xffffffffu)
+#define SECOND(pair) ((pair) >> 32)
+#endif
+
+/* CasADi's number of an operation, or one beyond those, and its value from a, b and c. Operands are read in pairs:
+   as many loads as the processor can do at a time are what a program waits for. */
+#define OPERATION(code, value)                                                               \
+    case code:                                                                               \
+        for (int i = 0; i < count; i++, q += 2) {                                            \
+            const NUMBER a = *AT(SECOND(q[0])), b = *AT(FIRST(q[1])), c = *AT(SECOND(q[1])); \
+            (void)b;                                                                         \
+            (void)c;                                                                         \
+            *AT(FIRST(q[0])) = value;                                                        \
+        }                                                                                    \
         break;
 
 int run_program(const program *p, const NUMBER **argument, NUMBER **result) {
     NUMBER *place = p->place, *first = place;
-    const int *q = p->operand;
+    const unsigned long long *q = p->operand;
     for (int k = 0; k < p->inputs; k++) {
         if (p->size[k]) memcpy(first, argument[k], sizeof(NUMBER) * p->size[k]);
         first += p->size[k];

@@ -21,6 +21,8 @@ from doe_kc.solver.dialect import SCALAR, Dialect
 from doe_kc.solver.operations import Operations, operations_of
 
 INTERPRETER = Path(__file__).with_name("program.c")
+OFFSET = np.int32(8)
+"""Bytes of a number: processors reach a place by this times its number, times 1, 4 or 8 lanes, at no cost."""
 PRODUCT_SUM, PRODUCT_DIFFERENCE, DIFFERENCE_FROM = 1000, 1001, 1002
 PRODUCT_EXPRESSIONS = {
     PRODUCT_SUM: "a * b + c",
@@ -36,9 +38,9 @@ class Program:
     """Places hold the arguments, the constants and then values, which share places in turn.
 
     sizes: numbers of each argument. constants: (k,). runs: (r, 2) operation and how often. operands: (n, 4)
-    places of value and operands a, b, c, one row for each operation. results: (m, 3) result, which of its
-    nonzeros, place. patterns: of the results, compressed as CasADi has them, one after the other;
-    pattern_starts: where each begins. places: (1,) how many there are.
+    OFFSET times the places of value and operands a, b, c, one row for each operation. results: (m, 3) result,
+    which of its nonzeros, place. patterns: of the results, compressed as CasADi has them, one after the
+    other; pattern_starts: where each begins. places: (1,) how many there are.
     """
 
     sizes: np.ndarray
@@ -85,7 +87,7 @@ def program_from(operations: Operations) -> Program:
         sizes=np.array(operations.sizes, dtype=np.int32),
         constants=operations.constants,
         runs=np.column_stack([in_order[starts[:-1], 0], np.diff(starts)]).astype(np.int32),
-        operands=np.column_stack([place[order], *(at(own) for own in in_order[:, 1:].T)]).astype(np.int32),
+        operands=OFFSET * np.column_stack([place[order], *map(at, in_order[:, 1:].T)]).astype(np.int32),
         results=np.column_stack([operations.results[:, :2], at(results)]).astype(np.int32),
         patterns=np.array([number for pattern in patterns for number in pattern], dtype=np.int64),
         pattern_starts=np.cumsum([0, *(len(pattern) for pattern in patterns[:-1])]).astype(np.int32),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -18,12 +19,17 @@ from doe_kc.solver.newton import NewtonSettings
 from doe_kc.solver.result import Failure, StaticState
 
 
-def control_matrix(kernel: Kernel, values: dict[str, float | FloatArray], n: int) -> FloatArray:
-    """(n, nu) controls by column; those not named are zero."""
-    u = np.zeros((n, kernel.nu))
+def control_matrix(
+    kernel: Kernel, values: Mapping[str, float | FloatArray], n: int, designs: tuple[int, ...] = ()
+) -> FloatArray:
+    """(n, nu) controls by column, or (d, n, nu) of `designs`, (d,); those not named are zero.
+
+    values: one, (n,), or of designs (d, 1) or (d, n).
+    """
+    u = np.zeros((*designs, n, kernel.nu))
     for name, value in values.items():
         if name in kernel.layout.control_names:
-            u[:, kernel.layout.control_names.index(name)] = value
+            u[..., kernel.layout.control_names.index(name)] = value
     return u
 
 

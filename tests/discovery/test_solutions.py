@@ -70,7 +70,15 @@ def test_several_threads_share_the_load_cases(monkeypatch: pytest.MonkeyPatch) -
     kept(nominal())
     branches = sum(len(branch_inputs(c, loop=False)) for c in nominal().load_cases.values())
     assert sum(shared) == branches and max(shared) <= LANES
-    assert pickle.loads(pickle.dumps(kept)).pool is not None
+
+
+def test_another_process_has_one_thread_until_it_is_told_otherwise() -> None:
+    sent = pickle.loads(pickle.dumps(Solutions(threads=2)))
+    assert sent.pool is None
+    sent.threads = 3
+    assert sent.pool is not None and sent.pool is sent.pool
+    sent.threads = 1
+    assert sent.pool is None
 
 
 def test_another_input_of_one_load_case_solves_that_alone(solved: list[str]) -> None:

@@ -201,12 +201,34 @@ def test_the_other_starts_are_given_up_where_they_promise_less_than_the_first(tu
     class Noted(DiscoveryWorkers):
         def _run(self, task, arguments):  # type: ignore[no-untyped-def]
             tasks = list(arguments)
-            given.extend(ceiling for *_, ceiling in tasks)
+            given.extend(ceiling for *_, ceiling, _ in tasks)
             return super()._run(task, tasks)
 
     first, _, last = Noted().fits([near, near, far], "", enough=lambda refit: False)
     assert first is not None and last is not None and not last.converged
     assert given == [np.inf, first.cost + 2.0 * FREE_SHAPE_LOSS, 7.0]
+
+
+def test_a_fit_that_is_alone_has_every_core(tuned: Fit) -> None:
+    """Beside others one has its own only."""
+    extended, z = start(tuned)
+    begun = FitStart(extended, z, tuned)
+    given: list[int] = []
+
+    class Noted(DiscoveryWorkers):
+        def _run(self, task, arguments):  # type: ignore[no-untyped-def]
+            tasks = list(arguments)
+            given.extend(threads for *_, threads in tasks)
+            return super()._run(task, tasks)
+
+    (alone,) = Noted(workers=2).fits([begun], "")
+    beside = Noted(workers=2).fits([begun, begun], "")
+    assert given == [2, 1, 1]
+    assert alone is not None
+    for other in beside:
+        assert other is not None
+        np.testing.assert_array_equal(other.z, alone.z)
+        np.testing.assert_array_equal(other.jacobian.own, alone.jacobian.own)
 
 
 def test_deferred_tasks_begin_beside_a_single_task_alone(tuned: Fit) -> None:

@@ -65,11 +65,15 @@ def test_what_was_solved_before_the_failure_is_kept() -> None:
     assert found.static is not None
 
 
-def test_a_failure_beside_other_load_cases_is_the_one_that_comes_first() -> None:
-    cases = ["vertical", "steer", "drive"]
-    with ThreadPoolExecutor(3) as pool:
-        beside = solve(far_steer(), cases, throw=False, lanes=True, pool=pool)
-    alone = solve(far_steer(), cases, throw=False)
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_failure_beside_other_load_cases_is_the_one_that_comes_first(threads: int) -> None:
+    """Of more load cases than there are lanes, in one thread and in several."""
+    axle = far_steer()
+    others = [name for name in axle.load_cases if name not in ("vertical", "steer", "drive")]
+    cases = ["vertical", "steer", "drive", *others]
+    with ThreadPoolExecutor(threads) as pool:
+        beside = solve(axle, cases, throw=False, lanes=True, pool=pool if threads > 1 else None)
+    alone = solve(axle, cases, throw=False)
     assert beside.failure is not None
     assert str(beside.failure) == str(alone.failure)
     assert list(beside.cases) == list(alone.cases) == ["vertical"]
