@@ -77,6 +77,8 @@ class _Derivation(Recorder):
 
     def product(self, a: int, b: int) -> int:
         """Operand of a times b."""
+        if a > self._lowest and b > self._lowest:  # no constant, as nearly always
+            return self.operation(ca.OP_MUL, a, b)
         known, other = self.value(a), self.value(b)
         if known is not None and other is not None:
             return self.constant(known * other)
@@ -89,10 +91,11 @@ class _Derivation(Recorder):
 
     def total(self, a: int, b: int) -> int:
         """Operand of a plus b."""
+        if a > self._lowest or b > self._lowest:
+            return self.operation(ca.OP_ADD, a, b)
         known, other = self.value(a), self.value(b)
-        if known is not None and other is not None:
-            return self.constant(known + other)
-        return self.operation(ca.OP_ADD, a, b)
+        assert known is not None and other is not None
+        return self.constant(known + other)
 
 
 def _partials(
@@ -158,15 +161,17 @@ def _eliminate(edges: Edges, count: int, recorder: _Derivation) -> None:
     def products(k: int) -> int:
         return len(edges[k]) * len(following.get(k, ()))
 
-    queue = [(products(k), -k) for k in range(count)]
+    least = [products(k) for k in range(count)]  # in the queue: a vertex has no fewer products than that
+    queue = [(size, -k) for k, size in enumerate(least)]
     heapq.heapify(queue)
     left = [True] * count
     while queue:
         size, last = heapq.heappop(queue)
         k = -last
-        if not left[k]:
+        if not left[k] or size > least[k]:
             continue
         if (now := products(k)) > size:
+            least[k] = now
             heapq.heappush(queue, (now, last))
             continue
         left[k] = False
@@ -182,8 +187,9 @@ def _eliminate(edges: Edges, count: int, recorder: _Derivation) -> None:
                 following[at].add(to)
         edges[k] = {}
         for near in (*before, *after):
-            if 0 <= near < count and left[near]:
-                heapq.heappush(queue, (products(near), -near))
+            if 0 <= near < count and left[near] and (now := products(near)) < least[near]:
+                least[near] = now
+                heapq.heappush(queue, (now, -near))
 
 
 def _needed(rows: Sequence[Sequence[int]], results: Sequence[int]) -> list[bool]:
