@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -80,6 +81,25 @@ def test_nothing_hangs_on_what_is_beside() -> None:
         assert_same(solve(FRICTIONAL, cases, lanes=True), whole)
     with ThreadPoolExecutor(2) as pool:
         assert_same(solve(FRICTIONAL, lanes=True, pool=pool), whole)
+
+
+def test_a_lane_that_is_free_takes_up_the_next_load_case(monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that all take fewer rounds than the longest four and then the others, none of whom begins sooner."""
+    whole, rounds = batch_library._march_by, 0
+
+    def counted(*arguments: Any) -> batch_library.BatchMarch:
+        nonlocal rounds
+        march = whole(*arguments)
+        rounds += int(march.counts[0])
+        return march
+
+    monkeypatch.setattr(batch_library, "_march_by", counted)
+    longest_first = sorted(FRICTIONAL.load_cases, key=lambda name: -FRICTIONAL.load_cases[name].steps)
+    solve(FRICTIONAL, lanes=True)
+    together, rounds = rounds, 0
+    for cases in (longest_first[: lane_march.LANES], longest_first[lane_march.LANES :]):
+        solve(FRICTIONAL, cases, lanes=True)
+    assert together < 0.9 * rounds
 
 
 def test_held_wheel_centres_go_beside_held_pads(alone: list[int]) -> None:
